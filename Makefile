@@ -1,0 +1,49 @@
+# make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html
+# make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
+PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
+
+.PHONY: setup demo test lint bench docs clean
+setup: $(VENV)/.package
+
+$(VENV)/.python:
+	@$(PYTHON) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' || \
+	  { echo "cnc_ptp needs Python 3.11, 3.12 or 3.13; $$($(PYTHON) --version) was found. Call: make PYTHON=python3.12 ..."; exit 2; }
+	@$(PYTHON) -m venv $(VENV) || \
+	  { rm -rf $(VENV); echo "The virtual environment could not be made. On Debian and Ubuntu: apt-get install python3-venv python3-dev"; exit 2; }
+	@touch $@
+
+$(VENV)/.requirements: requirements-build.txt requirements.txt requirements-test.txt $(VENV)/.python
+	@echo "Installing ROS 2 and the other packages into $(VENV) (about a minute) ..."
+	@$(BIN)/pip install --quiet --disable-pip-version-check $(addprefix -r ,$(filter %.txt,$^))
+	@touch $@
+
+$(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
+	@echo "Generating the ROS interfaces and installing cnc_ptp into $(VENV) (about a minute) ..."
+	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
+	@touch $@
+
+demo: setup
+	@mkdir -p runs
+	$(BIN)/cnc_ptp run config/mill.yaml --program examples/bracket.nc --scenario examples/bracket_overrides.yaml --record runs/demo.mcap
+	$(BIN)/cnc_ptp report runs/demo.mcap -o runs/demo.html
+
+test: setup
+	$(BIN)/pytest
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: setup
+	$(BIN)/python -m bench
+
+docs: setup
+	$(BIN)/python -m cnc_ptp.parameters.reference > docs/parameters.md
+
+clean:
+	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so

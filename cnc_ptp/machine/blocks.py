@@ -1,0 +1,213 @@
+"""What units hand each other: one block per tick, field for field the messages of msg/.
+
+Per-cycle fields are lists of `count` values; the channel's setpoints are axis-major (axis index * count + cycle).
+Units: mm, s, deg and their derivatives; the .msg files say the rest.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from enum import IntEnum, IntFlag
+from typing import Any, NamedTuple
+
+
+class AxisStateCode(IntEnum):
+    """PLCopen states of axes and spindles (AxisState.msg)."""
+
+    DISABLED = 0
+    STANDSTILL = 1
+    HOMING = 2
+    DISCRETE_MOTION = 3
+    CONTINUOUS_MOTION = 4
+    SYNCHRONIZED_MOTION = 5
+    STOPPING = 6
+    ERROR_STOP = 7
+
+
+class StatusBit(IntFlag):
+    """Bits of AxisState.status_bits that TwinCAT's axis status word names."""
+
+    PROTECTED = 1 << 5
+    ERROR_DELAYED = 1 << 6
+    HAS_BEEN_STOPPED = 1 << 7
+    HAS_JOB = 1 << 8
+    CONSTANT_VELOCITY = 1 << 12
+    COMPENSATING = 1 << 13
+    EXT_SETPOINT = 1 << 14
+    ERROR = 1 << 31
+
+
+class SpindleMode(IntEnum):
+    """HLI mode bits of a spindle (SpindleState.msg)."""
+
+    STOP = 1
+    CW = 2
+    CCW = 4
+    POSITION = 8
+    SUPERIMPOSED = 16
+    HOMING = 32
+
+
+class ChannelStateCode(IntEnum):
+    """States of the NC channel (ChannelState.msg)."""
+
+    IDLE = 0
+    READY = 1
+    RUNNING = 2
+    HOLD = 3
+    WAITING = 4
+    STOPPED = 5
+    STOPPING = 6
+    ERROR = 7
+
+
+class Severity(IntEnum):
+    """Severity of an event (Event.msg)."""
+
+    INFO = 0
+    WARNING = 1
+    ERROR = 2
+
+
+@dataclass(slots=True)
+class Command:
+    """A command on its way to a unit (CommandRequest.msg); `arguments` is a JSON object."""
+
+    target: str
+    command: str
+    arguments: dict[str, Any] = field(default_factory=dict)
+    id: int = 0
+
+    @property
+    def arguments_json(self) -> str:
+        return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False)
+
+
+@dataclass(slots=True)
+class CommandRecord:
+    """A command carried out or refused at `cycle` (CommandRecord.msg)."""
+
+    cycle: int
+    target: str
+    command: str
+    arguments_json: str
+    accepted: bool
+    error_id: int
+    message: str
+
+
+@dataclass(slots=True)
+class Event:
+    """A state change, warning or error (Event.msg)."""
+
+    cycle: int
+    source: str
+    severity: int
+    error_id: int
+    text: str
+    line: int = 0
+
+
+@dataclass(slots=True)
+class HandshakeRequest:
+    """An M/S/T/D output of the channel that may wait for the PLC (HandshakeRequest.msg)."""
+
+    cycle: int
+    id: int
+    channel: str
+    kind: str
+    spindle: str
+    number: int
+    value: float
+    line: int
+    acknowledge_needed: bool
+
+
+class CycleTick(NamedTuple):
+    """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
+
+    first_cycle: int
+    count: int
+
+
+@dataclass(slots=True)
+class PlcBlock:
+    """PlcBlock.msg"""
+
+    first_cycle: int
+    count: int
+    life_sign: int = 0
+    scenario_done: bool = True
+    commands: list[Command] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class ChannelBlock:
+    """ChannelBlock.msg"""
+
+    first_cycle: int
+    count: int
+    path_active: bool = False
+    axes: list[str] = field(default_factory=list)
+    set_position: list[float] = field(default_factory=list)
+    set_velocity: list[float] = field(default_factory=list)
+    set_acceleration: list[float] = field(default_factory=list)
+    set_jerk: list[float] = field(default_factory=list)
+    line: list[int] = field(default_factory=list)
+    block_number: list[int] = field(default_factory=list)
+    path_velocity: list[float] = field(default_factory=list)
+    programmed_feed: list[float] = field(default_factory=list)
+    override_percent: list[float] = field(default_factory=list)
+    distance_to_go: list[float] = field(default_factory=list)
+    state: list[int] = field(default_factory=list)
+    error_id: list[int] = field(default_factory=list)
+    done: bool = True
+    commands: list[Command] = field(default_factory=list)
+    requests: list[HandshakeRequest] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class AxisBlock:
+    """AxisBlock.msg"""
+
+    first_cycle: int
+    count: int
+    set_position: list[float]
+    set_velocity: list[float]
+    set_acceleration: list[float]
+    set_jerk: list[float]
+    actual_position: list[float]
+    actual_velocity: list[float]
+    following_error: list[float]
+    command_velocity: list[float]
+    feedforward_velocity: list[float]
+    additive_velocity: list[float]
+    additive_torque: list[float]
+    friction_current: list[float]
+    override_percent: list[float]
+    state: list[int]
+    status_bits: list[int]
+    error_id: list[int]
+
+
+@dataclass(slots=True)
+class SpindleBlock:
+    """SpindleBlock.msg"""
+
+    first_cycle: int
+    count: int
+    set_speed_rpm: list[float]
+    actual_speed_rpm: list[float]
+    set_acceleration_deg_s2: list[float]
+    set_position_deg: list[float]
+    actual_position_deg: list[float]
+    following_error_deg: list[float]
+    override_percent: list[float]
+    mode: list[int]
+    gear: list[int]
+    speed_reached: list[bool]
+    speed_zero: list[bool]
+    referenced: list[bool]
+    state: list[int]
+    error_id: list[int]

@@ -1,0 +1,125 @@
+"""Package of build type ament_python that also generates its ROS interfaces.
+
+`pip install .`, `pip install -e .` and `colcon build` all end in build_ext: it lets CMake generate the interfaces,
+takes their Python part into the package and hands libraries and share files on as data files of the prefix.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from setuptools import Distribution, Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
+
+PACKAGE = "cnc_ptp"
+ROOT = Path(__file__).parent.resolve()
+COMMANDS = ("simulate", "run", "check", "replay", "report", "params")
+NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
+
+
+class GenerateInterfaces(build_ext):
+    """Configures, builds and stages the interfaces with CMake."""
+
+    def build_extension(self, ext: Extension) -> None:
+        build = ROOT / "build" / f"interfaces-{sys.implementation.cache_tag}"
+        stage = build / "stage"
+        shutil.rmtree(stage, ignore_errors=True)
+        prefixes = os.pathsep.join(filter(None, [os.environ.get("AMENT_PREFIX_PATH"), sys.prefix]))
+        path = os.pathsep.join([str(Path(sys.prefix) / "bin"), os.environ["PATH"]])
+        environment = os.environ | {"AMENT_PREFIX_PATH": prefixes, "PATH": path}
+        configure = [
+            "cmake",
+            "-S", str(ROOT),
+            "-B", str(build),
+            f"-DCMAKE_INSTALL_PREFIX={stage}",
+            f"-DCMAKE_PREFIX_PATH={prefixes.replace(os.pathsep, ';')}",
+            f"-DPython3_EXECUTABLE={sys.executable}",
+            "-DCMAKE_BUILD_TYPE=Release",
+            "-DBUILD_TESTING=OFF",
+        ]  # fmt: skip
+        jobs = str(os.cpu_count() or 1)
+        for command in (configure, ["cmake", "--build", str(build), "-j", jobs], ["cmake", "--install", str(build)]):
+            subprocess.run(command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL)
+        self.take_python_part(stage)
+        self.hand_on_prefix_part(stage)
+
+    def take_python_part(self, stage: Path) -> None:
+        """Copies the generated modules into the package: the build folder, or the source tree for an editable install."""
+        generated = next(stage.glob(f"**/{PACKAGE}/msg/__init__.py")).parent.parent
+        package = ROOT / PACKAGE if self.inplace or self.editable_mode else Path(self.build_lib) / PACKAGE
+        for entry in generated.iterdir():
+            if entry.is_dir() and entry.name in ("msg", "srv", "action"):
+                shutil.rmtree(package / entry.name, ignore_errors=True)
+                shutil.copytree(entry, package / entry.name, ignore=shutil.ignore_patterns("*.c", "*.pyc"))
+            elif entry.suffix == ".so":
+                shutil.copy2(entry, package / entry.name)
+
+    def hand_on_prefix_part(self, stage: Path) -> None:
+        files: dict[str, list[str]] = {}
+        for folder in ("lib", "share"):
+            for path in sorted((stage / folder).rglob("*")):
+                relative = path.relative_to(stage)
+                inside_python = any(part.startswith("python3") or part == "site-packages" for part in relative.parts)
+                if path.is_file() and not inside_python and path.name != "package.xml":
+                    files.setdefault(str(relative.parent), []).append(os.path.relpath(path, ROOT))
+        data_files = self.distribution.data_files or []
+        known = {folder for folder, _ in data_files}
+        data_files.extend((folder, names) for folder, names in files.items() if folder not in known)
+        self.distribution.data_files = data_files
+
+    def copy_extensions_to_source(self) -> None:
+        """Nothing to copy: take_python_part has written into the source tree."""
+
+    def get_outputs(self) -> list[str]:
+        return []
+
+    def get_output_mapping(self) -> dict[str, str]:
+        return {}
+
+
+class BinaryDistribution(Distribution):
+    """The wheel holds compiled type support, and an editable install its data files as well."""
+
+    def has_ext_modules(self) -> bool:
+        return True
+
+    def has_data(self) -> bool:
+        return True
+
+
+def share(folder: str, pattern: str) -> tuple[str, list[str]]:
+    return f"share/{PACKAGE}/{folder}".rstrip("/"), sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern))
+
+
+def console_scripts() -> list[str]:
+    scripts = [f"{PACKAGE} = {PACKAGE}.cli:main"]
+    scripts += [f"{name} = {PACKAGE}.cli:{name}" for name in COMMANDS]
+    scripts += [f"{name} = {PACKAGE}.nodes.{name}:main" for name in NODES]
+    return scripts
+
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="A CNC and axis kernel as a ROS 2 node graph",
+    license="Apache-2.0",
+    maintainer="cnc_ptp maintainers",
+    maintainer_email="maintainers@cnc-ptp.example.org",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"], exclude=[f"{PACKAGE}.{part}" for part in ("msg", "srv", "action")]),
+    package_data={PACKAGE: ["parameters/*.yaml", "py.typed"]},
+    ext_modules=[Extension(f"{PACKAGE}._interfaces", sources=[])],
+    cmdclass={"build_ext": GenerateInterfaces},
+    distclass=BinaryDistribution,
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+        share("launch", "launch/*.launch.py"),
+        share("config", "config/*.yaml"),
+        share("examples", "examples/*.*"),
+    ],
+    python_requires=">=3.11,<3.14",
+    entry_points={"console_scripts": console_scripts()},
+    zip_safe=False,
+)
