@@ -1,0 +1,128 @@
+"""The canonical stream: what an NC program asks for, with every modal state resolved.
+
+Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
+All types are immutable and cheap to create (one of each per program block).
+
+Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, spindle, other M,
+however the line orders them. When it goes out and who waits for it (before the motion, after it, at the next G01) is
+decided at run time by its synchronisation type (P-CHAN-00041, 00045, 00047, 00049, 00081), which the language does not
+know. `after` is kept for functions that the language itself binds to the block's end. M00, M01 and the program end
+stand in `stop` and act when motion and functions are done.
+"""
+
+from typing import NamedTuple
+
+
+class Source(NamedTuple):
+    """Where a block comes from: file, line (1-based), block number (N word, 0 if none) and the line's text."""
+
+    file: str
+    line: int
+    block_number: int
+    text: str
+
+
+class LinearMove(NamedTuple):
+    """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`."""
+
+    target: tuple[float, ...]
+    rapid: bool
+    feed: float
+
+
+class CircularMove(NamedTuple):
+    """Arc or full circle in a main plane; every other axis moves linearly alongside (helix).
+
+    `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
+    `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s.
+    """
+
+    target: tuple[float, ...]
+    center: tuple[float, float]
+    plane: tuple[int, int]
+    radius: float
+    sweep: float
+    feed: float
+
+
+class Dwell(NamedTuple):
+    """G04: the path stands for `seconds`."""
+
+    seconds: float
+
+
+class SpindleFunction(NamedTuple):
+    """A function of one spindle: `m` is 3 (clockwise), 4 (counter-clockwise), 5 (stop) or None for a new speed alone.
+
+    With M3 and M4 `speed_rpm` is always given (the programmed or the stored speed), with M5 never, since a speed beside
+    M5 is only stored for the next M3 or M4.
+    """
+
+    spindle: str
+    m: int | None
+    speed_rpm: float | None
+
+
+class AuxiliaryFunction(NamedTuple):
+    """A function for the PLC or the tool management: letter "M", "T" or "D"."""
+
+    letter: str
+    number: int
+
+
+Function = SpindleFunction | AuxiliaryFunction
+Motion = LinearMove | CircularMove | Dwell
+
+
+class CanonicalBlock(NamedTuple):
+    """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30)."""
+
+    source: Source
+    before: tuple[Function, ...]
+    motion: Motion | None
+    after: tuple[Function, ...]
+    stop: str
+
+
+def format_block(block: CanonicalBlock) -> str:
+    """One line for golden streams: line, block number, functions, motion, functions after it, stop; 6 decimals."""
+    parts = [f"{block.source.line}:N{block.source.block_number}"]
+    parts += [_function(function) for function in block.before]
+    if block.motion is not None:
+        parts.append(_motion(block.motion))
+    parts += ["after " + _function(function) for function in block.after]
+    if block.stop:
+        parts.append(block.stop)
+    return " | ".join(parts)
+
+
+def _function(function: Function) -> str:
+    if isinstance(function, AuxiliaryFunction):
+        return f"{function.letter}{function.number}"
+    words = [] if function.m is None else [f"M{function.m}"]
+    if function.speed_rpm is not None:
+        words.append(f"REV{number(function.speed_rpm)}")
+    return f"{function.spindle}[{' '.join(words)}]"
+
+
+def _motion(motion: Motion) -> str:
+    if isinstance(motion, Dwell):
+        return f"dwell {number(motion.seconds)} s"
+    target = _numbers(motion.target)
+    if isinstance(motion, LinearMove):
+        return f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}"
+    plane = f"{motion.plane[0]}{motion.plane[1]}"
+    return (
+        f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
+        f" sweep {number(motion.sweep)} feed {number(motion.feed)}"
+    )
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return "(" + ", ".join(number(value) for value in values) + ")"
+
+
+def number(value: float) -> str:
+    """Shortest text of a number with at most 6 decimals, without a negative zero."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text

@@ -1,0 +1,114 @@
+"""Errors of the NC language: the list of faults (number, text) and the exception with the place in the program.
+
+Numbers are those of the vendor's diagnosis manual where it has the fault (20xxx and 21024, 21542), else 21001 and up.
+"""
+
+from typing import NamedTuple
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import Source
+
+
+class ProgramError(CncError):
+    """A fault in an NC program: nothing of the block was executed.
+
+    `reason` is the bare fault, `message` adds file, line, column and the line's text; `caret` is the line with a mark
+    below it.
+    """
+
+    def __init__(self, error_id: int, reason: str, source: Source, column: int) -> None:
+        where = f"{source.file} line {source.line} column {column}"
+        super().__init__(error_id, f"{where}: {reason} in '{source.text.strip()}'")
+        self.reason = reason
+        self.source = source
+        self.file = source.file
+        self.line = source.line
+        self.column = column
+        self.text = source.text
+
+    @property
+    def caret(self) -> str:
+        """The program line and below it a caret under the column (1-based)."""
+        indent = "".join("\t" if character == "\t" else " " for character in self.text[: self.column - 1])
+        return f"{self.text}\n{indent}^"
+
+
+class Fault(NamedTuple):
+    """One kind of error: its number and the template of its reason."""
+
+    error_id: int
+    template: str
+
+    def at(self, source: Source, column: int = 1, **values: object) -> ProgramError:
+        """The exception for this fault at a place in the program."""
+        return ProgramError(self.error_id, self.template.format(**values), source, column)
+
+
+# Characters and words
+UNEXPECTED_CHARACTER = Fault(21001, "unexpected character '{character}'")
+UNKNOWN_WORD = Fault(21002, "unknown word '{word}'")
+BAD_NUMBER = Fault(21003, "'{word}' is not a letter with a number")
+NUMBER_TOO_LONG = Fault(21004, "number '{word}' has more than {limit} digits before the decimal point")
+NUMBER_WITHOUT_WORD = Fault(21005, "number '{word}' without a letter; only G04 takes a bare number")
+COMMAND_UNKNOWN = Fault(21006, "command '{word}' is not available")
+COMMENT_NOT_OPEN = Fault(21007, "')' closes a comment that was never opened")
+DUPLICATE_WORD = Fault(21008, "word {word} twice in one block: {first} and {second}")
+BLOCK_NUMBER_PLACE = Fault(21009, "block number {word} must be the first word of the block")
+NOT_AN_INTEGER = Fault(21010, "{word}{value} must be an integer from 0 to {limit}")
+SKIP_LEVEL = Fault(21011, "block skip /{level} must be /1 to /{limit}")
+DUPLICATE_AXIS = Fault(20203, "axis {word} twice in one block: {first} and {second}")
+
+# G and M functions
+UNKNOWN_G = Fault(20131, "unknown G function {word}")
+UNKNOWN_M = Fault(20160, "unknown M function {word}")
+SAME_GROUP = Fault(21012, "{first} and {second} belong to one group ({group}) and cannot stand in one block")
+WORD_NOT_USED = Fault(21013, "{word} has no meaning with {g}")
+
+# Structure
+NO_MAIN_PROGRAM = Fault(21014, "no main program")
+SECOND_PROGRAM = Fault(21015, "{program} is defined twice, first in line {line}")
+PROGRAM_NAME = Fault(21016, "'{word}' is not a program name")
+END_MISSING = Fault(21017, "{program} has no {end} at its end")
+RETURN_IN_MAIN = Fault(21018, "{word} ends a subroutine, but this is the main program")
+UNKNOWN_SUBROUTINE = Fault(21019, "unknown subroutine {name}; known are: {known}")
+CALL_DEPTH = Fault(21020, "subroutine {name} is the {depth}th nested call, the limit is {limit}")
+WORDS_AFTER_CALL = Fault(21542, "'{word}' behind a subroutine call")
+CALL_AND_END = Fault(21021, "subroutine call and {word} in one block")
+
+# Motion
+AXIS_UNKNOWN = Fault(20797, "axis {word} is not in the machine; axes of this channel: {known}")
+FEED_MISSING = Fault(20008, "{g} without a feed: no F greater than 0 was programmed")
+FEED_NEGATIVE = Fault(21022, "feed F{value} is negative")
+DWELL_MISSING = Fault(21023, "G04 without a time")
+DWELL_NEGATIVE = Fault(21030, "dwell time of {value} s is negative")
+DWELL_WITHOUT_SPEED = Fault(21041, "G04 S counts revolutions, but spindle {spindle} has no speed")
+DWELL_TWICE = Fault(20013, "dwell time given directly and by {word}")
+DWELL_NOT_ALONE = Fault(20685, "G04 stands alone in its block, here with {word}")
+PLANE_AXIS_MISSING = Fault(21031, "plane {g} needs the axes {needed}; axes of this channel: {known}")
+
+# Arcs
+CENTRE_NOT_IN_PLANE = Fault(21032, "centre word {word} does not lie in the plane {g} ({plane})")
+ARC_WITHOUT_CENTRE = Fault(21033, "{g} without a centre ({words}) and without a radius (R)")
+CENTRE_AND_RADIUS = Fault(21024, "circle centre ({word}) and radius (R) in one block")
+RADIUS_ZERO = Fault(20036, "the radius of the circle is 0")
+FULL_CIRCLE_BY_RADIUS = Fault(20034, "a full circle needs its centre: with R alone start and target must differ")
+RADIUS_TOO_SMALL = Fault(
+    21034, "radius R {radius} mm is too small: start and target are {chord} mm apart, at most {limit} mm can be reached"
+)
+RADII_DIFFER = Fault(
+    21035,
+    "radius {start} mm at the start and {target} mm at the target differ by {difference} mm:"
+    " the centre would have to move by {offset} mm, the limit is {limit} mm"
+    " (P-CHAN-00059 {absolute} mm, P-CHAN-00060 {percent} % of radius {radius} mm)",
+)
+
+# Spindles
+SPINDLE_UNKNOWN = Fault(20180, "spindle {word} is not in the machine; spindles of this channel: {known}")
+NO_SPINDLE = Fault(21548, "{word} needs a spindle, this channel has none")
+SPEED_NEGATIVE = Fault(20991, "speed {value} rpm of spindle {spindle} is negative")
+SPEED_MISSING = Fault(21036, "M{m} of spindle {spindle} without a speed: none was programmed before")
+SPINDLE_TWICE = Fault(21037, "spindle {spindle} is programmed twice in one block")
+SPINDLE_M_TWICE = Fault(20155, "M{first} and M{second} for spindle {spindle} in one block")
+BRACKET_WORD = Fault(21038, "'{word}' is not available in the brackets of spindle {spindle}; known are: {known}")
+BRACKET_EMPTY = Fault(21039, "the brackets of {spindle} are empty")
+BRACKET_OPEN = Fault(21040, "'[' without ']'")

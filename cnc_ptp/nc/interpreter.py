@@ -1,0 +1,165 @@
+"""Blocks -> canonical stream: modal state, calls and returns, block skip, veto of targets; check of a whole program."""
+
+from collections.abc import Callable, Iterator
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.arcs import extreme_points
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Motion, Source
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.functions import block_functions
+from cnc_ptp.nc.lexer import column_of
+from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.program import Block, Channel, ModalState, Program
+from cnc_ptp.nc.vocabulary import G_CODES
+
+CENTRE_OFFSET = 2.0
+"""Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
+
+CENTRE_OFFSET_RATIO = 0.05
+"""Default of P-CHAN-00060 mittelpkt_faktor: 50 in 0.1 %; share of the radius."""
+
+CALL_DEPTH = 20
+
+CheckTarget = Callable[[tuple[float, ...], Source], None]
+
+
+def interpret(
+    program: Program,
+    start: tuple[float, ...],
+    axes: tuple[str, ...],
+    spindles: tuple[str, ...] = ("S",),
+    *,
+    state: ModalState | None = None,
+    check_target: CheckTarget | None = None,
+    centre_offset: float = CENTRE_OFFSET,
+    centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
+    block_skip: int = 0,
+    call_depth: int = CALL_DEPTH,
+) -> Iterator[CanonicalBlock]:
+    """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
+
+    `spindles`: names as programmed, the first is the main spindle (DIN words M3, S1000).
+    `state`: modal state to continue from and to carry on (MDI); None begins with the initial state.
+    `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
+    points where an axis turns back; it raises to refuse the move.
+    `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
+    corrected, the smaller of both limits holds. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    Blocks without function, motion or stop give nothing, as does a move to where the axes stand.
+    Raises ProgramError; the state is then undefined, so MDI continues with a copy taken before.
+    """
+    index = {axis: position for position, axis in enumerate(axes)}
+    channel = Channel(axes, index, spindles, centre_offset, centre_offset_ratio)
+    state = ModalState() if state is None else state
+    state.position = tuple(start)
+    for block in _executed(program, block_skip, call_depth):
+        canonical = _resolve(channel, state, block, check_target)
+        if canonical is not None:
+            yield canonical
+
+
+def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[Block]:
+    """The blocks in the order of execution: calls entered, skipped blocks left out, up to the program end."""
+    callers: list[Iterator[Block]] = []
+    blocks = iter(program.main)
+    while True:
+        for block in blocks:
+            if block.skip & block_skip:
+                continue
+            yield block
+            if block.flow == "end":
+                return
+            if block.flow == "return":
+                break
+            if block.call:
+                if len(callers) == call_depth:
+                    raise _too_deep(block, call_depth)
+                callers.append(blocks)
+                blocks = iter(program.subroutines[block.call])
+                break
+        else:
+            if not callers:
+                return
+            blocks = callers.pop()
+            continue
+        if block.flow == "return":
+            blocks = callers.pop()
+
+
+def _too_deep(block: Block, call_depth: int) -> ProgramError:
+    column = column_of(block.source, block.call)
+    return faults.CALL_DEPTH.at(block.source, column, name=block.call, depth=call_depth + 1, limit=call_depth)
+
+
+def _resolve(
+    channel: Channel, state: ModalState, block: Block, check_target: CheckTarget | None
+) -> CanonicalBlock | None:
+    """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
+    if block.error is not None:
+        raise block.error
+    path = G_CODES[state.path]
+    for code in block.codes:
+        if code.motion is not None:
+            path = code
+            if code.modal:
+                state.path = code.number
+        elif code.select is not None:
+            code.select(state)
+    motion: Motion | None = None
+    if (block.words or path.own_words) and path.motion is not None:
+        motion = path.motion(channel, state, block, path)
+    before = block_functions(channel, state, block) if block.functions and not path.own_words else ()
+    if motion is not None and not isinstance(motion, Dwell):
+        if motion.target == state.position and not isinstance(motion, CircularMove):
+            motion = None
+        else:
+            if check_target is not None:
+                _check_move(state.position, motion, block.source, check_target)
+            state.position = motion.target
+    stop = block.flow if block.flow != "return" else ""
+    if motion is None and not before and not stop:
+        return None
+    return CanonicalBlock(block.source, before, motion, (), stop)
+
+
+def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_target: CheckTarget) -> None:
+    if isinstance(motion, CircularMove):
+        for point in extreme_points(start, motion):
+            check_target(point, source)
+    if not isinstance(motion, Dwell):
+        check_target(motion.target, source)
+
+
+def check(
+    text: str,
+    file: str,
+    axes: tuple[str, ...],
+    spindles: tuple[str, ...] = ("S",),
+    *,
+    start: tuple[float, ...] | None = None,
+    check_target: CheckTarget | None = None,
+    centre_offset: float = CENTRE_OFFSET,
+    centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
+) -> list[ProgramError]:
+    """All syntax errors of a program (one a line) and the first modal error, in the order of the lines.
+
+    The modal check runs the program from `start` (default 0) up to its first error or the first line with a syntax
+    error, since what comes after that would only be guessed. An error that `check_target` raises comes out as it is,
+    unless it is a ProgramError.
+    """
+    program, errors = parse_all(text, file)
+    begin = (0.0,) * len(axes) if start is None else start
+    try:
+        for _ in interpret(
+            program,
+            begin,
+            axes,
+            spindles,
+            check_target=check_target,
+            centre_offset=centre_offset,
+            centre_offset_ratio=centre_offset_ratio,
+        ):
+            pass
+    except ProgramError as error:
+        if all(error.line != known.line for known in errors):
+            errors.append(error)
+    return sorted(errors, key=lambda error: error.line)

@@ -1,0 +1,142 @@
+"""Lexical rules: one line of program text -> tokens with their columns.
+
+A word is a letter with a number (`X10`, `G01`, `X=10`), with or without blanks around it. A longer name needs an equals
+sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`), `LL name` calls a subroutine, a bare number
+belongs to G04.
+`( )` comments nest and end at the line's end at the latest, `;` begins a comment up to the line's end.
+"""
+
+import re
+from typing import NamedTuple
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import Source
+
+MAX_DIGITS = 9
+_NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
+_NAME = r"[A-Z_][A-Z0-9_]*+"
+
+PLAIN_LINE = re.compile(rf"(?:\s*[A-Z]\s*=?\s*{_NUMBER}(?!\s*[=\[]|[\d.]))*+\s*", re.ASCII)
+"""A line that is nothing but letters with numbers: nearly every line of a long program."""
+
+PLAIN_WORD = re.compile(rf"([A-Z])\s*=?\s*({_NUMBER})", re.ASCII)
+
+_TOKEN = re.compile(
+    rf"""\s*(?:
+      (?P<call> LL\s+ (?P<callee>[^\s"\],#$\[]+) )
+    | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{_NUMBER}) (?!\s*[=\[]|[\d.]) )
+    | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{_NUMBER}) (?![\d.]) )
+    | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>[^\[\]]*) \] )
+    | (?P<bare> {_NUMBER} (?![\d.]) )
+    )""",
+    re.ASCII | re.VERBOSE,
+)
+_BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({_NUMBER})(?![\d.])", re.ASCII)
+_UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
+
+
+SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
+"""Block skip at the beginning of a line, with its level."""
+
+
+class Token(NamedTuple):
+    """`kind`: call, word, named, bracket or bare; `name`: letter or name; `text`: number or content; `column` from 1."""
+
+    kind: str
+    name: str
+    text: str
+    column: int
+    shown: str
+
+
+def normalise(source: Source) -> str:
+    """The line in upper case with blanks in place of comments, so that columns stay; error on a ')' without '('."""
+    text = source.text
+    if "(" in text or ";" in text or ")" in text:
+        text = _blank_comments(source)
+    if text.isascii():
+        return text.upper()
+    column = next(index for index, character in enumerate(text) if not character.isascii())
+    raise faults.UNEXPECTED_CHARACTER.at(source, column + 1, character=text[column])
+
+
+def _blank_comments(source: Source) -> str:
+    depth = 0
+    kept: list[str] = []
+    for column, character in enumerate(source.text, start=1):
+        if depth == 0 and character == ";":
+            break
+        if character == ")" and depth == 0:
+            raise faults.COMMENT_NOT_OPEN.at(source, column)
+        depth += (character == "(") - (character == ")")
+        kept.append(" " if depth or character == ")" else character)
+    return "".join(kept)
+
+
+def tokens(line: str, source: Source, begin: int = 0) -> list[Token]:
+    """All tokens of a normalised line from index `begin` on; the first unreadable place raises."""
+    found: list[Token] = []
+    position, length = begin, len(line.rstrip())
+    while position < length:
+        match = _TOKEN.match(line, position)
+        if match is None:
+            raise _unreadable(line, source, position)
+        found.append(_token(match))
+        position = match.end()
+    return found
+
+
+def _token(match: "re.Match[str]") -> Token:
+    part = match.groupdict()
+    kind = next(kind for kind in ("call", "word", "named", "bracket", "bare") if part[kind] is not None)
+    name = part["callee"] or part["letter"] or part["name"] or part["owner"] or ""
+    text = part["number"] or part["value"] or part["inside"] or part["bare"] or ""
+    return Token(kind, name, text, match.start(kind) + 1, part[kind])
+
+
+def bracket_words(token: Token, source: Source) -> list[tuple[str, str, int]]:
+    """Words inside the bracket of a token: (name, number text, column)."""
+    words: list[tuple[str, str, int]] = []
+    begin = token.column + token.shown.index("[")
+    position, length = 0, len(token.text.rstrip())
+    while position < length:
+        match = _BRACKET_WORD.match(token.text, position)
+        if match is None:
+            blank = len(token.text[position:]) - len(token.text[position:].lstrip())
+            rest = token.text[position:].split()[0]
+            raise faults.BAD_NUMBER.at(source, begin + position + blank + 1, word=rest)
+        words.append((match[1], match[2], begin + match.start(1) + 1))
+        position = match.end()
+    return words
+
+
+def _unreadable(line: str, source: Source, position: int) -> faults.ProgramError:
+    while line[position].isspace():
+        position += 1
+    match = _UNREADABLE.match(line, position)
+    shown = match[0].strip() if match else line[position]
+    return _fault_of(shown, line, position).at(
+        source, position + 1, word=shown, character=line[position], limit=MAX_DIGITS
+    )
+
+
+def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
+    if shown[0] in "#$":
+        return faults.COMMAND_UNKNOWN
+    if "[" in line[position:] and re.match(rf"{_NAME}\s*\[", line[position:], re.ASCII):
+        return faults.BRACKET_OPEN
+    if re.search(rf"(?<![.\d])\d{{{MAX_DIGITS + 1}}}", shown):
+        return faults.NUMBER_TOO_LONG
+    if len(shown) > 1 and shown.isalpha():
+        return faults.UNKNOWN_WORD
+    return faults.BAD_NUMBER if shown[0].isalnum() or shown[0] in "+-." else faults.UNEXPECTED_CHARACTER
+
+
+def column_of(source: Source, name: str, number: int | None = None) -> int:
+    """Column (1-based) of the first token with this name (and integer) in a line that was parsed before; else 1."""
+    line = normalise(source)
+    skip = SKIP.match(line)
+    for token in tokens(line, source, begin=skip.end() if skip else 0):
+        if token.name == name and (number is None or float(token.text) == number):
+            return token.column
+    return 1

@@ -1,0 +1,95 @@
+"""The language as data: G codes with their modal groups, M codes, words. A new code is a new row and its handler.
+
+Group names and initial states follow the vendor's G groups (P-CHAN-00063).
+"""
+
+from cnc_ptp.nc import functions, motions
+from cnc_ptp.nc.program import GCode, MCode, ModalState
+
+INITIAL_G = ("G00", "G17", "G90", "G162", "G165")
+"""Active at the start of a program; ModalState's defaults say the same."""
+
+
+def _plane(number: int) -> GCode:
+    def select(state: ModalState) -> None:
+        state.plane = number
+
+    return GCode(number, "plane", select=select)
+
+
+def _dimension(number: int, absolute: bool) -> GCode:
+    def select(state: ModalState) -> None:
+        state.absolute = absolute
+
+    return GCode(number, "dimensions", select=select)
+
+
+def _centre(number: int, absolute: bool) -> GCode:
+    def select(state: ModalState) -> None:
+        state.centre_absolute = absolute
+
+    return GCode(number, "circle centre", select=select)
+
+
+_ARC_WORDS = frozenset("IJKR")
+
+G_CODES: dict[int, GCode] = {
+    code.number: code
+    for code in (
+        GCode(0, "path", motion=motions.rapid),
+        GCode(1, "path", motion=motions.straight),
+        GCode(2, "path", motion=motions.circular, words=_ARC_WORDS),
+        GCode(3, "path", motion=motions.circular, words=_ARC_WORDS),
+        GCode(4, "path", motion=motions.dwell, modal=False, own_words=True),
+        _plane(17),
+        _plane(18),
+        _plane(19),
+        _dimension(90, True),
+        _dimension(91, False),
+        _centre(161, True),
+        _centre(162, False),
+        GCode(165, "centre correction"),
+    )
+}
+
+M_CODES: dict[int, MCode] = {
+    code.number: code
+    for code in (
+        MCode(0, "program flow", "M00", None),
+        MCode(1, "program flow", "M01", None),
+        MCode(2, "program flow", "end", None),
+        MCode(3, "spindle", "", functions.rotation),
+        MCode(4, "spindle", "", functions.rotation),
+        MCode(5, "spindle", "", functions.rotation),
+        MCode(17, "program flow", "return", None),
+        MCode(29, "program flow", "return", None),
+        MCode(30, "program flow", "end", None),
+    )
+}
+
+RESERVED_M = frozenset((19, 40, 41, 42, 43, 44, 45))
+"""M functions with a meaning in the vendor's language that is not built yet: an error, never a free function."""
+
+MAX_M = 999
+
+VALUE_WORDS = frozenset("FSTDIJKR")
+"""Words with a number and a meaning of their own, besides axes."""
+
+FUNCTION_WORDS = motions.FUNCTION_WORDS
+
+AXIS_LETTERS = frozenset("ABCQUVWXYZ")
+"""Letters with which an axis name can begin (X, X1, Y_ACHSE)."""
+
+BRACKET_WORDS = ("M3", "M4", "M5", "REV")
+"""What the brackets of a spindle take."""
+
+MAX_SKIP_LEVEL = 10
+
+
+def m_code(number: int) -> MCode | None:
+    """Row of an M function: its own, that of a free function, or None if there is no such function."""
+    if number in M_CODES:
+        return M_CODES[number]
+    if number in RESERVED_M or not 0 <= number <= MAX_M:
+        return None
+    return MCode(number, f"M{number}", "", functions.free_m)
