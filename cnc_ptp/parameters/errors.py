@@ -1,0 +1,66 @@
+"""What can be wrong with a machine file: one error number a kind, one line a problem, all problems in one exception."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cnc_ptp.errors import CncError
+
+SYNTAX = 25001  # not YAML, or not the shape of a ROS parameters file
+DUPLICATE_KEY = 25002  # the same section or parameter twice
+NO_MACHINE = 25003  # section /machine is missing
+NO_UNIT = 25004  # a section that /machine does not know
+UNKNOWN_NAME = 25005  # no list has this parameter, or not for this node
+INDEX = 25006  # array index outside the array
+WRONG_TYPE = 25007  # text for a number and the like
+OUT_OF_RANGE = 25008  # below, above, none of the choices, wrong form
+CONTRADICTION = 25009  # the limit is another parameter
+DUPLICATE_NUMBER = 25010  # logical axis number given twice
+AXIS_TYPE = 25011  # spindle as path axis, path axis as spindle
+COUNT = 25012  # spdl_anzahl, achs_anzahl against what is listed
+MAIN_SPINDLE = 25013  # no main spindle among the spindles of a channel
+NO_SUCH_AXIS = 25014  # the channel names a number that no unit has
+UNIT_NAME = 25015  # names of units, axes and spindles
+RESOLUTION = 25016  # encoder resolution zero or given twice
+UNREADABLE = 25017  # the file cannot be read
+UNKNOWN_PARAMETER = 25018  # asked for in the reference
+
+EFFECT = "the node does not start"
+
+
+class Place(NamedTuple):
+    """Position in a machine file, line and column from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class Problem(NamedTuple):
+    """One thing that is wrong, and where."""
+
+    error_id: int
+    place: Place
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.text}; {EFFECT}"
+
+
+class ParameterError(CncError):
+    """A machine file that no node accepts; `problems` has every one, in the order of the file.
+
+    The message has one line a problem, each with file, line and column. The error number is that of the first problem,
+    the following lines begin with their own.
+    """
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self.problems = tuple(sorted(problems, key=lambda problem: problem.place[1:]))
+        first, *others = self.problems
+        lines = [str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)]
+        super().__init__(first.error_id, "\n".join(lines))
+
+    def __reduce__(self) -> tuple[type["ParameterError"], tuple[tuple[Problem, ...]]]:
+        return type(self), (self.problems,)

@@ -1,0 +1,22 @@
+"""Units of the parameter lists against the units of the kernel (mm, °, s and their derivatives, ratios without unit).
+
+Every factor is the reciprocal of an integer, so a list value is divided: the result is the float nearest to the exact value.
+"""
+
+DIVISORS: dict[str, int] = {
+    "0.1 µm": 10_000,
+    "0.0001°": 10_000,
+    "µm": 1_000,
+    "0.001°": 1_000,
+    "µm/s": 1_000,
+    "0.001°/s": 1_000,
+    "0.01/s": 100,
+    "0.1 %": 1_000,
+    "µs": 1_000_000,
+    "ms": 1_000,
+}
+
+
+def to_kernel(value: float, unit: str) -> float:
+    """`value` in list units -> kernel units: 5000 (0.01/s) -> 50.0 1/s. Units that are kernel units already stay."""
+    return value / DIVISORS.get(unit, 1)

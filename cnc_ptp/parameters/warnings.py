@@ -1,0 +1,51 @@
+"""What a machine file may say but what does not do what its author may expect. Lines for the log, none stops a node."""
+
+from collections.abc import Iterator, Mapping
+
+from cnc_ptp.parameters.parameter_set import ParameterSet
+
+SIMULATED_DRIVES = (4, 16)
+VELOCITY_INDEPENDENT = 4
+
+
+def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
+    """One line a warning, with file and line."""
+    for parameters in sets.values():
+        yield from without_effect(parameters)
+        if parameters.kind != "channel":
+            yield from simulated_drive(parameters)
+            yield from following_error(parameters)
+
+
+def line(parameters: ParameterSet, number: str, indexes: tuple[int, ...], text: str) -> str:
+    name = parameters.catalogue.by_id[number].list_style_name(indexes)
+    return f"{parameters.where(number, *indexes)}: {number} {name} of /{parameters.node}: {text}"
+
+
+def without_effect(parameters: ParameterSet) -> Iterator[str]:
+    for ros_name in parameters.given:
+        declaration, indexes, _ = parameters.find(ros_name)
+        if not declaration.effective:
+            yield line(parameters, declaration.id, indexes, "accepted, but without effect in this version")
+
+
+def simulated_drive(parameters: ParameterSet) -> Iterator[str]:
+    drive = parameters.number("P-AXIS-00020")
+    if drive not in SIMULATED_DRIVES:
+        yield line(parameters, "P-AXIS-00020", (), f"drive type {drive} does not exist here, the drive is simulated")
+
+
+def following_error(parameters: ParameterSet) -> Iterator[str]:
+    """Monitoring that is another than asked for, or that would trip in plain motion: vb_max / kv above slep_max."""
+    gear = (int(parameters.number("P-AXIS-00079")) - 1,)
+    kind = parameters.number("P-AXIS-00172", *gear)
+    if kind not in (1, 2, VELOCITY_INDEPENDENT):
+        return
+    if kind != VELOCITY_INDEPENDENT:
+        yield line(parameters, "P-AXIS-00172", gear, f"monitoring type {kind} is carried out as type 4")
+    expected = parameters.kernel("P-AXIS-00212", *gear) / parameters.kernel("P-AXIS-00099", *gear)
+    limit = parameters.kernel("P-AXIS-00168", *gear)
+    if expected >= limit and parameters.kind == "axis":
+        unit = "mm" if parameters.axis_type == "T" else "°"
+        text = f"limit {limit:g} {unit} is not above the following error {expected:g} {unit} at P-AXIS-00212 (vb_max / kv)"
+        yield line(parameters, "P-AXIS-00168", gear, text)
