@@ -40,7 +40,7 @@ SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
 
 
 class Token(NamedTuple):
-    """`kind`: call, word, named, bracket or bare; `name`: letter or name; `text`: number or content; `column` from 1."""
+    """`kind`: call, word, named, bracket, bare; `name`: letter or name, `text`: number or content; `column` from 1."""
 
     kind: str
     name: str
