@@ -1,6 +1,7 @@
 """Parameter lists: declarations, machine files, typed views in kernel units.
 
-`load_machine(text, file)` is pure, `read_machine(path)` reads a file; both give MachineParameters or raise ParameterError.
+`load_machine(text, file)` is pure, `read_machine(path)` reads a file. Both give MachineParameters or raise
+ParameterError with everything that is wrong.
 """
 
 from cnc_ptp.parameters.declarations import Declaration, catalogue

@@ -10,9 +10,10 @@ Sets = Mapping[str, ParameterSet]
 
 @dataclass(frozen=True, slots=True)
 class ChannelAxisEntry:
-    """An axis or spindle of a channel: program name, node (None when no unit has the number), logical number, indexes in the list.
+    """An axis or spindle of a channel.
 
-    `indexes` is empty for a unit that the channel got without listing it.
+    `name` is for programs; `node` is None when no unit has the logical `number`; `indexes` are those in the channel
+    list, empty for a unit that the channel got without listing it.
     """
 
     name: str
@@ -26,7 +27,7 @@ def is_path_axis(parameters: ParameterSet) -> bool:
 
 
 def axis_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]:
-    """The axes of a channel in the order of gruppe[i].achse[j]; a channel that lists none gets all that no other channel lists."""
+    """The axes of a channel as gruppe[i].achse[j] orders them; one that lists none gets all that no other lists."""
     listed = list(listed_axes(channel, sets))
     if listed:
         return listed
@@ -49,7 +50,9 @@ def spindle_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]
 
     The main spindle is called by P-CHAN-00053 (S when that is empty), whatever its own name.
     """
-    entries = list(listed_spindles(channel, sets)) or [unlisted(unit) for unit in sets.values() if unit.kind == "spindle"]
+    entries = list(listed_spindles(channel, sets)) or [
+        unlisted(unit) for unit in sets.values() if unit.kind == "spindle"
+    ]
     main = main_spindle_number(channel, entries)
     main_name = channel.text("P-CHAN-00053") or "S"
     return [

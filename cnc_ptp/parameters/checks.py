@@ -1,12 +1,15 @@
-"""What no single value shows: parameters against each other, channels against axes and spindles. Each check yields Problems."""
+"""What no single value shows: parameters against each other, channels against axes and spindles.
+
+Each check yields Problems. Only `check_machine` is for others.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from fractions import Fraction
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.channels import ChannelAxisEntry, axis_entries, is_path_axis, spindle_entries
 from cnc_ptp.parameters.declarations import Declaration, Limit
-from cnc_ptp.parameters.errors import Place, Problem
+from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.parameter_set import Parameter, ParameterSet, parameter_limits
 from cnc_ptp.parameters.values import shown, violates_lower, violates_upper, with_unit
 
@@ -28,11 +31,11 @@ def check_machine(sets: Sets) -> list[Problem]:
     return problems
 
 
-def problem(parameters: ParameterSet, error_id: int, number: str, indexes: tuple[int, ...], text: str, place: Place | None = None) -> Problem:
+def problem(parameters: ParameterSet, error_id: int, number: str, indexes: tuple[int, ...], text: str) -> Problem:
     """A problem with one parameter of a node."""
     declaration = parameters.catalogue.by_id[number]
     subject = f"{declaration.list_name} list, {number} {declaration.list_style_name(indexes)} of /{parameters.node}"
-    return Problem(error_id, place or parameters.where(number, *indexes), f"{subject}: {text}")
+    return Problem(error_id, parameters.where(number, *indexes), f"{subject}: {text}")
 
 
 # ---------------------------------------------------------------- inside one node
@@ -89,6 +92,16 @@ def other_name(parameters: ParameterSet, declaration: Declaration, indexes: tupl
     return f"{declaration.id} {declaration.list_style_name(indexes)} {origin}"
 
 
+def emergency_ramp(parameters: ParameterSet) -> Iterator[Problem]:
+    """P-AXIS-00003 is at most twice P-AXIS-00008."""
+    for gear in parameters.used_indexes("getriebe"):
+        value, limit = parameters.number("P-AXIS-00003", gear), 2 * parameters.number("P-AXIS-00008", gear)
+        if value > limit:
+            name = other_name(parameters, parameters.catalogue.by_id["P-AXIS-00008"], (gear,))
+            text = f"value {value} is above the maximum {limit} {parameters.unit('P-AXIS-00003')}, twice {name}"
+            yield problem(parameters, errors.CONTRADICTION, "P-AXIS-00003", (gear,), text)
+
+
 def encoder_resolution(parameters: ParameterSet) -> Iterator[Problem]:
     """The resolution must not be zero, nor given by both methods."""
     if not uses_feed_constant(parameters):
@@ -100,25 +113,8 @@ def encoder_resolution(parameters: ParameterSet) -> Iterator[Problem]:
         for number in ("P-AXIS-00234", "P-AXIS-00233"):
             value = parameters.number(number, gear)
             if value != 1:
-                text = f"value {value} must be 1, P-AXIS-00362 and P-AXIS-00363 (feed constant) give the encoder resolution"
+                text = f"value {value} must be 1, P-AXIS-00362 and P-AXIS-00363 (feed constant) give the resolution"
                 yield problem(parameters, errors.RESOLUTION, number, (gear,), text)
-
-
-def uses_feed_constant(parameters: ParameterSet) -> bool:
-    """Whether the resolution comes from incr_per_rev, gear ratio and feed constant."""
-    return parameters.number("P-AXIS-00362") != 1 or parameters.number("P-AXIS-00363") != 1
-
-
-def resolution(parameters: ParameterSet, gear: int) -> Fraction:
-    """R in increments per 0.1 µm (0.0001°): incr_per_rev · (gear ratio) / (feed constant), else wegaufz / wegaufn."""
-
-    def whole(number: str) -> int:
-        return int(parameters.number(number, gear))
-
-    if uses_feed_constant(parameters):
-        ratio = Fraction(whole("P-AXIS-00511"), whole("P-AXIS-00512"))
-        return whole("P-AXIS-00092") * ratio / Fraction(whole("P-AXIS-00362"), whole("P-AXIS-00363"))
-    return Fraction(whole("P-AXIS-00234"), whole("P-AXIS-00233"))
 
 
 def axis_type_fits(parameters: ParameterSet) -> Iterator[Problem]:
@@ -156,7 +152,9 @@ def channel_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     yield from listed_units(channel, spindle_entries(channel, sets), "P-CHAN-00036", "P-CHAN-00007", sets)
 
 
-def listed_units(channel: ParameterSet, entries: Sequence[ChannelAxisEntry], number: str, name: str, sets: Sets) -> Iterator[Problem]:
+def listed_units(
+    channel: ParameterSet, entries: Sequence[ChannelAxisEntry], number: str, name: str, sets: Sets
+) -> Iterator[Problem]:
     wants_spindle = number == "P-CHAN-00036"
     names: dict[str, ChannelAxisEntry] = {}
     numbers: dict[int, ChannelAxisEntry] = {}
@@ -187,33 +185,39 @@ def unit_trouble(
     return "", 0
 
 
-def name_trouble(channel: ParameterSet, entry: ChannelAxisEntry, name: str, names: dict[str, ChannelAxisEntry]) -> Iterator[Problem]:
-    spindle = name == "P-CHAN-00007"
-    if spindle and entry.name and not entry.name.startswith("S"):
-        text = f"/{entry.node} would be called {entry.name}, a spindle's program name begins with S: give spindel[i].bezeichnung"
-        yield Problem(errors.UNIT_NAME, channel.place, f"channel /{channel.node}: {text}")
-    elif not spindle and entry.name and entry.name[0] not in "ABCUVWXYZQ":
-        text = f"/{entry.node} would be called {entry.name}, an axis's program name begins with A, B, C, U, V, W, X, Y, Z or Q"
-        yield Problem(errors.UNIT_NAME, channel.place, f"channel /{channel.node}: {text}")
-    elif entry.name and names.setdefault(entry.name, entry) is not entry:
+def name_trouble(
+    channel: ParameterSet, entry: ChannelAxisEntry, name: str, names: dict[str, ChannelAxisEntry]
+) -> Iterator[Problem]:
+    """A program name has the right first letter (a name made of the node name may not) and is used once."""
+    letters, listed_as = ("S", "spindel[i]") if name == "P-CHAN-00007" else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
+    if not entry.name:
+        return
+    if entry.name[0] not in letters:
+        rule = f"the first letter must be one of {', '.join(letters)}: give {listed_as}.bezeichnung"
+        text = f"/{entry.node} would be called {entry.name}, {rule}"
+    elif names.setdefault(entry.name, entry) is not entry:
         text = f"program name {entry.name} is used twice"
-        place = channel.where(name, *entry.indexes) if entry.indexes else channel.place
-        yield Problem(errors.UNIT_NAME, place, f"channel /{channel.node}: {text}")
+    else:
+        return
+    place = channel.where(name, *entry.indexes) if entry.indexes else channel.place
+    yield Problem(errors.UNIT_NAME, place, f"channel /{channel.node}: {text}")
 
 
 def axis_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     for group in channel.used_indexes("gruppe"):
         count = len(channel.used_indexes(f"gruppe.{group}.achse"))
-        if channel.is_given("P-CHAN-00003", group) and channel.number("P-CHAN-00003", group) != count:
-            value = channel.number("P-CHAN-00003", group)
-            yield problem(channel, errors.COUNT, "P-CHAN-00003", (group,), f"value {value}, but {count} axes are listed")
+        value = channel.number("P-CHAN-00003", group)
+        if channel.is_given("P-CHAN-00003", group) and value != count:
+            text = f"value {value}, but {count} axes are listed (achse[j])"
+            yield problem(channel, errors.COUNT, "P-CHAN-00003", (group,), text)
 
 
 def spindle_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     count = len(channel.used_indexes("spindel"))
     value = channel.number("P-CHAN-00082")
     if value != count and not channel.is_invalid("P-CHAN-00082") and (count or channel.is_given("P-CHAN-00082")):
-        yield problem(channel, errors.COUNT, "P-CHAN-00082", (), f"value {value}, but {count} spindles are listed (spindel[i])")
+        text = f"value {value}, but {count} spindles are listed (spindel[i])"
+        yield problem(channel, errors.COUNT, "P-CHAN-00082", (), text)
 
 
 def main_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
@@ -222,7 +226,8 @@ def main_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     if number in listed or channel.is_invalid("P-CHAN-00051") or not (listed or number):
         return
     numbers = ", ".join(map(str, listed)) or "none"
-    text = f"value {number} is none of the channel's spindles ({numbers})" if number else f"no main spindle is given (spindles: {numbers})"
+    given = f"value {number} is" if number else "no value is given, it must be"
+    text = f"{given} {'none' if number else 'one'} of the channel's spindles ({numbers})"
     yield problem(channel, errors.MAIN_SPINDLE, "P-CHAN-00051", (), text)
 
 
@@ -242,7 +247,7 @@ def axes_in_two_channels(sets: Sets) -> Iterator[Problem]:
 NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] = {
     "machine": (),
     "channel": (parameter_against_parameter,),
-    "axis": (parameter_against_parameter, encoder_resolution, axis_type_fits),
-    "spindle": (parameter_against_parameter, encoder_resolution, axis_type_fits),
+    "axis": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
+    "spindle": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
 }
 CHANNEL_CHECKS = (channel_axes, channel_spindles, axis_count, spindle_count, main_spindle)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import yaml
@@ -90,7 +91,7 @@ class Declaration:
         return name
 
     def belongs_to(self, node_kind: str) -> bool:
-        """Whether nodes of this kind have the parameter: axis nodes those with axis types, channels channel and tool list."""
+        """Whether such nodes have it: axes and spindles what has axis types, channels the channel and tool lists."""
         if self.axes:
             return node_kind in ("axis", "spindle")
         return node_kind == ("channel" if self.list_name in ("channel", "tool") else "machine")
@@ -122,7 +123,7 @@ class Catalogue:
     def sizes(self, declaration: Declaration) -> tuple[Array, ...]:
         """The arrays of a parameter, outermost first."""
         segments = declaration.key.split(".")
-        return tuple(self.arrays[name] for name, index in zip(segments, segments[1:], strict=False) if index == "*")
+        return tuple(self.arrays[name] for name, index in pairwise(segments) if index == "*")
 
 
 def split_indexes(ros_name: str) -> tuple[str, tuple[int, ...]]:

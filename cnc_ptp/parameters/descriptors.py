@@ -47,7 +47,9 @@ def ros_descriptors(parameters: ParameterSet) -> list[RosDescriptor]:
     ]
 
 
-def bound(parameters: ParameterSet, declaration: Declaration, indexes: tuple[int, ...], *, upper: bool) -> Number | None:
+def bound(
+    parameters: ParameterSet, declaration: Declaration, indexes: tuple[int, ...], *, upper: bool
+) -> Number | None:
     """The tightest limit as an inclusive one; an `unset` value outside the range widens it, as ROS would refuse it."""
     if declaration.type not in ("int", "float") or declaration.choices:
         return choice_bound(declaration, upper=upper)
@@ -61,7 +63,9 @@ def bound(parameters: ParameterSet, declaration: Declaration, indexes: tuple[int
     return tightest
 
 
-def inclusive(parameters: ParameterSet, declaration: Declaration, limit: Limit, indexes: tuple[int, ...], *, upper: bool) -> Number:
+def inclusive(
+    parameters: ParameterSet, declaration: Declaration, limit: Limit, indexes: tuple[int, ...], *, upper: bool
+) -> Number:
     value = parameters.number(limit.value, *indexes) if isinstance(limit.value, str) else limit.value
     if limit.inclusive:
         return value
@@ -74,4 +78,5 @@ def choice_bound(declaration: Declaration, *, upper: bool) -> Number | None:
     if declaration.type not in ("int", "float"):
         return None
     choices = [*declaration.choices, *([declaration.unset] if declaration.unset is not None else [])]
-    return max(choices) if upper else min(choices)
+    extreme: Number = max(choices) if upper else min(choices)
+    return extreme

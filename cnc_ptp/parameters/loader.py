@@ -1,11 +1,18 @@
-"""Machine file -> MachineParameters: read, check every value, check them against each other, or refuse with all that is wrong."""
+"""Machine file -> MachineParameters: read, check every value and values against each other, or refuse, saying all."""
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cnc_ptp.parameters import checks, errors, views
-from cnc_ptp.parameters.declarations import AXIS_LETTERS, Catalogue, Declaration, ParameterValue, catalogue, split_indexes
+from cnc_ptp.parameters.declarations import (
+    AXIS_LETTERS,
+    Catalogue,
+    Declaration,
+    ParameterValue,
+    catalogue,
+    split_indexes,
+)
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.parameter_set import AXIS_TYPES, Given, ParameterSet
 from cnc_ptp.parameters.source import Entry, Section, read_sections
@@ -40,7 +47,8 @@ def load_machine(text: str, file: str) -> MachineParameters:
     problems += sections_without_unit(sections, units)
     by_name = {section.node: section for section in sections}
     sets = {
-        node: checked_section(by_name.get(node, Section(node, machine.place)), kind, problems) for node, kind in units.items()
+        node: checked_section(by_name.get(node, Section(node, machine.place)), kind, problems)
+        for node, kind in units.items()
     }
     number_units(sets)
     problems += checks.check_machine(sets)
@@ -56,8 +64,9 @@ def list_units(machine: ParameterSet, problems: list[Problem]) -> dict[str, str]
         for name in (name.lstrip("/") for name in machine.names(number)):
             trouble = name_trouble(name, units)
             if trouble:
-                what = f"machine list, {number} {machine.catalogue.by_id[number].name} of /machine: unit name {shown(name)} {trouble}"
-                problems.append(Problem(errors.UNIT_NAME, machine.where(number), what))
+                where = subject(machine.catalogue.by_id[number], (), "machine")
+                text = f"{where}: unit name {shown(name)} {trouble}"
+                problems.append(Problem(errors.UNIT_NAME, machine.where(number), text))
             else:
                 units[name] = kind
     return units
@@ -77,8 +86,8 @@ def sections_without_unit(sections: Sequence[Section], units: Mapping[str, str])
     for section in sections:
         if section.node != "machine" and section.node not in units:
             known = ", ".join(f"/{name}" for name in units) or "none"
-            text = f"section /{section.node} has no unit in /machine (units: {known}){suggestion(section.node, units, '/')}"
-            yield Problem(errors.NO_UNIT, section.place, text)
+            text = f"section /{section.node} has no unit in /machine (units: {known})"
+            yield Problem(errors.NO_UNIT, section.place, text + suggestion(section.node, units))
 
 
 def checked_section(section: Section, kind: str, problems: list[Problem]) -> ParameterSet:
@@ -124,7 +133,8 @@ def checked_entry(entry: Entry, node: str, kind: str, letter: str) -> ParameterV
             raise BadValue(errors.INDEX, f"{where}: index {shown(index)} is outside 0 to {array.size - 1}")
     if letter and letter not in declaration.axes:
         fitting = " and ".join(AXIS_LETTERS[axis] for axis in declaration.axes)
-        raise BadValue(errors.UNKNOWN_NAME, f"{where}: only {fitting} have this parameter, /{node} is one of the {AXIS_LETTERS[letter]}")
+        text = f"{where}: only {fitting} have this parameter, /{node} is one of the {AXIS_LETTERS[letter]}"
+        raise BadValue(errors.UNKNOWN_NAME, text)
     try:
         return checked_value(declaration, entry.value, declaration.unit_for(letter))
     except BadValue as error:
@@ -139,7 +149,7 @@ def subject(declaration: Declaration, indexes: tuple[int, ...], node: str) -> st
 def unknown_name(ros_name: str, node: str, kind: str) -> str:
     """Text for a name that the node's lists do not have, with the nearest one, or the nodes that have it."""
     lists = catalogue()
-    key, indexes = split_indexes(ros_name)
+    key, _ = split_indexes(ros_name)
     text = f"{kind} /{node} has no parameter {shown(ros_name)}"
     owners = [other for other, keys in lists.by_key.items() if key in keys]
     if owners:
@@ -156,9 +166,9 @@ def nearest(lists: Catalogue, key: str, kind: str) -> str:
     return f", did you mean {declaration.name} ({declaration.id})?"
 
 
-def suggestion(name: str, names: Mapping[str, str], prefix: str) -> str:
-    close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
-    return f", did you mean {prefix}{close[0]}?" if close else ""
+def suggestion(name: str, names: Mapping[str, str]) -> str:
+    close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.5)
+    return f", did you mean /{close[0]}?" if close else ""
 
 
 def number_units(sets: dict[str, ParameterSet]) -> None:

@@ -5,7 +5,16 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cnc_ptp.parameters import units
-from cnc_ptp.parameters.declarations import Array, Catalogue, Declaration, Limit, Number, ParameterValue, catalogue, split_indexes
+from cnc_ptp.parameters.declarations import (
+    Array,
+    Catalogue,
+    Declaration,
+    Limit,
+    Number,
+    ParameterValue,
+    catalogue,
+    split_indexes,
+)
 from cnc_ptp.parameters.errors import Place
 
 AXIS_TYPES = {"ACHSTYP_TRANSLATOR": "T", "ACHSTYP_ROTATOR": "R", "ACHSTYP_SPINDEL": "S"}
@@ -34,8 +43,8 @@ class Parameter(NamedTuple):
 class ParameterSet:
     """The parameters of the node `/node`. `kind` is machine, channel, axis or spindle.
 
-    `given` has the values of the file by ROS name, `implied` those that follow from the rest of the file in place of a default
-    (logical numbers, type of spindles), `invalid` the names whose value was refused.
+    `given` has the values of the file by ROS name; `implied` those that follow from the rest of the file in place of a
+    default (logical numbers, type of spindles); `invalid` the names whose value was refused.
     """
 
     node: str
@@ -59,7 +68,7 @@ class ParameterSet:
     def value(self, number: str, *indexes: int) -> ParameterValue:
         """Value in the type and unit of the list: the given one, else the default.
 
-        A default gives way to the limits that the file sets: with vb_max at 100000 the default of vb_eilgang is 100000 too.
+        A default gives way to the limits that the file sets: with vb_max at 100000 that of vb_eilgang is 100000 too.
         """
         declaration = self.catalogue.by_id[number]
         name = declaration.ros_name(indexes)
@@ -108,7 +117,7 @@ class ParameterSet:
         return given.place if given else self.place
 
     def used_indexes(self, array: str) -> list[int]:
-        """Elements of an array of which the file gives anything: used_indexes('spindel'), used_indexes('gruppe.0.achse')."""
+        """Elements of an array of which the file gives anything; `array` is spindel, gruppe.0.achse …"""
         prefix = array + "."
         rests = (name[len(prefix) :].split(".")[0] for name in (*self.given, *self.invalid) if name.startswith(prefix))
         return sorted({int(rest) for rest in rests})

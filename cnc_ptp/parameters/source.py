@@ -92,7 +92,8 @@ class Reader:
             section = Section(key.value.lstrip("/"), self.place(key))
             for other in self.sections:
                 if other.node == section.node:
-                    self.add(errors.DUPLICATE_KEY, key, f"section /{section.node} stands twice, first in line {other.place.line}")
+                    text = f"section /{section.node} stands twice, first in line {other.place.line}"
+                    self.add(errors.DUPLICATE_KEY, key, text)
             self.sections.append(section)
             if isinstance(event, yaml.MappingStartEvent):
                 self.read_section(section, events)
@@ -102,7 +103,8 @@ class Reader:
     def read_section(self, section: Section, events: Iterator[Any]) -> None:
         for key, event in self.pairs(events):
             if key.value != "ros__parameters":
-                self.add(errors.SYNTAX, key, f"section /{section.node} has {key.value} where ros__parameters must stand")
+                text = f"section /{section.node} has {key.value} where ros__parameters must stand"
+                self.add(errors.SYNTAX, key, text)
                 self.skip(event, events)
             elif isinstance(event, yaml.MappingStartEvent):
                 self.read_parameters(section, events)
@@ -192,7 +194,7 @@ def is_null(event: Any) -> bool:
 
 
 def scalar(event: Any) -> Scalar:
-    """Value of a scalar. Only decimal and 0x numbers are numbers: 010, 1_000 and 1:30 stay text and are refused later."""
+    """Value of a scalar. Only decimal and 0x numbers are numbers: 010, 1_000, 1:30 stay text and are refused later."""
     text: str = event.value
     if event.style in ("'", '"', "|", ">"):
         return text

@@ -1,6 +1,7 @@
 """Units of the parameter lists against the units of the kernel (mm, °, s and their derivatives, ratios without unit).
 
-Every factor is the reciprocal of an integer, so a list value is divided: the result is the float nearest to the exact value.
+Every factor is the reciprocal of an integer, and list values are divided by that integer: the result is the float
+nearest to the exact one.
 """
 
 DIVISORS: dict[str, int] = {

@@ -1,4 +1,4 @@
-"""One value against its declaration: right type, inside the range, one of the choices; constants to their one spelling."""
+"""One value against its declaration: right type, inside the range, one of the choices; constants to one spelling."""
 
 import math
 import re
@@ -27,7 +27,7 @@ class BadValue(ValueError):
 
 
 def checked_value(declaration: Declaration, value: Value, unit: str) -> ParameterValue:
-    """The value as the parameter's type; raises BadValue (25007 type, 25008 range). Limits that are parameters come later."""
+    """The value in the parameter's type; raises BadValue (25007 type, 25008 range). Limits by parameters come later."""
     if declaration.unset is not None and type(value) is type(declaration.unset) and value == declaration.unset:
         return declaration.unset
     result = typed_value(declaration, value)
@@ -101,11 +101,13 @@ def constants(declaration: Declaration, value: Value) -> str:
         number = value if isinstance(value, int) else int(str(value), 16)
         return spelling(declaration, number, shown(value))
     if not isinstance(value, str):
-        raise BadValue(errors.WRONG_TYPE, f"value {shown(value)} is {described(value)}, a constant or its number is needed")
+        text = f"value {shown(value)} is {described(value)}, a constant or its number is needed"
+        raise BadValue(errors.WRONG_TYPE, text)
     names = [name.strip() for name in value.split("|")] if declaration.flags else [value]
     for name in names:
         if name not in declaration.choices:
-            raise BadValue(errors.OUT_OF_RANGE, f"value {shown(value)} has {name!r}, none of {', '.join(declaration.choices)}")
+            text = f"value {shown(value)} has {shown(name)}, which is none of {', '.join(declaration.choices)}"
+            raise BadValue(errors.OUT_OF_RANGE, text)
     if not declaration.flags:
         return value
     number = 0
@@ -140,9 +142,9 @@ def with_unit(value: object, unit: str) -> str:
 
 def shown(value: object) -> str:
     """A value as a message shows it, cut when it is long."""
-    text = "[" + ", ".join(map(shown, value)) + "]" if isinstance(value, tuple) else f"{value!r}" if isinstance(value, str) else f"{value}"
     if value is None or isinstance(value, bool):
-        text = {None: "null", True: "true", False: "false"}[value]
+        return {None: "null", True: "true", False: "false"}[value]
+    text = f"[{', '.join(map(shown, value))}]" if isinstance(value, tuple) else f"{value!r}"
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cnc_ptp.parameters import warnings
+from cnc_ptp.parameters import notices
 from cnc_ptp.parameters.channels import axis_entries, main_spindle_number, spindle_entries
-from cnc_ptp.parameters.checks import resolution
+from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.synchronisation import Synchronisation, synchronisation
 
@@ -160,7 +160,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
         axes={unit.node: axis_view(unit) for unit in of_kind["axis"]},
         spindles={unit.node: spindle_view(unit) for unit in of_kind["spindle"]},
-        warnings=tuple(warnings.machine_warnings(sets)),
+        warnings=tuple(notices.machine_warnings(sets)),
         sets={"machine": machine, **sets},
     )
 
@@ -278,11 +278,6 @@ def jerk(parameters: ParameterSet, gear: int) -> float:
 
 def emergency_deceleration(parameters: ParameterSet, gear: int) -> float:
     return parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear)
-
-
-def encoder_increment(parameters: ParameterSet, gear: int) -> float:
-    """mm or ° an increment, 1e-4 / R; 0.0 when the simulated encoder is off."""
-    return float(1 / (10_000 * resolution(parameters, gear))) if parameters.number("P-SIM-00002") else 0.0
 
 
 def preferred_direction(parameters: ParameterSet) -> int:

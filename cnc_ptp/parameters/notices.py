@@ -47,5 +47,5 @@ def following_error(parameters: ParameterSet) -> Iterator[str]:
     limit = parameters.kernel("P-AXIS-00168", *gear)
     if expected >= limit and parameters.kind == "axis":
         unit = "mm" if parameters.axis_type == "T" else "°"
-        text = f"limit {limit:g} {unit} is not above the following error {expected:g} {unit} at P-AXIS-00212 (vb_max / kv)"
+        text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
         yield line(parameters, "P-AXIS-00168", gear, text)

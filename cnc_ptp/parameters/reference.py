@@ -1,0 +1,171 @@
+"""The parameter reference: single entries for the terminal, and docs/parameters.md:
+`python -m cnc_ptp.parameters.reference > docs/parameters.md`."""
+
+import difflib
+import re
+import sys
+from collections.abc import Iterator
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declarations import DATA_TYPES, LISTS, Declaration, Limit, ParameterValue, catalogue
+from cnc_ptp.parameters.source import dotted
+
+HEADLINES = {
+    "axis": "Axis list (axes and spindles)",
+    "channel": "Channel list (NC channels)",
+    "compensation": "Compensation list (axes and spindles)",
+    "tool": "Tool list (NC channels)",
+    "simulation": "Simulation list (axes and spindles; our own)",
+    "machine": "Machine list (`/machine`; those under `ptp` belong to axes; our own)",
+}
+INTRODUCTION = """\
+# Parameters
+
+Made by `python -m cnc_ptp.parameters.reference` from `cnc_ptp/parameters/declarations.yaml`; do not edit.
+
+A machine file is a ROS parameters file. `/machine` names the nodes, each node has a section:
+
+    /machine: {ros__parameters: {channels: [channel], axes: [x, y, z], spindles: [s]}}
+    /x: {ros__parameters: {kopf: {achs_nr: 1}, getriebe: {"0": {kv: 5000}}}}
+
+`getriebe[0].kv` of the lists is `getriebe: {"0": {kv: …}}` or `getriebe.0.kv` in the file and in ROS. Integers are
+decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that the
+file does not give has its default, cut to the limits that the file gives. All parameters are read-only while a node runs.
+
+The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
+Axis types: T linear, R rotary, S spindle. **—** in the last column: accepted and checked, without effect in this version.
+A range with an id in it ends at the value of that parameter.
+"""
+
+
+def reference_markdown() -> str:
+    """docs/parameters.md."""
+    return "\n".join([INTRODUCTION, *array_lines(), *(line for name in LISTS for line in list_lines(name))])
+
+
+def array_lines() -> Iterator[str]:
+    yield "## Arrays\n"
+    sizes = ", ".join(f"`{name}` {array.size}" for name, array in catalogue().arrays.items())
+    yield f"Indexes begin at 0. Largest numbers of elements: {sizes}.\n"
+
+
+def list_lines(list_name: str) -> Iterator[str]:
+    yield f"## {HEADLINES[list_name]}\n"
+    yield "| id | name | type | range | unit | default | axes | meaning | |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    declarations = (entry for entry in catalogue().by_id.values() if entry.list_name == list_name)
+    for declaration in sorted(declarations, key=lambda entry: entry.id):
+        yield table_row(declaration)
+    yield ""
+
+
+def table_row(declaration: Declaration) -> str:
+    cells = (
+        declaration.id,
+        f"`{declaration.name}`",
+        declaration.data_type,
+        range_text(declaration),
+        unit_text(declaration),
+        default_text(declaration.default),
+        declaration.axes,
+        declaration.text,
+        "" if declaration.effective else "**—**",
+    )
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def range_text(declaration: Declaration) -> str:
+    """'1 ≤ … ≤ P-AXIS-00212', or the choices."""
+    if declaration.choices:
+        if declaration.type == "string":
+            text = (" flags " if declaration.flags else " ") + ", ".join(
+                f"{name} 0x{number:x}" if declaration.flags else name for name, number in declaration.choices.items()
+            )
+        else:
+            text = ", ".join(f"{number} {meaning}" for number, meaning in declaration.choices.items())
+    elif declaration.type == "string":
+        text = f"at most {declaration.max_length} characters"
+        text += f", {declaration.form_text}" if declaration.form else ""
+    else:
+        text = limits_text(declaration)
+    unset = "" if declaration.unset is None else f"; {default_text(declaration.unset)} not configured"
+    return text.strip() + unset
+
+
+def limits_text(declaration: Declaration) -> str:
+    """'0 < … ≤ 1000'; the end of the data type is left out where something else limits too."""
+    lower, upper = (written_limits(declaration, limits) for limits in (declaration.lower, declaration.upper))
+    left = "".join(f"{limit.value} {'≤' if limit.inclusive else '<'} " for limit in lower)
+    right = "".join(f" {'≤' if limit.inclusive else '<'} {limit.value}" for limit in upper)
+    return f"{left}…{right}" if left or right else ""
+
+
+def written_limits(declaration: Declaration, limits: tuple[Limit, ...]) -> list[Limit]:
+    ends = DATA_TYPES[declaration.data_type][1:]
+    return [limit for limit in limits if len(limits) == 1 or limit.value not in ends]
+
+
+def unit_text(declaration: Declaration) -> str:
+    linear, other = declaration.unit
+    return linear if linear == other else f"{linear} / {other}"
+
+
+def default_text(value: ParameterValue) -> str:
+    if isinstance(value, bool):
+        return "1" if value else "0"
+    if isinstance(value, tuple):
+        return "[" + ", ".join(value) + "]"
+    return '""' if value == "" else f"{value}"
+
+
+def describe(id_or_name: str) -> str:
+    """The entries for an id (P-AXIS-00099), a whole name (getriebe[0].kv, getriebe.0.kv) or its last part (kv).
+
+    Raises CncError 25018 when there is none.
+    """
+    found = [declaration for declaration in catalogue().by_id.values() if matches(declaration, id_or_name.strip())]
+    if not found:
+        raise CncError(errors.UNKNOWN_PARAMETER, f"no parameter is called {id_or_name!r}{near(id_or_name)}")
+    return "\n\n".join(map(entry_text, found))
+
+
+def matches(declaration: Declaration, wanted: str) -> bool:
+    name = re.sub(r"\.(\d+|\*|i|j)(?=\.|$)", ".*", dotted(wanted.replace("[i]", ".*").replace("[j]", ".*")))
+    return (
+        declaration.id == wanted.upper()
+        or declaration.key == name
+        or declaration.key.split(".*")[-1].endswith("." + name)
+    )
+
+
+def near(wanted: str) -> str:
+    """The most similar id or name, as a question."""
+    candidates: dict[str, Declaration] = {}
+    for declaration in catalogue().by_id.values():
+        for name in (declaration.id, declaration.name, declaration.name.split(".")[-1]):
+            candidates.setdefault(name.lower(), declaration)
+    close = difflib.get_close_matches(wanted.lower()[:100], candidates, n=1, cutoff=0.5)
+    if not close:
+        return ""
+    return f", did you mean {candidates[close[0]].id} {candidates[close[0]].name}?"
+
+
+def entry_text(declaration: Declaration) -> str:
+    """One parameter in full, for a terminal."""
+    lines = [
+        f"{declaration.id}  {declaration.name}",
+        f"  {declaration.text}",
+        f"  list     {declaration.list_name}" + (f", axis types {declaration.axes}" if declaration.axes else ""),
+        f"  type     {declaration.data_type} ({declaration.type})",
+        f"  range    {range_text(declaration)}",
+        f"  unit     {unit_text(declaration)}",
+        f"  default  {default_text(declaration.default)}",
+        f"  source   {declaration.source}",
+        "" if declaration.effective else "  Accepted and checked, but without effect in this version.",
+    ]
+    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit"))
+
+
+if __name__ == "__main__":
+    sys.stdout.write(reference_markdown())
