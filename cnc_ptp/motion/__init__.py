@@ -1,0 +1,24 @@
+"""Jerk-limited profiles: plan -> immutable table of constant-jerk segments -> pure evaluation at a time.
+
+Units: mm, s, mm/s, mm/s², mm/s³ (deg instead of mm for rotary axes).
+"""
+
+from cnc_ptp.motion.batch import RestToRestBatch, plan_rest_to_rest_batch
+from cnc_ptp.motion.limits import Limits
+from cnc_ptp.motion.profile import Profile
+from cnc_ptp.motion.ramp import stop_way
+from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest, reachable_velocity
+from cnc_ptp.motion.to_position import plan_to_position
+from cnc_ptp.motion.to_velocity import plan_to_velocity
+
+__all__ = [
+    "Limits",
+    "Profile",
+    "RestToRestBatch",
+    "plan_rest_to_rest",
+    "plan_rest_to_rest_batch",
+    "plan_to_position",
+    "plan_to_velocity",
+    "reachable_velocity",
+    "stop_way",
+]

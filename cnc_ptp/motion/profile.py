@@ -1,0 +1,110 @@
+"""The runtime table: an immutable list of constant-jerk segments, evaluated purely at a time.
+
+Within a segment that starts at t0 with p, v, a and jerk j, with d = t - t0:
+
+    p(t) = p + d·(v + d·(a/2 + d·j/6))      v(t) = v + d·(a + d·j/2)      a(t) = a + d·j
+
+The last row of a table is the end state with a = j = 0: after its end a motion goes on with its end velocity.
+`Profile.state_at` and `Profile.sample` run the same operations in the same order, so they agree to the bit.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Row = tuple[float, float, float, float, float]
+"""Segment start time, position, velocity, acceleration, jerk."""
+
+Piece = tuple[float, float, float]
+"""Segment duration, acceleration at its start, jerk: a segment before position and velocity are known."""
+
+State = tuple[float, float, float, float]
+"""Position, velocity, acceleration, jerk."""
+
+
+class Profile:
+    """An immutable table of constant-jerk segments.
+
+    rows       (t, p, v, a, j) at the start of each segment; the last row is the end state with a = j = 0
+    starts     the start times alone
+    duration   seconds from the first to the last row
+    end        (p, v, a) after the last segment
+    """
+
+    __slots__ = ("_columns", "duration", "end", "rows", "starts")
+
+    rows: tuple[Row, ...]
+    starts: tuple[float, ...]
+    duration: float
+    end: tuple[float, float, float]
+    _columns: NDArray[np.float64] | None
+
+    def __init__(self, rows: Iterable[Row]) -> None:
+        keep = object.__setattr__
+        table = tuple(rows)
+        last = table[-1]
+        keep(self, "rows", table)
+        keep(self, "starts", tuple([row[0] for row in table]))
+        keep(self, "duration", last[0])
+        keep(self, "end", last[1:4])
+        keep(self, "_columns", None)
+
+    def state_at(self, t: float) -> State:
+        """(p, v, a, j) at t seconds after the start; before the start as at 0, after the end on at the end velocity."""
+        if t < 0.0:
+            t = 0.0
+        start, p, v, a, j = self.rows[bisect_right(self.starts, t) - 1]
+        d = t - start
+        return p + d * (v + d * (0.5 * a + d * (j / 6.0))), v + d * (a + d * (0.5 * j)), a + d * j, j
+
+    def sample(self, times: ArrayLike) -> NDArray[np.float64]:
+        """States at many times: times (n,) in seconds -> array (4, n) of p, v, a, j; equals state_at to the bit."""
+        t = np.maximum(np.asarray(times, dtype=np.float64), 0.0)
+        columns = self._columns
+        if columns is None:
+            columns = np.array(self.rows, dtype=np.float64).T.copy()
+            object.__setattr__(self, "_columns", columns)
+        index = columns[0].searchsorted(t, side="right") - 1
+        start, p, v, a, j = columns.take(index, axis=1)
+        d = t - start
+        out = np.empty((4, len(t)))
+        out[0] = p + d * (v + d * (0.5 * a + d * (j / 6.0)))
+        out[1] = v + d * (a + d * (0.5 * j))
+        out[2] = a + d * j
+        out[3] = j
+        return out
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a Profile is immutable: {name} cannot be set")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a Profile is immutable: {name} cannot be deleted")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Profile) and self.rows == other.rows
+
+    def __hash__(self) -> int:
+        return hash(self.rows)
+
+    def __repr__(self) -> str:
+        return f"Profile({len(self.rows) - 1} segments, {self.duration!r} s, end {self.end!r})"
+
+
+def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[list[Row], float, float, float]:
+    """String pieces together from time t, position p and velocity v: the rows, and t, p, v after the last piece.
+
+    Pieces without duration leave no row.
+    """
+    rows: list[Row] = []
+    for d, a, j in pieces:
+        if d > 0.0:
+            rows.append((t, p, v, a, j))
+            t += d
+            p += d * (v + d * (0.5 * a + d * (j / 6.0)))
+            v += d * (a + d * (0.5 * j))
+    return rows, t, p, v

@@ -1,0 +1,187 @@
+"""Position target from any state.
+
+Seen in the direction s of the target, let Γ be the fastest ramp to the velocity V followed by cruising, and D(τ) the
+place where the axis comes to rest when it leaves Γ at τ on the fastest stop ramp. D never falls, so the motion is Γ up
+to the τ with D(τ) = target, then the stop ramp. With c = vJ - a²/2 (constant under jerk +J), q = vJ + a²/2 (the square
+of the coming deceleration peak) and g = `brake_term`:
+
+    D·J² = const + 2ca + a³ + g(q)                  jerk +J      (a polynomial of degree four for y = √q + a, or for a)
+    D·J² = const + q²/(2A) + qA/2 + g(q)            constant A   (a quadratic for √q(√q + A), or for q)
+    D    = const + V·τ                              cruise
+
+and D is constant while Γ brakes or lowers its acceleration, because the stop ramp does the same.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from cnc_ptp.motion.limits import Limits, check_limits, check_state
+from cnc_ptp.motion.profile import Piece, Profile, Row, integrate
+from cnc_ptp.motion.ramp import NEGLIGIBLE, brake, brake_term, ramp, stop_way
+from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest
+
+WAY_ROUNDING = 1e-13
+PLACE_ROUNDING = 4e-15
+
+
+def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits, *, direct: bool = False) -> Profile:
+    """Fastest jerk-limited motion from (p, v, a) to standstill exactly at `target` (mm).
+
+    A velocity above V and an acceleration above A+ or A- are left as fast as the limits allow. Where the axis cannot
+    stop before the target it stops behind it and returns (TX1250 2.3); `direct` reverses without the standstill in
+    between, which is faster. Raises CncError 23001 (limits) and 23002 (state, target).
+    """
+    check_limits(limits)
+    check_state(position=p, velocity=v, acceleration=a, target=target)
+    _, _, deceleration, jerk = limits
+    way = target - p
+    stop = stop_way(v, a, deceleration, jerk)
+    gap = way - stop
+    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)):
+        return _table(p, v, target, 1.0, [], ramp(v, a, 0.0, limits))
+    s = 1.0 if gap > 0.0 else -1.0
+    v *= s
+    a *= s
+    left = a * abs(a) / (2.0 * jerk)
+    if v + left < -NEGLIGIBLE * (abs(v) + abs(left)) and not direct:
+        return _stop_and_return(p, s * v, s * a, target, limits)
+    head, tail = _leave_ramp(v, a, s * way, limits)
+    return _table(p, v, target, s, head, tail)
+
+
+def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
+    """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target."""
+    rows, t, p, _ = integrate(0.0, p, v, ramp(v, a, 0.0, limits))
+    back = plan_rest_to_rest(p, target, limits)
+    return Profile(rows + [(t + row[0], *row[1:]) for row in back.rows])
+
+
+def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail: list[Piece]) -> Profile:
+    """Rows for the pieces of Γ (counted from p) and of the stop ramp (counted back from the target), in direction s.
+
+    The rounding of the whole falls between the two, the end is exact.
+    """
+    first, t, x, v = integrate(0.0, 0.0, v, head)
+    last, t, x, v = integrate(t, x, v, tail)
+    rows: list[Row]
+    if s > 0.0:
+        rows = [(t0, p + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in first]
+        rows += [(t0, target + (x0 - x), v0, a0, j0) for t0, x0, v0, a0, j0 in last]
+    else:
+        rows = [(t0, p - x0, -v0, -a0, -j0) for t0, x0, v0, a0, j0 in first]
+        rows += [(t0, target - (x0 - x), -v0, -a0, -j0) for t0, x0, v0, a0, j0 in last]
+    rows.append((t, target, 0.0, 0.0, 0.0))
+    return Profile(rows)
+
+
+def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Piece], list[Piece]]:
+    """The pieces of Γ up to the point where it must be left for the target, and the stop ramp from there."""
+    velocity, _, deceleration, jerk = limits
+    scale = jerk * jerk
+    head: list[Piece] = []
+    x = 0.0
+    pieces = ramp(v, a, velocity, limits)
+    for d, a, j in pieces:
+        if d <= 0.0:
+            continue
+        if j > 0.0:
+            top = _leave_at_rising_acceleration(x, v, a, a + j * d, way, deceleration, jerk)
+            if top is not None:
+                d = (top - a) / jerk
+                head.append((d, a, j))
+                return head, brake(v + d * (a + d * (0.5 * j)), top, deceleration, jerk)
+        elif j == 0.0 and a > 0.0:
+            q = _leave_at_constant_acceleration(x, v, a, way, deceleration, jerk)
+            held = (q - (v * jerk + 0.5 * a * a)) / (jerk * a)
+            if held <= d:
+                held = max(0.0, held)
+                head.append((held, a, 0.0))
+                return head, brake(v + held * a, a, deceleration, jerk)
+        head.append((d, a, j))
+        x += d * (v + d * (0.5 * a + d * (j / 6.0)))
+        v += d * (a + d * (0.5 * j))
+    cruise = way - x - brake_term(velocity * jerk, deceleration) / scale
+    head.append((max(0.0, cruise) / velocity, 0.0, 0.0))
+    return head, brake(velocity, 0.0, deceleration, jerk)
+
+
+def _leave_at_constant_acceleration(
+    x: float, v: float, a: float, way: float, deceleration: float, jerk: float
+) -> float:
+    """q at which a piece of constant a > 0, begun at x with v, must be left to stop at `way`."""
+    q = v * jerk + 0.5 * a * a
+    rest = jerk * jerk * (way - x) + 0.5 * q * (q / a - a) + a * a * a / 6.0
+    if rest <= 0.0:
+        return q
+    m = sqrt(2.0 * a * rest)
+    w = 2.0 * m / (a + sqrt(a * a + 4.0 * m))
+    if w <= deceleration:
+        return w * w
+    m = 2.0 * rest / (a + deceleration)
+    return 2.0 * m / (1.0 + sqrt(1.0 + 4.0 * m / (a * deceleration)))
+
+
+def _leave_at_rising_acceleration(
+    x: float, v: float, a: float, end: float, way: float, deceleration: float, jerk: float
+) -> float | None:
+    """Acceleration at which a piece of jerk +J from a to `end`, begun at x with v, is left to stop at `way`, or None.
+
+    Within the piece the deceleration peak √q is above A- outside -edge < a < edge, edge² = A-² - c.
+    """
+    c = v * jerk - 0.5 * a * a
+    rest = jerk * jerk * (way - x) + a * (c + a * a / 6.0)
+    low = max(a, -deceleration)
+    if c < 0.0:
+        low = max(low, sqrt(-c))
+    if end <= low or end * (2.0 * c + end * end) + brake_term(c + end * end, deceleration) < rest:
+        return None
+    edge_squared = deceleration * deceleration - c
+    if edge_squared <= 0.0:
+        return _solve_bounded(low, end, c, rest, deceleration)
+    edge = sqrt(edge_squared)
+    brake_cubed = deceleration * deceleration * deceleration
+    if low < -edge <= end and -edge * (2.0 * c + edge_squared) + brake_cubed >= rest:
+        return _solve_bounded(low, -edge, c, rest, deceleration)
+    if edge < end and (edge <= low or edge * (2.0 * c + edge_squared) + brake_cubed < rest):
+        return _solve_bounded(max(low, edge), end, c, rest, deceleration)
+    return _solve_free(low, min(end, edge), c, rest)
+
+
+def _solve_free(low: float, high: float, c: float, rest: float) -> float:
+    """a in [low, high] with 2ca + a³ + (c + a²)^1.5 = rest.
+
+    Newton from above on y⁴ + 4cy² - 4·rest·y - c² = 0 with y = √(c + a²) + a. The polynomial is convex and rising
+    right of the solution, so the steps come down to it; they end when rounding ends them.
+    """
+    if c == 0.0:
+        a = (0.5 * rest) ** (1.0 / 3.0) if rest > 0.0 else 0.0
+        return min(max(a, low), high)
+    y = sqrt(max(0.0, c + high * high)) + high
+    for _ in range(60):
+        square = y * y
+        slope = 4.0 * (y * (square + 2.0 * c) - rest)
+        if slope <= 0.0:
+            break
+        step = (square * (square + 4.0 * c) - 4.0 * rest * y - c * c) / slope
+        if step <= 1e-16 * y:
+            break
+        y -= step
+    a = 0.5 * (y - c / y) if y > 0.0 else 0.0
+    return min(max(a, low), high)
+
+
+def _solve_bounded(low: float, high: float, c: float, rest: float, bound: float) -> float:
+    """a in [low, high] with 2ca + a³ + q·A-/2 + q²/(2A-) = rest, q = c + a²: Newton as in `_solve_free`."""
+    a = high
+    for _ in range(60):
+        q = c + a * a
+        value = a * (2.0 * c + a * a) + 0.5 * q * (bound + q / bound) - rest
+        slope = 2.0 * c + 3.0 * a * a + a * (bound + 2.0 * q / bound)
+        if slope <= 0.0:
+            break
+        step = value / slope
+        if step <= 1e-16 * abs(a):
+            break
+        a -= step
+    return min(max(a, low), high)

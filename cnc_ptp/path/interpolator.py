@@ -1,0 +1,213 @@
+"""Path interpolator: runs one geometric element after the other with exact stop at each end."""
+
+from __future__ import annotations
+
+from math import inf
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stop_way
+from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
+from cnc_ptp.motion.profile import State
+from cnc_ptp.path.geometry import Element
+
+PathRow = tuple[float, float, float, float, bool]
+"""One cycle on the path: length s (mm), velocity, acceleration, jerk, element done."""
+
+LARGEST_FACTOR = 1000.0
+LONGEST_DWELL = 1e9
+BRAKE_ROUNDING = 1e-12
+"""Part of the element's length that counts as rounding when its braking point is looked for."""
+
+
+class PathInterpolator:
+    """Runs elements along their path length; the caller evaluates the element's geometry with the rows.
+
+        interpolator.start(element, element.limits(feed, axes))
+        while len(rows) < count:
+            rows += interpolator.step(count - len(rows), cycle_time)
+            if len(rows) < count and <there is a next element>:
+                interpolator.start(next_element, limits)        # goes on at the exact instant, inside the cycle
+
+    `step` gives a row (s, v, a, j, done) a cycle. It returns early, without the row of the cycle in which the element
+    ends, and `done` is then true: that cycle belongs to the next element, which `start` begins `remaining_time` before
+    it. So the time of a program is the sum of its profile durations, not rounded up to cycles. A caller without a next
+    element calls `step` again: from then on it gets rows at rest at the end (done = True), and a later `start` begins
+    at the last of them.
+
+    element           the running element, None before the first; `length` is its path length
+    done              the element has ended
+    stopped           `stop` was called and the path stands
+    remaining_time    s: when an element has just ended, the time from its end to the cycle that is still to be filled,
+                      else 0
+    distance_to_go    mm to the end of the element
+    state             (s, v, a, j) of the last cycle that was given out
+
+    Commands act from the last cycle given out, in the midst of any phase: the profile is planned anew from its s, v
+    and a, which therefore never step. Times are offset + cycles·cycle_time with an integer count, so long elements
+    gather no rounding.
+    """
+
+    def __init__(self) -> None:
+        self.element: Element | None = None
+        self.done = True
+        self.remaining_time = 0.0
+        self.factor = 1.0
+        self._limits: Limits | None = None
+        self._length = 0.0
+        self._feed = 0.0
+        self._profile = _standing(0.0)
+        self._reaches_end = False
+        self._stopping = False
+        self._offset = 0.0
+        self._next_offset = 0.0
+        self._cycles = 0
+        self._cycle_time = 0.0
+
+    @property
+    def state(self) -> State:
+        """(s, v, a, j) of the last cycle that was given out, mm and s."""
+        return self._profile.state_at(self._now())
+
+    @property
+    def stopped(self) -> bool:
+        """True when `stop` was called and the path stands, on the element or at its end."""
+        return self._stopping and (self.done or (not self._reaches_end and self._now() >= self._profile.duration))
+
+    @property
+    def distance_to_go(self) -> float:
+        """Path length (mm) from the last cycle given out to the end of the element."""
+        return 0.0 if self.done else self._length - self.state[0]
+
+    def start(self, element: Element, limits: Limits, feed: float | None = None) -> None:
+        """Begin an element at rest; directly after the end of another one at that exact instant.
+
+        limits   dynamics of the path; `limits.velocity` is never exceeded, whatever the velocity factor
+        feed     path velocity at factor 1, mm/s; without it (or inf) `limits.velocity`
+        Raises CncError 22110 while an element is running, 22111 for a bad feed and 23001 for bad limits.
+        """
+        self._check_free("the next element")
+        feed = limits.velocity if feed is None or feed == inf else feed
+        if not feed > 0.0:
+            raise CncError(22111, f"path feed {feed!r} mm/s must be greater than 0; the element is not started")
+        check_limits(limits)
+        velocity = min(feed * self.factor, limits.velocity)
+        if velocity < SMALLEST_LIMIT and element.length > 0.0:
+            profile, reaches_end = _standing(0.0), False
+        else:
+            velocity = max(velocity, SMALLEST_LIMIT)
+            profile, reaches_end = plan_rest_to_rest(0.0, element.length, limits._replace(velocity=velocity)), True
+        self.element, self._limits, self._feed = element, limits, feed
+        self._begin(element.length, profile, reaches_end)
+
+    def dwell(self, seconds: float) -> None:
+        """Stand for a time where the path is, with the same exact instants; `step` and `done` as for an element.
+
+        Raises CncError 22110 while an element is running and 22112 for a time that is negative or not finite.
+        """
+        self._check_free("a dwell")
+        if not 0.0 <= seconds <= LONGEST_DWELL:
+            raise CncError(
+                22112, f"dwell of {seconds!r} s must be between 0 and {LONGEST_DWELL:g} s; it is not started"
+            )
+        s = self._length if self.done else self.state[0]
+        self._limits = None
+        self._begin(s, Profile(((0.0, s, 0.0, 0.0, 0.0), (seconds, s, 0.0, 0.0, 0.0))), True)
+
+    def set_velocity_factor(self, factor: float) -> None:
+        """Path override: the velocity becomes feed·factor, at most `limits.velocity`; 0 is feed hold.
+
+        It also holds for later elements. Where the element already brakes for its end, the table is kept.
+        Raises CncError 22113 for a factor outside 0 … 1000.
+        """
+        if not 0.0 <= factor <= LARGEST_FACTOR:
+            raise CncError(
+                22113, f"path velocity factor {factor!r} must be between 0 and {LARGEST_FACTOR:g}; it is not changed"
+            )
+        if factor != self.factor:
+            self.factor = factor
+            self._plan_anew()
+
+    def stop(self) -> None:
+        """Ramp to rest on the path; where the element already brakes for its end, it rests there.
+
+        The factor acts no more.
+        """
+        if not self._stopping:
+            self._stopping = True
+            self._plan_anew()
+
+    def step(self, count: int, cycle_time: float) -> list[PathRow]:
+        """Rows of the next `count` cycles of `cycle_time` seconds.
+
+        Fewer when the element ends before (see the class).
+        """
+        if cycle_time != self._cycle_time:
+            self._offset, self._cycles, self._cycle_time = self._now(), 0, cycle_time
+        if self.done:
+            return self._rest(count)
+        state_at, offset, first = self._profile.state_at, self._offset, self._cycles + 1
+        end = self._profile.duration if self._reaches_end else inf
+        rows: list[PathRow] = []
+        for cycle in range(first, first + count):
+            t = offset + cycle * cycle_time
+            if t >= end:
+                self._end(t - end)
+                break
+            rows.append((*state_at(t), False))
+        self._cycles += len(rows)
+        return rows
+
+    def _check_free(self, what: str) -> None:
+        if not self.done and not self.stopped:
+            raise CncError(
+                22110,
+                f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element; "
+                "the running one goes on",
+            )
+
+    def _begin(self, length: float, profile: Profile, reaches_end: bool) -> None:
+        self._length, self._profile, self._reaches_end = length, profile, reaches_end
+        self._offset, self._cycles = self._next_offset, 0
+        self._next_offset = 0.0
+        self.remaining_time = 0.0
+        self.done = self._stopping = False
+
+    def _end(self, surplus: float) -> None:
+        self.done = True
+        self.remaining_time = surplus
+        self._next_offset = surplus - self._cycle_time
+
+    def _rest(self, count: int) -> list[PathRow]:
+        """Nothing follows: rows at rest, and a later start begins at the last of them."""
+        self.remaining_time = self._next_offset = 0.0
+        self._profile = _standing(self._length)
+        return [(self._length, 0.0, 0.0, 0.0, True)] * count
+
+    def _now(self) -> float:
+        """Time of the last cycle given out on the running profile, s.
+
+        Negative while the element begins only after it.
+        """
+        return self._offset + self._cycles * self._cycle_time
+
+    def _plan_anew(self) -> None:
+        """A new profile from the state of the last cycle given out, unless the element already brakes for its end."""
+        limits = self._limits
+        if self.done or limits is None:
+            return
+        now = self._now()
+        s, v, a, _ = self._profile.state_at(now)
+        to_brake = self._length - s - stop_way(v, a, limits.deceleration, limits.jerk)
+        if self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length:
+            return
+        velocity = 0.0 if self._stopping else min(self._feed * self.factor, limits.velocity)
+        if velocity < SMALLEST_LIMIT:
+            self._profile, self._reaches_end = plan_to_velocity(s, v, a, 0.0, limits), False
+        else:
+            limits = limits._replace(velocity=velocity)
+            self._profile, self._reaches_end = plan_to_position(s, v, a, self._length, limits), True
+        self._offset, self._cycles = min(now, 0.0), 0
+
+
+def _standing(s: float) -> Profile:
+    return Profile(((0.0, s, 0.0, 0.0, 0.0),))
