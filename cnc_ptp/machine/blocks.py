@@ -139,6 +139,8 @@ class PlcBlock:
     count: int
     life_sign: int = 0
     scenario_done: bool = True
+    run_done: bool = False
+    run_failed: bool = False
     commands: list[Command] = field(default_factory=list)
 
 
@@ -163,6 +165,8 @@ class ChannelBlock:
     state: list[int] = field(default_factory=list)
     error_id: list[int] = field(default_factory=list)
     done: bool = True
+    blocks_done: int = 0
+    blocks_total: int = 0
     commands: list[Command] = field(default_factory=list)
     requests: list[HandshakeRequest] = field(default_factory=list)
 
@@ -211,3 +215,6 @@ class SpindleBlock:
     referenced: list[bool]
     state: list[int]
     error_id: list[int]
+
+
+Block = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

@@ -1,0 +1,314 @@
+"""The axis: chooses its setpoint source (PTP generator or channel path), closes the position loop, keeps its state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from cnc_ptp.axis.ptp import PtpGenerator, State
+from cnc_ptp.control.drive import Drive, SimulatedDrive
+from cnc_ptp.control.position_controller import PositionController
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, ChannelBlock, CycleTick, Severity, StatusBit
+from cnc_ptp.machine.unit import Unit
+from cnc_ptp.motion import Limits
+from cnc_ptp.parameters import AxisParameters
+
+BAD_DYNAMICS = 23003
+VELOCITY_TOO_HIGH = 23004
+NOT_READY = 23005
+BAD_OVERRIDE = 23006
+BELOW_INCREMENT = 23007
+STILL_MOVING = 23008
+PATH_NOT_ACCEPTED = 23009
+ENABLE_REMOVED = 23010
+UPSTREAM_LOST = 26001
+SOFT_LIMIT_NEGATIVE = 120003
+SOFT_LIMIT_POSITIVE = 120002
+FOLLOWING_ERROR = 0x4550
+
+S = AxisStateCode
+MOVABLE = (S.STANDSTILL,)
+
+
+class AxisUnit(Unit):
+    """One axis with PTP functions, position controller and drive.
+
+    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), SynchronizedMotion (channel path), Stopping, ErrorStop.
+    Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time P-AXIS-00196).
+    """
+
+    kind: ClassVar[str] = "axis"
+
+    def __init__(self, parameters: AxisParameters, *, cycle_time: float, drive: Drive | None = None) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
+        super().__init__(parameters.name)
+        self._parameters = parameters
+        self._unit = "deg" if parameters.rotary else "mm"
+        self._own_limits = Limits(
+            parameters.max_velocity, parameters.acceleration, parameters.deceleration, parameters.jerk
+        )
+        self._ptp = PtpGenerator(
+            position=parameters.start_position, cycle_time=cycle_time, override_type=parameters.override_type
+        )
+        self._controller = PositionController(
+            kv=parameters.kv,
+            following_error_limit=parameters.following_error_limit,
+            monitoring=parameters.following_error_monitoring,
+        )
+        self._drive: Drive = drive or SimulatedDrive(
+            cycle_time=cycle_time,
+            time_constant=parameters.drive_time_constant,
+            encoder_increment=parameters.encoder_increment,
+            start_position=parameters.start_position,
+        )
+        self._powered = parameters.powered_at_start
+        self._state = S.STANDSTILL if self._powered else S.DISABLED
+        self._error_id = 0
+        self._has_been_stopped = False
+        self._override_percent = 100.0
+
+    # commands
+
+    def do_power(self, cycle: int, *, on: bool) -> str | None:
+        """Enables or disables the axis; a moving axis is stopped on its ramp first."""
+        if on == self._powered:
+            return f"axis {self.name}: power is {'on' if on else 'off'} already"
+        self._powered = on
+        if on and self._state == S.DISABLED:
+            self._state = S.STANDSTILL
+        elif not on and self._state == S.STANDSTILL:
+            self._state = S.DISABLED
+        elif not on and self._state == S.SYNCHRONIZED_MOTION:
+            self._fault(cycle, ENABLE_REMOVED, "the enable was removed during path motion")
+        elif not on and self._state == S.DISCRETE_MOTION:
+            self._stop(cycle, S.STOPPING)
+        return None
+
+    def do_reset(self, cycle: int) -> None:
+        """Leaves ErrorStop; refused while the axis moves (23008)."""
+        if self._state != S.ERROR_STOP:
+            return
+        if not self._ptp.finished(cycle):
+            self._refuse("reset", STILL_MOVING, "the axis still moves on its error ramp; wait for standstill")
+        self._error_id = 0
+        self._ptp.finish()
+        self._state = S.STANDSTILL if self._powered else S.DISABLED
+
+    def do_move_absolute(self, cycle: int, *, target: float, **dynamics: float) -> str | None:
+        """Starts to `target` (mm, deg). Source: TX1250 2.1. Refusals: 23003–23005, 120002, 120003."""
+        return self._start("move_absolute", cycle, float(target), dynamics)
+
+    def do_move_relative(self, cycle: int, *, distance: float, **dynamics: float) -> str | None:
+        """Starts by `distance` (mm, deg) from the set position."""
+        return self._start("move_relative", cycle, self._ptp.state(cycle)[0] + distance, dynamics)
+
+    def do_stop(self, cycle: int) -> str | None:
+        """Stops PTP motion on the ramp of its start. Source: TX1250 2.2."""
+        if self._state == S.SYNCHRONIZED_MOTION:
+            self._refuse("stop", NOT_READY, "the channel path moves the axis; use feed_hold or reset of the channel")
+        if self._state != S.DISCRETE_MOTION:
+            return f"axis {self.name}: stop without effect in {state_name(self._state)}"
+        self._stop(cycle, S.STOPPING)
+        self._has_been_stopped = True
+        return None
+
+    def do_set_override(self, cycle: int, *, percent: float) -> str | None:
+        """Override of PTP motion, 0 … 100 %. Source: TX1250 2.2."""
+        if not 0.0 <= percent <= 100.0:
+            self._refuse("set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... 100")
+        self._override_percent = float(percent)
+        acts = self._ptp.set_override(cycle, percent / 100.0)
+        if acts or self._state != S.DISCRETE_MOTION:
+            return None
+        return f"axis {self.name}: override {percent} % does not change the motion in work (brake phase or level out of reach)"
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> str | None:
+        """The watchdog: `source` has sent nothing in time. Without PLC or clock every axis stops, without channel a path axis."""
+        text = f"no block of '{source}' came within the watchdog time"
+        if self._state in (S.ERROR_STOP, S.DISABLED):
+            return None
+        if source in ("plc", "clock") or self._state == S.SYNCHRONIZED_MOTION:
+            self._fault(cycle, UPSTREAM_LOST, text)
+        return None
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
+        """Computes one block; follows the path of the channel among `inputs` that has the axis."""
+        first_cycle, count = tick
+        path = self._path_setpoints(first_cycle, self._owning_channel(inputs))
+        rows = [
+            self._cycle(first_cycle + index, path[index] if path and self._state == S.SYNCHRONIZED_MOTION else None)
+            for index in range(count)
+        ]
+        return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))  # type: ignore[arg-type]
+
+    def _cycle(self, cycle: int, path: State | None) -> tuple[float | int, ...]:
+        setpoint = path or self._ptp.state(cycle)
+        drive = self._drive
+        position, velocity, acceleration, jerk = setpoint
+        following_error = position - drive.position
+        if path is None:
+            self._advance_state(cycle)
+        if self._error_id == 0 and self._powered and self._controller.exceeds_limit(following_error):
+            self._following_error_fault(cycle, setpoint, following_error)
+        command = self._controller.command_velocity(following_error) if self._state != S.DISABLED else 0.0
+        row = (
+            position,
+            velocity,
+            acceleration,
+            jerk,
+            drive.position,
+            drive.velocity,
+            following_error,
+            command,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            self._override_percent,
+            int(self._state),
+            self._status_bits(velocity, acceleration),
+            self._error_id,
+        )
+        drive.step(command)
+        return row
+
+    def _advance_state(self, cycle: int) -> None:
+        """Ends a motion whose table is through."""
+        if self._state == S.DISCRETE_MOTION and self._ptp.arrived(cycle):
+            self._ptp.finish()
+            self._state = S.STANDSTILL
+        elif self._state == S.STOPPING and self._ptp.finished(cycle):
+            self._ptp.finish()
+            self._state = S.STANDSTILL if self._powered else S.DISABLED
+
+    def _status_bits(self, velocity: float, acceleration: float) -> int:
+        bits = 0
+        if self._ptp.job is not None:
+            bits |= StatusBit.HAS_JOB
+        if self._has_been_stopped:
+            bits |= StatusBit.HAS_BEEN_STOPPED
+        if velocity != 0.0 and acceleration == 0.0:
+            bits |= StatusBit.CONSTANT_VELOCITY
+        if self._error_id:
+            bits |= StatusBit.ERROR
+        return int(bits)
+
+    # path of the channel
+
+    def _owning_channel(self, inputs: Mapping[str, Block]) -> ChannelBlock | None:
+        for block in inputs.values():
+            if isinstance(block, ChannelBlock) and block.path_active and self.name in block.axes:
+                return block
+        return None
+
+    def _path_setpoints(self, first_cycle: int, channel: ChannelBlock | None) -> list[State] | None:
+        """The setpoints of the channel that owns the axis, if one does; switches the setpoint source."""
+        if channel is None:
+            self._leave_path(first_cycle)
+            return None
+        start = channel.axes.index(self.name) * channel.count
+        part = slice(start, start + channel.count)
+        setpoints = list(
+            zip(
+                channel.set_position[part],
+                channel.set_velocity[part],
+                channel.set_acceleration[part],
+                channel.set_jerk[part],
+                strict=True,
+            )
+        )
+        self._enter_path(first_cycle)
+        if self._state == S.SYNCHRONIZED_MOTION:
+            self._ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
+        return setpoints
+
+    def _enter_path(self, cycle: int) -> None:
+        if self._state == S.STANDSTILL:
+            self._state = S.SYNCHRONIZED_MOTION
+        elif self._state not in (S.SYNCHRONIZED_MOTION, S.ERROR_STOP):
+            self._fault(
+                cycle, PATH_NOT_ACCEPTED, f"the channel moves the path while the axis is in {state_name(self._state)}"
+            )
+
+    def _leave_path(self, cycle: int) -> None:
+        if self._state != S.SYNCHRONIZED_MOTION:
+            return
+        self._state = S.STANDSTILL
+        if self._ptp.state(cycle)[1] != 0.0:
+            self._fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
+
+    # starts, stops and faults
+
+    def _start(self, command: str, cycle: int, target: float, dynamics: dict[str, float]) -> str | None:
+        if self._state not in MOVABLE:
+            self._refuse(command, NOT_READY, f"the axis is in {state_name(self._state)}, it must be in Standstill")
+        limits = self._start_limits(command, dynamics)
+        self._check_soft_limits(command, target)
+        distance = abs(target - self._ptp.state(cycle)[0])
+        self._has_been_stopped = False
+        if distance < self._parameters.encoder_increment or distance == 0.0:
+            return (
+                f"P-WARN-{BELOW_INCREMENT} axis {self.name}: {command} over {distance} {self._unit} is below one encoder increment "
+                f"({self._parameters.encoder_increment} {self._unit}); the axis does not move"
+            )
+        self._ptp.start(cycle, target, limits)
+        self._state = S.DISCRETE_MOTION
+        return None
+
+    def _start_limits(self, command: str, dynamics: dict[str, float]) -> Limits:
+        for name, value in dynamics.items():
+            if not value > 0.0:
+                self._refuse(command, BAD_DYNAMICS, f"{name} = {value} must be greater than 0")
+        limits = self._own_limits._replace(**{name: float(value) for name, value in dynamics.items()})
+        if limits.velocity > self._parameters.max_velocity:
+            self._refuse(
+                command,
+                VELOCITY_TOO_HIGH,
+                f"velocity {limits.velocity} {self._unit}/s is above the maximum "
+                f"{self._parameters.max_velocity} {self._unit}/s (P-AXIS-00212)",
+            )
+        return limits
+
+    def _check_soft_limits(self, command: str, target: float) -> None:
+        low, high = self._parameters.soft_limit_negative, self._parameters.soft_limit_positive
+        if target > high:
+            text = (
+                f"target {target} {self._unit} lies beyond the positive soft limit {high} {self._unit} (P-AXIS-00178)"
+            )
+            self._refuse(command, SOFT_LIMIT_POSITIVE, text)
+        if target < low:
+            text = f"target {target} {self._unit} lies beyond the negative soft limit {low} {self._unit} (P-AXIS-00177)"
+            self._refuse(command, SOFT_LIMIT_NEGATIVE, text)
+
+    def _refuse(self, command: str, error_id: int, reason: str) -> None:
+        raise CncError(error_id, f"axis {self.name}: {command} refused: {reason}; nothing was changed")
+
+    def _stop(self, cycle: int, state: AxisStateCode) -> None:
+        self._ptp.stop(cycle, self._own_limits)
+        self._state = state
+
+    def _fault(self, cycle: int, error_id: int, reason: str) -> None:
+        """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop."""
+        self._error_id = error_id
+        self._stop(cycle, S.ERROR_STOP)
+        self.event(
+            cycle, Severity.ERROR, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)"
+        )
+
+    def _following_error_fault(self, cycle: int, setpoint: State, following_error: float) -> None:
+        if self._state == S.SYNCHRONIZED_MOTION:
+            self._ptp.take_over(cycle, *setpoint[:3])
+        limit = self._parameters.following_error_limit
+        self._fault(
+            cycle,
+            FOLLOWING_ERROR,
+            f"following error {following_error:.4f} {self._unit} exceeds {limit} {self._unit} (P-AXIS-00168)",
+        )
+
+
+def state_name(state: AxisStateCode) -> str:
+    """PLCopen spelling: DISCRETE_MOTION -> DiscreteMotion."""
+    return "".join(part.capitalize() for part in state.name.split("_"))

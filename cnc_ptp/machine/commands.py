@@ -1,0 +1,109 @@
+"""The commands of the scenario table as data: what each kind of unit understands, with which arguments.
+
+Scenarios are checked against it before a run starts, units before they change anything, services are made from it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.errors import CncError
+
+BAD_ARGUMENT = 22001
+UNKNOWN_COMMAND = 22002
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """One argument of a command. `kind`: number, integer, switch or text; `choices` limits a text."""
+
+    kind: str
+    required: bool = True
+    choices: tuple[str, ...] = ()
+
+
+Arguments = Mapping[str, Argument]
+NUMBER = Argument("number")
+OPTIONAL_NUMBER = Argument("number", required=False)
+INTEGER = Argument("integer")
+SWITCH = Argument("switch")
+TEXT = Argument("text")
+OPTIONAL_TEXT = Argument("text", required=False)
+DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_NUMBER)
+SOURCE: Arguments = {"source": TEXT}
+
+COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
+    "axis": {
+        "power": {"on": SWITCH},
+        "reset": {},
+        "move_absolute": {"target": NUMBER, **DYNAMICS},
+        "move_relative": {"distance": NUMBER, **DYNAMICS},
+        "set_override": {"percent": NUMBER},
+        "stop": {},
+        "upstream_lost": SOURCE,
+    },
+    "spindle": {
+        "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER},
+        "stop": {},
+        "set_override": {"percent": NUMBER},
+        "reset": {},
+        "upstream_lost": SOURCE,
+    },
+    "channel": {
+        "load": {"program": TEXT, "text": OPTIONAL_TEXT},
+        "start": {},
+        "feed_hold": {"on": SWITCH},
+        "set_override": {"percent": NUMBER},
+        "single_block": {"on": SWITCH},
+        "optional_stop": {"on": SWITCH},
+        "reset": {},
+        "mdi": {"text": TEXT},
+        "acknowledge": {"id": INTEGER},
+        "upstream_lost": SOURCE,
+    },
+    "plc": {
+        "acknowledge": {"id": INTEGER},
+        "auto_acknowledge": {"on": SWITCH},
+        "set_life_sign": {"on": SWITCH},
+        "stop_all": {},
+        "upstream_lost": SOURCE,
+    },
+}
+INTERNAL = frozenset({"upstream_lost"})
+"""Commands that only a watchdog gives; a scenario may not."""
+
+TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str}
+
+
+def check_command(kind: str, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
+    """Raises CncError (22001 argument, 22002 command) when a unit of `kind` cannot understand the command."""
+    specification = COMMANDS[kind].get(command)
+    if specification is None:
+        known = ", ".join(sorted(set(COMMANDS[kind]) - INTERNAL))
+        raise CncError(
+            UNKNOWN_COMMAND, f"{kind} {unit}: unknown command '{command}'; nothing was changed. Known: {known}"
+        )
+    where = f"{kind} {unit}: {command} refused"
+    for name in arguments:
+        if name not in specification:
+            known = ", ".join(specification) or "none"
+            raise CncError(BAD_ARGUMENT, f"{where}: unknown argument '{name}'; nothing was changed. Known: {known}")
+    for name, argument in specification.items():
+        if name in arguments:
+            _check_argument(where, name, argument, arguments[name])
+        elif argument.required:
+            raise CncError(BAD_ARGUMENT, f"{where}: argument '{name}' is missing; nothing was changed")
+
+
+def _check_argument(where: str, name: str, argument: Argument, value: Any) -> None:
+    is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
+    if not is_type or (isinstance(value, bool) and argument.kind != "switch"):
+        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {value!r} is not a {argument.kind}; nothing was changed")
+    if argument.kind == "number" and not math.isfinite(value):
+        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {value} is not finite; nothing was changed")
+    if argument.choices and value not in argument.choices:
+        allowed = " or ".join(argument.choices)
+        raise CncError(BAD_ARGUMENT, f"{where}: {name} = '{value}' is not {allowed}; nothing was changed")

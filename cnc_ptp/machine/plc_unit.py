@@ -1,0 +1,182 @@
+"""The PLC: plays the scenario, hands on what comes from topics, acknowledges M functions, ends the run."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import (
+    AxisBlock,
+    AxisStateCode,
+    Block,
+    ChannelBlock,
+    Command,
+    CycleTick,
+    HandshakeRequest,
+    PlcBlock,
+    Severity,
+    SpindleBlock,
+    StatusBit,
+)
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.unit import Unit
+
+NOTHING_TO_ACKNOWLEDGE = 22101
+UPSTREAM_LOST = 26001
+SETTLING_TIME = 0.2
+"""Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
+
+STANDING_STATES = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
+STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
+
+
+class PlcUnit(Unit):
+    """Commands of the scenario and of the outside world go out in PlcBlocks and act in the same block everywhere.
+
+    What the PLC knows of the units is what they reported for the block before.
+    """
+
+    kind: ClassVar[str] = "plc"
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        kinds: Mapping[str, str],
+        scenario: Iterable[Entry] = (),
+        cycle_time: float,
+        end_when_idle: bool = True,
+    ) -> None:
+        """`kinds`: unit name -> axis, spindle, channel. `cycle_time` in s. `end_when_idle`: the run ends by itself."""
+        super().__init__(name)
+        self._kinds = {unit: kind for unit, kind in kinds.items() if kind != "plc"}
+        self._scenario = deque(scenario)
+        self._cycle_time = cycle_time
+        self._end_when_idle = end_when_idle
+        self._outgoing: list[Command] = []
+        self._auto_acknowledge = True
+        self._pending: dict[int, HandshakeRequest] = {}
+        self._life_sign_on = True
+        self._life_sign = 0
+        self._commands_sent = 0
+        self._idle_cycles = 0
+        self._lost: set[str] = set()
+        self._failed = False
+
+    def input(self, command: Command) -> None:
+        """A command from outside (topic, button): goes out with the next block."""
+        self._outgoing.append(command)
+
+    # commands
+
+    def do_acknowledge(self, cycle: int, *, id: int) -> None:
+        """Acknowledges a handshake request; refused (22101) when none of that number waits."""
+        request = self._pending.pop(id, None)
+        if request is None:
+            waiting = ", ".join(map(str, self._pending)) or "none"
+            raise CncError(
+                NOTHING_TO_ACKNOWLEDGE,
+                f"plc {self.name}: acknowledge refused: no request {id} waits; nothing was changed. Waiting: {waiting}",
+            )
+        self._outgoing.append(Command(request.channel, "acknowledge", {"id": id}))
+
+    def do_auto_acknowledge(self, cycle: int, *, on: bool) -> None:
+        """Acknowledges every request by itself (the default), or leaves that to `acknowledge`."""
+        self._auto_acknowledge = on
+
+    def do_set_life_sign(self, cycle: int, *, on: bool) -> None:
+        """Stops or resumes the life sign; without it all units stop after the watchdog time."""
+        self._life_sign_on = on
+
+    def do_stop_all(self, cycle: int) -> None:
+        """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps."""
+        self._scenario.clear()
+        self._outgoing += [Command(unit, STOP_COMMAND[kind], {}) for unit, kind in self._kinds.items()]
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> None:
+        """The watchdog: `source` reports no more; the run is a failed one."""
+        self._lost.add(source)
+        self._failed = True
+        self.event(
+            cycle,
+            Severity.ERROR,
+            UPSTREAM_LOST,
+            f"plc {self.name}: no block of '{source}' came within the watchdog time; the run ends",
+        )
+        self.do_stop_all(cycle)
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> PlcBlock:
+        """Computes one block from the units' blocks before."""
+        first_cycle, count = tick
+        self._play_scenario(first_cycle)
+        self._answer_requests(first_cycle, inputs)
+        run_done = self._end_when_idle and self._run_done(count, inputs)
+        if self._life_sign_on:
+            self._life_sign += 1
+        commands, self._outgoing = self._outgoing, []
+        for command in commands:
+            self._commands_sent += 1
+            command.id = self._commands_sent
+        return PlcBlock(
+            first_cycle,
+            count,
+            life_sign=self._life_sign,
+            scenario_done=not self._scenario,
+            run_done=run_done and not commands,
+            run_failed=self._failed or any(error_of(block) for block in inputs.values()),
+            commands=commands,
+        )
+
+    def _play_scenario(self, first_cycle: int) -> None:
+        now = first_cycle * self._cycle_time
+        while self._scenario and self._scenario[0].at <= now * (1.0 + 1e-12):
+            command = self._scenario.popleft().command
+            if command.target == self.name:
+                self.command(command, first_cycle)
+            else:
+                self._outgoing.append(command)
+
+    def _answer_requests(self, cycle: int, inputs: Mapping[str, Block]) -> None:
+        for block in inputs.values():
+            if isinstance(block, ChannelBlock):
+                self._pending |= {request.id: request for request in block.requests if request.acknowledge_needed}
+        if self._auto_acknowledge:
+            for request_id in list(self._pending):
+                self.do_acknowledge(cycle, id=request_id)
+
+    def _run_done(self, count: int, inputs: Mapping[str, Block]) -> bool:
+        """Everything has stood for the settling time; spindles that still turn are stopped first."""
+        expected = set(self._kinds) - self._lost
+        idle = not self._scenario and not self._outgoing and expected <= inputs.keys()
+        idle = idle and all(at_rest(block) for block in inputs.values())
+        self._idle_cycles = self._idle_cycles + count if idle else 0
+        if self._idle_cycles * self._cycle_time < SETTLING_TIME:
+            return False
+        turning = [
+            name for name, block in inputs.items() if isinstance(block, SpindleBlock) and block.set_speed_rpm[-1]
+        ]
+        if turning:
+            self._outgoing += [Command(name, "stop", {}) for name in turning]
+            self._idle_cycles = 0
+        return not turning
+
+
+def at_rest(block: Block) -> bool:
+    """True when a unit has nothing to do by itself; a spindle at constant speed counts as at rest here."""
+    if isinstance(block, ChannelBlock):
+        return block.done
+    if isinstance(block, AxisBlock):
+        held = bool(block.status_bits[-1] & StatusBit.HAS_JOB) and block.override_percent[-1] == 0.0
+        return block.set_velocity[-1] == 0.0 and (held or block.state[-1] in STANDING_STATES)
+    if isinstance(block, SpindleBlock):
+        return block.set_acceleration_deg_s2[-1] == 0.0
+    return True
+
+
+def error_of(block: Block) -> int:
+    """The error number that a unit has at the end of its block, 0 if none."""
+    return 0 if isinstance(block, PlcBlock) else block.error_id[-1]

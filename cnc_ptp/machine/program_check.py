@@ -1,0 +1,83 @@
+"""From NC text to the list of blocks that a channel will run: interpreted completely and vetoed before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Source, SpindleFunction
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.interpreter import CheckTarget, interpret
+from cnc_ptp.nc.program import ModalState, Program
+from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
+
+SOFT_LIMIT_POSITIVE = 120002
+SOFT_LIMIT_NEGATIVE = 120003
+SPINDLE_TOO_FAST = 22010
+UNKNOWN_M_FUNCTION = 22011
+DEG_S_PER_RPM = 6.0
+
+
+class ProgramCheck:
+    """What a machine says to a program: targets within the soft limits, speeds the spindles reach, M functions it knows."""
+
+    def __init__(
+        self,
+        channel: ChannelParameters,
+        axes: Mapping[str, AxisParameters],
+        spindles: Mapping[str, SpindleParameters],
+    ) -> None:
+        """`axes` and `spindles` of the machine by node name."""
+        self._channel = channel
+        self._axes = [axes[axis.node] for axis in channel.axes]
+        self._speeds = {
+            spindle.name: spindles[spindle.node].max_speed_deg_s / DEG_S_PER_RPM for spindle in channel.spindles
+        }
+        self._axis_names = tuple(axis.name for axis in channel.axes)
+        main = [spindle.name for spindle in channel.spindles if spindle.name == channel.main_spindle]
+        others = [spindle.name for spindle in channel.spindles if spindle.name != channel.main_spindle]
+        self._spindle_names = tuple(main + others)
+
+    def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
+        """All blocks from `start` (mm, in the order of the channel's axes). Raises ProgramError; then `state` is void."""
+        blocks = list(
+            interpret(
+                program,
+                tuple(start),
+                self._axis_names,
+                self._spindle_names,
+                state=state,
+                check_target=self.target,
+                centre_offset=self._channel.circle_center_tolerance,
+                centre_offset_ratio=self._channel.circle_center_ratio,
+            )
+        )
+        for block in blocks:
+            for function in block.before + block.after:
+                self._function(function, block.source)
+        return blocks
+
+    @property
+    def target(self) -> CheckTarget:
+        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""
+        return self._target
+
+    def _target(self, target: tuple[float, ...], source: Source) -> None:
+        for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
+            unit = "deg" if axis.rotary else "mm"
+            if position > axis.soft_limit_positive:
+                limit = f"{position:g} {unit} lies beyond the positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
+                raise ProgramError(SOFT_LIMIT_POSITIVE, f"axis {name}: {limit}", source, 1)
+            if position < axis.soft_limit_negative:
+                limit = f"{position:g} {unit} lies beyond the negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
+                raise ProgramError(SOFT_LIMIT_NEGATIVE, f"axis {name}: {limit}", source, 1)
+
+    def _function(self, function: SpindleFunction | AuxiliaryFunction, source: Source) -> None:
+        if isinstance(function, SpindleFunction):
+            limit = self._speeds[function.spindle]
+            if function.speed_rpm is not None and function.speed_rpm > limit:
+                text = f"spindle {function.spindle}: {function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
+                raise ProgramError(SPINDLE_TOO_FAST, text, source, 1)
+        elif function.letter == "M" and function.number not in self._channel.m_functions:
+            known = ", ".join(f"M{number}" for number in self._channel.m_functions)
+            text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
+            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, 1)

@@ -1,0 +1,61 @@
+"""Runs one unit: applies the commands of a block, watches the PLC's life sign, computes the block. Used by every harness."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock
+from cnc_ptp.machine.unit import Unit
+
+LIFE_SIGN = "plc"
+
+
+class UnitRunner:
+    """A unit with the cycle number at which the next command would act."""
+
+    def __init__(self, unit: Unit, *, watchdog_cycles: int) -> None:
+        """`watchdog_cycles`: for so long the life sign of the PLC may stand still."""
+        self.unit = unit
+        self.next_cycle = 0
+        self._watchdog_cycles = watchdog_cycles
+        self._life_sign = -1
+        self._life_sign_cycle = 0
+        self._life_sign_lost = False
+
+    def command(self, command: Command) -> CommandRecord:
+        """A command from a service or a watchdog; acts at the first cycle of the next block."""
+        return self.unit.command(command, self.next_cycle)
+
+    def run(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+        """Applies the commands that `inputs` carry for this unit, then computes the block."""
+        self.next_cycle = tick.first_cycle
+        for command in commands_for(self.unit.name, inputs):
+            self.unit.command(command, tick.first_cycle)
+        self._watch_life_sign(tick, inputs)
+        return self.replay(tick, inputs)
+
+    def replay(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+        """Computes the block without looking for commands: these come from the recording."""
+        block = self.unit.step(tick, inputs)
+        self.next_cycle = tick.first_cycle + tick.count
+        return block
+
+    def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
+        plc = inputs.get(LIFE_SIGN)
+        if not isinstance(plc, PlcBlock):
+            return
+        if plc.life_sign != self._life_sign:
+            self._life_sign, self._life_sign_cycle = plc.life_sign, tick.first_cycle
+            self._life_sign_lost = False
+        elif not self._life_sign_lost and tick.first_cycle - self._life_sign_cycle >= self._watchdog_cycles:
+            self._life_sign_lost = True
+            self.unit.command(Command(self.unit.name, "upstream_lost", {"source": "plc"}), tick.first_cycle)
+
+
+def commands_for(name: str, inputs: Mapping[str, Block]) -> Iterator[Command]:
+    """The commands for unit `name` that travel in the blocks of this tick, in the order of sender and sending."""
+    for block in inputs.values():
+        if isinstance(block, (PlcBlock, ChannelBlock)):
+            for command in block.commands:
+                if command.target == name:
+                    yield command

@@ -1,0 +1,101 @@
+"""Scenario files: a timed list of PLC commands, checked as a whole before a run starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.commands import COMMANDS, INTERNAL, check_command
+
+BAD_SCENARIO = 25101
+SWITCH_WORDS = {"on": True, "off": False}
+
+
+class ScenarioError(CncError):
+    """The scenario cannot be used; the message lists every fault with file and line. Nothing was started."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A command of the scenario; `at` in s, takes effect at the first block that begins at or after it."""
+
+    at: float
+    command: Command
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML as people write it: `on` is a word (not true), 1e3 is a number."""
+
+
+_Loader.yaml_implicit_resolvers = {
+    first: [(tag, pattern) for tag, pattern in resolvers if not tag.endswith((":bool", ":float"))]
+    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+_BOOL = yaml.resolver.re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")  # type: ignore[attr-defined]
+_FLOAT = yaml.resolver.re.compile(  # type: ignore[attr-defined]
+    r"^[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?$|^[-+]?\.(?:inf|Inf|INF)$|^\.(?:nan|NaN|NAN)$"
+)
+_Loader.add_implicit_resolver("tag:yaml.org,2002:bool", _BOOL, list("tTfF"))
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+
+
+def parse_scenario(
+    text: str, file: str, kinds: Mapping[str, str], read_program: Callable[[str], str] | None = None
+) -> list[Entry]:
+    """The entries in the order of their time (file order within one time).
+
+    `kinds` maps the names of the machine's units to axis, spindle, channel or plc; `read_program` gives the text of an NC
+    file that a `load` names. Raises ScenarioError (25101) with all faults.
+    """
+    try:
+        root = yaml.compose(text, _Loader)
+    except yaml.YAMLError as error:
+        raise ScenarioError(BAD_SCENARIO, f"scenario {file} is not YAML: {error}; nothing was started") from None
+    if root is None:
+        return []
+    if not isinstance(root, yaml.SequenceNode):
+        raise ScenarioError(
+            BAD_SCENARIO, f"scenario {file}: a list of entries {{at, to, do, ...}} is expected; nothing was started"
+        )
+    entries, faults = [], []
+    for node in root.value:
+        try:
+            entries.append(_entry(node, kinds, read_program))
+        except (CncError, OSError) as error:
+            reason = error.message if isinstance(error, CncError) else f"{error.filename}: {error.strerror}"
+            faults.append(f"{file}:{node.start_mark.line + 1}: {reason}")
+    if faults:
+        raise ScenarioError(BAD_SCENARIO, "\n".join([*faults, "nothing was started"]))
+    return sorted(entries, key=lambda entry: entry.at)
+
+
+def _entry(node: yaml.Node, kinds: Mapping[str, str], read_program: Callable[[str], str] | None) -> Entry:
+    loader = _Loader("")
+    value = loader.construct_object(node, deep=True) if isinstance(node, yaml.MappingNode) else None
+    if not isinstance(value, dict) or not {"at", "to", "do"} <= value.keys():
+        raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
+    arguments = {str(name): argument for name, argument in value.items()}
+    at, to, do = (arguments.pop(name) for name in ("at", "to", "do"))
+    if isinstance(at, bool) or not isinstance(at, (int, float)) or not math.isfinite(at) or at < 0.0:
+        raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 or later")
+    if to not in kinds:
+        raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
+    if do in INTERNAL:
+        raise CncError(BAD_SCENARIO, f"'{do}' is given by watchdogs only")
+    _read_switches(kinds[to], do, arguments)
+    check_command(kinds[to], to, do, arguments)
+    if do == "load" and "text" not in arguments and read_program:
+        arguments["text"] = read_program(arguments["program"])
+    return Entry(float(at), Command(to, do, arguments))
+
+
+def _read_switches(kind: str, command: str, arguments: dict[str, Any]) -> None:
+    for name, argument in COMMANDS[kind].get(command, {}).items():
+        if argument.kind == "switch" and arguments.get(name) in SWITCH_WORDS:
+            arguments[name] = SWITCH_WORDS[arguments[name]]

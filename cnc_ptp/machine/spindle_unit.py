@@ -1,0 +1,199 @@
+"""The spindle: endless rotation on speed ramps in a position loop, with speed monitoring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from cnc_ptp.control.drive import Drive, SimulatedDrive
+from cnc_ptp.control.position_controller import PositionController
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
+from cnc_ptp.machine.unit import Unit
+from cnc_ptp.motion import Profile
+from cnc_ptp.parameters import SpindleParameters
+from cnc_ptp.spindle.speed_ramp import plan_speed
+
+BAD_SPEED = 24001
+SPEED_TOO_HIGH = 24002
+NOT_READY = 24003
+STILL_TURNING = 24004
+BAD_OVERRIDE = 24005
+UPSTREAM_LOST = 26001
+FOLLOWING_ERROR = 0x4550
+AGAINST_PREFERRED_DIRECTION = 60254
+
+DEG_S_PER_RPM = 6.0
+S = AxisStateCode
+
+
+class SpindleUnit(Unit):
+    """One NC spindle: M03/M04 with a speed, M05, override, speed reached and speed zero.
+
+    Speeds inside are deg/s, + = M03. Source: TF5200 spindle 2.3.1, 2.4.1, 2.6.
+    """
+
+    kind: ClassVar[str] = "spindle"
+
+    def __init__(self, parameters: SpindleParameters, *, cycle_time: float, drive: Drive | None = None) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
+        super().__init__(parameters.name)
+        self._parameters = parameters
+        self._cycle_time = cycle_time
+        self._controller = PositionController(
+            kv=parameters.kv,
+            following_error_limit=parameters.following_error_limit,
+            monitoring=parameters.following_error_monitoring,
+        )
+        self._drive: Drive = drive or SimulatedDrive(
+            cycle_time=cycle_time,
+            time_constant=parameters.drive_time_constant,
+            encoder_increment=parameters.encoder_increment,
+        )
+        self._origin = 0
+        self._profile = plan_speed(0.0, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
+        self._commanded_speed = 0.0
+        self._override_percent = 100.0
+        self._mode = SpindleMode.STOP
+        self._state = S.STANDSTILL
+        self._error_id = 0
+
+    # commands
+
+    def do_start(self, cycle: int, *, direction: str, speed_rpm: float) -> None:
+        """M03 (cw) or M04 (ccw) at `speed_rpm`. Refusals 24001–24003; 60254 puts the spindle into ErrorStop."""
+        if self._state == S.ERROR_STOP:
+            self._refuse("start", NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self._error_id}); reset it first")
+        if speed_rpm < 0.0:
+            self._refuse("start", BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
+        limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
+        if speed_rpm > limit_rpm:
+            self._refuse(
+                "start", SPEED_TOO_HIGH, f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm (P-AXIS-00212)"
+            )
+        sign = 1.0 if direction == "cw" else -1.0
+        self._check_preferred_direction(cycle, direction, sign)
+        self._mode = SpindleMode.CW if direction == "cw" else SpindleMode.CCW
+        self._commanded_speed = sign * speed_rpm * DEG_S_PER_RPM
+        self._state = S.CONTINUOUS_MOTION
+        self._ramp(cycle)
+
+    def do_stop(self, cycle: int) -> None:
+        """M05: down to speed 0 with P-AXIS-00002."""
+        if self._state == S.ERROR_STOP:
+            return
+        self._mode = SpindleMode.STOP
+        self._commanded_speed = 0.0
+        self._state = S.STOPPING
+        self._ramp(cycle)
+
+    def do_set_override(self, cycle: int, *, percent: float) -> None:
+        """Spindle override of endless rotation, 0 … 100 %."""
+        if not 0.0 <= percent <= 100.0:
+            self._refuse("set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... 100")
+        self._override_percent = float(percent)
+        if self._state == S.CONTINUOUS_MOTION:
+            self._ramp(cycle)
+
+    def do_reset(self, cycle: int) -> None:
+        """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle (CNC reset)."""
+        if self._state != S.ERROR_STOP:
+            self.do_stop(cycle)
+            return
+        if self._setpoint(cycle)[1] != 0.0:
+            self._refuse("reset", STILL_TURNING, "the spindle still turns on its error ramp; wait for standstill")
+        self._error_id = 0
+        self._state = S.STANDSTILL
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> None:
+        """The watchdog: `source` (channel, PLC or clock) has sent nothing in time; the spindle stops."""
+        if self._state != S.ERROR_STOP:
+            self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> SpindleBlock:
+        """Computes one block; a spindle is moved by commands alone."""
+        first_cycle, count = tick
+        rows = [self._cycle(first_cycle + index) for index in range(count)]
+        return SpindleBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))  # type: ignore[arg-type]
+
+    def _cycle(self, cycle: int) -> tuple[float | int | bool, ...]:
+        drive = self._drive
+        position, speed, acceleration, _ = self._setpoint(cycle)
+        if self._state == S.STOPPING and speed == 0.0:
+            self._state = S.STANDSTILL
+        following_error = position - drive.position
+        if self._error_id == 0 and self._controller.exceeds_limit(following_error):
+            limit = self._parameters.following_error_limit
+            self._fault(
+                cycle, FOLLOWING_ERROR, f"following error {following_error:.3f} deg exceeds {limit} deg (P-AXIS-00168)"
+            )
+        actual_speed = drive.velocity
+        row = (
+            speed / DEG_S_PER_RPM,
+            actual_speed / DEG_S_PER_RPM,
+            acceleration,
+            position,
+            drive.position,
+            following_error,
+            self._override_percent,
+            int(self._mode),
+            self._parameters.gear,
+            self._speed_reached(actual_speed),
+            abs(actual_speed) < self._parameters.zero_speed_deg_s,
+            True,
+            int(self._state),
+            self._error_id,
+        )
+        drive.step(self._controller.command_velocity(following_error))
+        return row
+
+    def _speed_reached(self, actual_speed: float) -> bool:
+        """P-AXIS-00217: within the tolerance band around the commanded speed; at speed 0 the zero limit P-AXIS-00216."""
+        wanted = self._wanted_speed()
+        if wanted == 0.0:
+            return abs(actual_speed) < self._parameters.zero_speed_deg_s
+        return abs(actual_speed - wanted) <= self._parameters.speed_reached_band * abs(wanted)
+
+    def _wanted_speed(self) -> float:
+        return self._commanded_speed * self._override_percent / 100.0
+
+    def _setpoint(self, cycle: int) -> tuple[float, float, float, float]:
+        return self._profile.state_at((cycle - self._origin) * self._cycle_time)
+
+    def _ramp(self, cycle: int) -> None:
+        position, speed, _, _ = self._setpoint(cycle)
+        self._origin = cycle
+        self._profile: Profile = plan_speed(
+            position,
+            speed,
+            self._wanted_speed(),
+            acceleration=self._parameters.acceleration,
+            deceleration=self._parameters.deceleration,
+        )
+
+    def _check_preferred_direction(self, cycle: int, direction: str, sign: float) -> None:
+        preferred = self._parameters.preferred_direction
+        if preferred and sign != preferred:
+            word = "positive" if preferred > 0 else "negative"
+            reason = f"{direction} contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: {word})"
+            self._fault(cycle, AGAINST_PREFERRED_DIRECTION, reason)
+            raise CncError(
+                AGAINST_PREFERRED_DIRECTION,
+                f"spindle {self.name}: start refused: {reason}; the spindle is in ErrorStop",
+            )
+
+    def _refuse(self, command: str, error_id: int, reason: str) -> None:
+        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; nothing was changed")
+
+    def _fault(self, cycle: int, error_id: int, reason: str) -> None:
+        """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
+        self._error_id = error_id
+        self._state = S.ERROR_STOP
+        self._mode = SpindleMode.STOP
+        self._commanded_speed = 0.0
+        self._ramp(cycle)
+        self.event(
+            cycle, Severity.ERROR, error_id, f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
+        )

@@ -1,0 +1,71 @@
+"""The base of all units: commands are checked, carried out or refused as a whole, and recorded; events are collected."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, Severity
+from cnc_ptp.machine.commands import check_command
+
+Handler = Callable[..., str | None]
+
+
+class Unit(ABC):
+    """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
+
+    A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns is
+    a warning that goes into the record. Nothing here knows processes, topics or clocks.
+    """
+
+    kind: ClassVar[str]
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.events: list[Event] = []
+        """Events since the last block; the harness takes them away."""
+        self.records: list[CommandRecord] = []
+        """Commands carried out or refused since the last block; the harness takes them away."""
+
+    @abstractmethod
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+        """Computes the cycles of `tick`. `inputs`: blocks of the same cycles from upstream units and of the cycles before
+        from units that only report back, by unit name; a unit that is lost or has not computed yet is missing."""
+
+    def command(self, command: Command, cycle: int) -> CommandRecord:
+        """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
+        error_id, message = 0, ""
+        try:
+            self._dispatch(command.command, command.arguments, cycle)
+        except CncError as error:
+            error_id, message = error.error_id, error.message
+            self.event(cycle, Severity.WARNING, error_id, message)
+        record = CommandRecord(
+            cycle, self.name, command.command, command.arguments_json, error_id == 0, error_id, message or self._warning
+        )
+        self.records.append(record)
+        return record
+
+    _warning = ""
+
+    def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
+        self._warning = ""
+        check_command(self.kind, self.name, command, arguments)
+        handler: Handler = getattr(self, f"do_{command}")
+        self._warning = handler(cycle, **arguments) or ""
+
+    def event(self, cycle: int, severity: int, error_id: int, text: str, line: int = 0) -> None:
+        self.events.append(Event(cycle, self.name, severity, error_id, text, line))
+
+    def take_events(self) -> list[Event]:
+        events, self.events = self.events, []
+        return events
+
+    def take_records(self) -> list[CommandRecord]:
+        records, self.records = self.records, []
+        return records
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name}>"

@@ -1,0 +1,72 @@
+"""Who needs whose blocks: the one description of the data flow that offline run, composed run and graph share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from cnc_ptp.machine.axis_unit import AxisUnit
+from cnc_ptp.machine.channel_unit import ChannelUnit
+from cnc_ptp.machine.plc_unit import PlcUnit
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.spindle_unit import SpindleUnit
+from cnc_ptp.machine.unit import Unit
+from cnc_ptp.parameters import MachineParameters
+
+PLC = "plc"
+
+
+@dataclass(frozen=True, slots=True)
+class Inputs:
+    """What a unit waits for before it computes block n."""
+
+    upstream: tuple[str, ...]
+    """Units whose block n is needed: they act in the same cycles."""
+    feedback: tuple[str, ...]
+    """Units whose block n - 1 is needed: they report back."""
+
+
+def unit_kinds(machine: MachineParameters) -> dict[str, str]:
+    """Unit name -> plc, channel, spindle or axis, in the order in which the blocks of one tick are computed."""
+    kinds = {PLC: "plc"}
+    kinds |= dict.fromkeys(machine.channels, "channel")
+    kinds |= dict.fromkeys(machine.spindles, "spindle")
+    return kinds | dict.fromkeys(machine.axes, "axis")
+
+
+def wiring(machine: MachineParameters) -> dict[str, Inputs]:
+    """Inputs of every unit: PLC -> channel -> axes and spindles; what these report reaches PLC and channel a block later."""
+    members = {
+        name: [axis.node for axis in channel.axes] + [s.node for s in channel.spindles]
+        for name, channel in machine.channels.items()
+    }
+    inputs = {PLC: Inputs((), tuple(name for name in unit_kinds(machine) if name != PLC))}
+    inputs |= {name: Inputs((PLC,), tuple(units)) for name, units in members.items()}
+    for unit in [*machine.spindles, *machine.axes]:
+        channels = tuple(name for name, units in members.items() if unit in units)
+        inputs[unit] = Inputs((PLC, *channels), ())
+    return inputs
+
+
+def build_unit(
+    machine: MachineParameters, name: str, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
+) -> Unit:
+    """The unit `name` of the machine, at position 0, standing. `scenario` and `end_when_idle` are for the PLC."""
+    cycle_time = machine.cycle_time_us * 1e-6
+    kinds = unit_kinds(machine)
+    if kinds[name] == "axis":
+        return AxisUnit(machine.axes[name], cycle_time=cycle_time)
+    if kinds[name] == "spindle":
+        return SpindleUnit(machine.spindles[name], cycle_time=cycle_time)
+    if kinds[name] == "channel":
+        return ChannelUnit(machine.channels[name], axes=machine.axes, spindles=machine.spindles, cycle_time=cycle_time)
+    return PlcUnit(name, kinds=kinds, scenario=scenario, cycle_time=cycle_time, end_when_idle=end_when_idle)
+
+
+def build_units(
+    machine: MachineParameters, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
+) -> Mapping[str, Unit]:
+    """All units, in the order in which the blocks of one tick are computed."""
+    return {
+        name: build_unit(machine, name, scenario=scenario, end_when_idle=end_when_idle) for name in unit_kinds(machine)
+    }
