@@ -1,0 +1,134 @@
+"""From unit blocks to arrays: blocks are packed when they arrive and turned into messages many at a time.
+
+Packing a block is one `struct.pack` of all its numbers (3 µs for an axis): it copies them, and checks their number and
+range. Rows packed alike become one array of per-cycle state messages and one of block messages.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.recording.layout import Layout, Records, fixed_layout
+from cnc_ptp.recording.schemas import Schema, load_schema
+
+StateBlock = AxisBlock | SpindleBlock | ChannelBlock
+Cycles = npt.NDArray[np.uint64]
+Times = npt.NDArray[np.uint64]
+
+
+class StateKind:
+    """A kind of unit whose blocks hold one state message per cycle: `Axis`, `Spindle` or `Channel`."""
+
+    def __init__(self, name: str) -> None:
+        self.state = load_schema(f"cnc_ptp/msg/{name}State")
+        self.block = load_schema(f"cnc_ptp/msg/{name}Block")
+        self.layout = fixed_layout(self.state)
+        self.columns = tuple(field.name for field in self.state.fields if field.name not in ("header", "cycle"))
+        self._packers: dict[int, Packer] = {}
+
+    def packer(self, count: int) -> Packer:
+        """Packs what the state messages of a block of `count` cycles need."""
+        if count not in self._packers:
+            codes = {place.name: place.code for place in self.layout.places}
+            columns = [(name, codes[name], count) for name in self.columns]
+            self._packers[count] = Packer([("first_cycle", "Q"), ("count", "I")], columns)
+        return self._packers[count]
+
+
+@cache
+def state_kind(name: str) -> StateKind:
+    return StateKind(name)
+
+
+def kind_of(block: StateBlock) -> StateKind:
+    kind = _KINDS.get(type(block))
+    if kind is None:
+        kind = _KINDS[type(block)] = state_kind(type(block).__name__.removesuffix("Block"))
+    return kind
+
+
+_KINDS: dict[type, StateKind] = {}
+
+
+class Packer:
+    """Packs the numbers of blocks shaped like one block into rows of bytes; `dtype` describes a row."""
+
+    def __init__(self, scalars: Sequence[tuple[str, str]], arrays: Sequence[tuple[str, str, int]]) -> None:
+        codes = [code for _, code in scalars] + [f"{n}{code}" for _, code, n in arrays]
+        self._struct = struct.Struct("<" + "".join(codes))
+        self._scalars = _tuple_getter([name for name, _ in scalars])
+        self._arrays = _tuple_getter([name for name, _, _ in arrays])
+        formats = [(name, f"<{code}") for name, code in scalars]
+        self.dtype = np.dtype(formats + [(name, f"<{code}", (n,)) for name, code, n in arrays])
+
+    def pack(self, block: Any) -> bytes:
+        """Raises CncError 26006 when the block holds another number of values or one beyond its field's range."""
+        try:
+            numbers = [*self._scalars(block)]
+            for column in self._arrays(block):
+                numbers += column
+            return self._struct.pack(*numbers)
+        except (struct.error, TypeError) as error:
+            raise CncError(
+                26006,
+                f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does "
+                f"not fit its message: {error}; it was not recorded",
+            ) from error
+
+    def rows(self, packed: Iterable[bytes]) -> Records:
+        return np.frombuffer(b"".join(packed), dtype=self.dtype)
+
+
+class BlockLayout:
+    """Layout and packer of block messages shaped like `prototype`."""
+
+    def __init__(self, schema: Schema, prototype: Any) -> None:
+        self.layout = Layout(schema, prototype)
+        places = [place for place in self.layout.places if not place.name.startswith("header.")]
+        self.packer = Packer(
+            [(place.name, place.code) for place in places if place.count is None],
+            [(place.name, place.code, place.count) for place in places if place.count is not None],
+        )
+
+    def fill(self, messages: Records, rows: Records, stamps_ns: Times) -> None:
+        set_stamps(messages, stamps_ns)
+        for name in self.packer.dtype.names or ():
+            messages[name] = rows[name]
+
+
+def cycles_of(rows: Records, count: int) -> Cycles:
+    """Cycle numbers (n * count,) of packed rows (n,) of `count` cycles each."""
+    cycles: Cycles = rows["first_cycle"][:, None] + np.arange(count, dtype=np.uint64)
+    return cycles.reshape(-1)
+
+
+def fill_states(kind: StateKind, messages: Records, rows: Records, cycles: Cycles, stamps_ns: Times) -> None:
+    """Sets the state messages (n * count,) of packed rows (n,)."""
+    set_stamps(messages, stamps_ns)
+    messages["cycle"] = cycles
+    for name in kind.columns:
+        messages[name] = rows[name].reshape(-1)
+
+
+def set_stamps(messages: Records, stamps_ns: Times) -> None:
+    seconds, nanoseconds = np.divmod(stamps_ns, np.uint64(1_000_000_000))
+    messages["header.stamp.sec"] = seconds
+    messages["header.stamp.nanosec"] = nanoseconds
+
+
+def _tuple_getter(names: Sequence[str]) -> Callable[[Any], tuple[Any, ...]]:
+    if len(names) == 0:
+        return lambda _block: ()
+    if len(names) == 1:
+        single = attrgetter(names[0])
+        return lambda block: (single(block),)
+    return attrgetter(*names)

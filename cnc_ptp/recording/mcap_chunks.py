@@ -1,0 +1,219 @@
+"""Reads the records of an MCAP file one after another, without its index, so that a file cut off anywhere gives all it
+holds.
+
+A file that does not end with the MCAP magic was cut off (killed process, full disk): reading stops at the first record
+that is not whole. Anything else that does not fit is corruption and raises an error that names the place.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Schema
+from mcap.stream_reader import get_chunk_data_stream
+from mcap.writer import MCAP0_MAGIC
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.layout import Bytes
+from cnc_ptp.recording.mcap_file import HEAD_SIZE, MESSAGE_HEAD, RECORD_PREFIX
+
+Record = TypeVar("Record")
+KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
+FIRST_PRIVATE_OPCODE = 0x80
+RUN_STEP = 64
+
+
+class RawRecord(NamedTuple):
+    """A record of the file and where it begins."""
+
+    offset: int
+    opcode: int
+    body: memoryview
+
+
+class MessageRun(NamedTuple):
+    """Messages of one channel and one size that follow each other: rows (n, HEAD_SIZE + size) of bytes."""
+
+    channel_id: int
+    rows: Bytes
+
+    @property
+    def head(self) -> np.ndarray[tuple[int], np.dtype[np.void]]:
+        head: np.ndarray[tuple[int], np.dtype[np.void]] = self.rows[:, :HEAD_SIZE].view(MESSAGE_HEAD)[:, 0]
+        return head
+
+    @property
+    def contents(self) -> Bytes:
+        return self.rows[:, HEAD_SIZE:]
+
+
+class McapRecords:
+    """The records of a file in order; after iteration `complete` and `missing` say whether something is lacking.
+
+    Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.complete = False
+        self.missing = ""
+        try:
+            self._data = memoryview(path.read_bytes())
+        except OSError as error:
+            raise CncError(
+                26001, f"recording {path}: cannot be opened: {error.strerror}; nothing was read, check the path"
+            ) from error
+        self._require_magic()
+        self._cut_off = bytes(self._data[-len(MCAP0_MAGIC) :]) != MCAP0_MAGIC or len(self._data) == len(MCAP0_MAGIC)
+
+    def __iter__(self) -> Iterator[RawRecord]:
+        data, offset, end = self._data, len(MCAP0_MAGIC), len(self._data)
+        while offset < end:
+            if end - offset < RECORD_PREFIX.size:
+                return self._stop(offset, f"{end - offset} bytes of a record head follow")
+            opcode, length = RECORD_PREFIX.unpack_from(data, offset)
+            self._require_known(offset, opcode)
+            start = offset + RECORD_PREFIX.size
+            if length > end - start:
+                return self._stop(
+                    offset, f"a record of {length} bytes begins there, {end - start} bytes of it are present"
+                )
+            record = RawRecord(offset, opcode, data[start : start + length])
+            yield record
+            offset = start + length
+            if opcode == Opcode.DATA_END:
+                self._check_data_crc(record)
+            elif opcode == Opcode.FOOTER:
+                return self._finish(record, offset)
+        return self._stop(offset, "the summary is missing")
+
+    def parse(self, read: Callable[[ReadDataStream], Record], record: RawRecord) -> Record:
+        """The record as read by a record class of the library."""
+        try:
+            return read(ReadDataStream(BytesIO(record.body)))
+        except (struct.error, McapError, UnicodeDecodeError, ValueError) as error:
+            raise self.corrupt(record.offset, f"{_name(record.opcode)} record cannot be read: {error!r}") from error
+
+    def attachment(self, record: RawRecord) -> Attachment:
+        (crc,) = struct.unpack("<I", record.body[-4:])
+        if crc not in (0, zlib.crc32(record.body[:-4])):
+            raise self.corrupt(record.offset, "the CRC of the attachment does not match its content")
+        attachment: Attachment = self.parse(Attachment.read, record)
+        return attachment
+
+    def chunk(self, record: RawRecord) -> bytes:
+        """The uncompressed records of a chunk, CRC checked."""
+        chunk = self.parse(Chunk.read, record)
+        try:
+            stream, length = get_chunk_data_stream(chunk)
+            data = stream.read(length)
+        except (zstandard.ZstdError, RuntimeError, ValueError, MemoryError) as error:
+            raise self.corrupt(record.offset, f"the chunk cannot be uncompressed: {error}") from error
+        if len(data) != chunk.uncompressed_size or chunk.uncompressed_crc not in (0, zlib.crc32(data)):
+            raise self.corrupt(record.offset, "the CRC of the chunk does not match its content")
+        return data
+
+    def in_chunk(self, record: RawRecord) -> Iterator[Schema | Channel | MessageRun]:
+        """Schemas, channels and runs of messages in a chunk."""
+        content = self.chunk(record)
+        data = np.frombuffer(content, dtype=np.uint8)
+        offset = 0
+        while offset < len(data):
+            if len(data) - offset < RECORD_PREFIX.size:
+                raise self.corrupt(record.offset, f"the chunk ends inside a record at {offset}")
+            opcode, length = RECORD_PREFIX.unpack_from(content, offset)
+            size = RECORD_PREFIX.size + length
+            if size > len(data) - offset or (opcode == Opcode.MESSAGE and size < HEAD_SIZE):
+                raise self.corrupt(record.offset, f"the record at {offset} of the chunk says {length} bytes")
+            inner = RawRecord(record.offset, opcode, data[offset + RECORD_PREFIX.size : offset + size].data)
+            if opcode == Opcode.MESSAGE:
+                rows = data[offset:]
+                count = run_length(rows, size)
+                yield MessageRun(_channel_id(inner), rows[: count * size].reshape(count, size))
+                size *= count
+            elif opcode == Opcode.SCHEMA:
+                yield self.parse(Schema.read, inner)
+            elif opcode == Opcode.CHANNEL:
+                yield self.parse(Channel.read, inner)
+            offset += size
+
+    def corrupt(self, offset: int, reason: str) -> CncError:
+        return CncError(
+            26003,
+            f"recording {self.path}: corrupt at offset {offset}: {reason}; nothing was read, take an intact "
+            "copy of the file or save what is whole with 'mcap recover'",
+        )
+
+    def _require_magic(self) -> None:
+        begin = bytes(self._data[: len(MCAP0_MAGIC)])
+        if begin != MCAP0_MAGIC:
+            raise CncError(
+                26002,
+                f"recording {self.path}: not an MCAP file: it begins with {begin!r} instead of {MCAP0_MAGIC!r}; "
+                "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
+            )
+
+    def _require_known(self, offset: int, opcode: int) -> None:
+        if opcode not in KNOWN_OPCODES and opcode < FIRST_PRIVATE_OPCODE:
+            raise self.corrupt(offset, f"a record of the unknown type {opcode} begins there")
+
+    def _check_data_crc(self, record: RawRecord) -> None:
+        expected = self.parse(DataEnd.read, record).data_section_crc
+        if expected not in (0, zlib.crc32(self._data[: record.offset])):
+            raise self.corrupt(record.offset, "the CRC of the data section does not match its content")
+
+    def _finish(self, record: RawRecord, end: int) -> None:
+        footer = self.parse(Footer.read, record)
+        summary = self._data[footer.summary_start or record.offset : record.offset + RECORD_PREFIX.size + 16]
+        if footer.summary_crc not in (0, zlib.crc32(summary)):
+            raise self.corrupt(record.offset, "the CRC of the summary does not match its content")
+        rest = bytes(self._data[end:])
+        if rest == MCAP0_MAGIC:
+            self.complete = True
+        elif MCAP0_MAGIC.startswith(rest):
+            self._stop(end, "the closing magic is missing")
+        else:
+            raise self.corrupt(end, f"{len(rest)} bytes follow the footer instead of the MCAP magic")
+
+    def _stop(self, offset: int, found: str) -> None:
+        """The file ends at a place where it should not."""
+        if not self._cut_off:
+            raise self.corrupt(offset, found)
+        self.missing = (
+            f"the file ends at offset {len(self._data)} without having been closed ({found}, "
+            f"last whole record up to offset {offset}); what was recorded after the last whole chunk is missing"
+        )
+
+
+def run_length(data: Bytes, size: int) -> int:
+    """How many messages of `size` bytes and of the channel of the first one `data` begins with."""
+    limit = len(data) // size
+    rows = data[: limit * size].reshape(limit, size)[:, :11]  # opcode, length, channel
+    first = rows[0]
+    count, step = 1, 1
+    while count < limit:
+        equal = (rows[count : count + step] == first).all(axis=1)
+        if not equal.all():
+            return count + int(equal.argmin())
+        count += len(equal)
+        step = max(RUN_STEP, 2 * step)
+    return count
+
+
+def _channel_id(message: RawRecord) -> int:
+    (channel_id,) = struct.unpack_from("<H", message.body)
+    return int(channel_id)
+
+
+def _name(opcode: int) -> str:
+    return Opcode(opcode).name.lower() if opcode in KNOWN_OPCODES else f"private ({opcode})"

@@ -1,0 +1,322 @@
+"""Writes an MCAP file chunk by chunk from NumPy arrays of messages.
+
+`mcap.writer.Writer` takes one message a call (4 µs). Here a call takes any number of messages of equal size, as rows of
+bytes with room for the record head in front; all other records are written by the library's record classes. Records and
+their order follow the specification at mcap.dev/spec: in a chunk the messages stand topic by topic, its message indexes
+give their order in time.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+import numpy.typing as npt
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+from mcap.well_known import MessageEncoding, SchemaEncoding
+from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.layout import Bytes
+
+Times = npt.NDArray[np.uint64]
+
+MESSAGE_HEAD = np.dtype(
+    [
+        ("opcode", "u1"),
+        ("length", "<u8"),
+        ("channel", "<u2"),
+        ("sequence", "<u4"),
+        ("log_time", "<u8"),
+        ("publish_time", "<u8"),
+    ]
+)
+HEAD_SIZE = MESSAGE_HEAD.itemsize
+RECORD_PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
+INDEX_ENTRY = np.dtype([("log_time", "<u8"), ("offset", "<u8")])
+
+
+class McapFile:
+    """An MCAP file of the ROS 2 profile being written.
+
+    Every written chunk is handed to the operating system at once. All methods raise CncError 26007 once the file could
+    not be written; the chunks before that moment stay readable.
+    """
+
+    def __init__(self, path: Path, level: int = 1) -> None:
+        self.path = path
+        self.statistics = Statistics(0, 0, {}, 0, 0, 0, 0, 0, 0)
+        self._compressor = zstandard.ZstdCompressor(level=level)
+        self._offset = 0
+        self._crc = 0
+        self._schemas: list[Schema] = []
+        self._channels: list[Channel] = []
+        self._chunk_indexes: list[ChunkIndex] = []
+        self._attachment_indexes: list[AttachmentIndex] = []
+        self._metadata_indexes: list[MetadataIndex] = []
+        self._chunk = _OpenChunk()
+        self._failure: CncError | None = None
+        try:
+            self._stream = path.open("wb")
+        except OSError as error:
+            raise CncError(
+                26007, f"recording {path}: cannot be created: {error.strerror}; nothing is recorded"
+            ) from error
+        self._write(MCAP0_MAGIC)
+        self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
+        self._flush()
+
+    def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
+        start = self._offset
+        self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
+        self._attachment_indexes.append(
+            AttachmentIndex(start, self._offset - start, log_time, 0, len(data), name, media_type)
+        )
+        self.statistics.attachment_count += 1
+        self._flush()
+
+    def metadata(self, name: str, values: dict[str, str]) -> None:
+        start = self._offset
+        self._record(Metadata(name, values))
+        self._metadata_indexes.append(MetadataIndex(start, self._offset - start, name))
+        self.statistics.metadata_count += 1
+        self._flush()
+
+    def channel(self, topic: str, type_name: str, schema_text: str) -> int:
+        """Announces a topic; its records go in front of the messages of the chunk being filled."""
+        schema = next((known for known in self._schemas if known.name == type_name), None)
+        if schema is None:
+            schema = Schema(
+                id=len(self._schemas) + 1, data=schema_text.encode(), encoding=SchemaEncoding.ROS2, name=type_name
+            )
+            self._schemas.append(schema)
+            self._chunk.add_record(schema)
+        channel = Channel(
+            id=len(self._channels) + 1,
+            topic=topic,
+            message_encoding=MessageEncoding.CDR,
+            metadata={"offered_qos_profiles": ""},
+            schema_id=schema.id,
+        )
+        self._channels.append(channel)
+        self._chunk.add_record(channel)
+        return channel.id
+
+    def messages(self, channel_id: int, rows: Bytes, times: Times) -> None:
+        """Adds n messages of equal size to the chunk being filled: rows (n, HEAD_SIZE + size), times in ns (n,).
+
+        The first HEAD_SIZE bytes of each row are filled in here.
+        """
+        counts = self.statistics.channel_message_counts
+        known = counts.get(channel_id, 0)
+        head = rows[:, :HEAD_SIZE].view(MESSAGE_HEAD)[:, 0]
+        head["opcode"] = Opcode.MESSAGE
+        head["length"] = rows.shape[1] - RECORD_PREFIX.size
+        head["channel"] = channel_id
+        head["sequence"] = np.arange(known + 1, known + 1 + len(rows), dtype=np.uint64)
+        head["log_time"] = times
+        head["publish_time"] = times
+        counts[channel_id] = known + len(rows)
+        self._chunk.add_messages(channel_id, rows, times)
+
+    def write_chunk(self) -> None:
+        """Closes the chunk being filled and hands it to the operating system; an empty one is left open."""
+        chunk = self._chunk
+        if chunk.message_count == 0:
+            return
+        self._chunk = _OpenChunk()
+        first, last = chunk.time_range()
+        compressed = self._compress(chunk)
+        start = self._offset
+        self._record(Chunk("zstd", compressed, last, first, chunk.crc(), chunk.size))
+        end = self._offset
+        index_offsets: dict[int, int] = {}
+        for channel_id, entries in chunk.indexes.items():
+            index_offsets[channel_id] = self._offset
+            self._write(_message_index(channel_id, entries))
+        self._flush()
+        self._chunk_indexes.append(
+            ChunkIndex(
+                chunk_length=end - start,
+                chunk_start_offset=start,
+                compression="zstd",
+                compressed_size=len(compressed),
+                message_end_time=last,
+                message_index_length=self._offset - end,
+                message_index_offsets=index_offsets,
+                message_start_time=first,
+                uncompressed_size=chunk.size,
+            )
+        )
+        self._count_chunk(chunk.message_count, first, last)
+
+    def close(self) -> None:
+        """Writes the last chunk and the summary, and closes the file."""
+        try:
+            self.write_chunk()
+            self._record(DataEnd(self._crc))
+            self._write_summary()
+            self._flush()
+        finally:
+            self._close_stream()
+
+    def __enter__(self) -> McapFile:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _compress(self, chunk: _OpenChunk) -> bytes:
+        stream = self._compressor.compressobj(size=chunk.size)
+        return b"".join([*map(stream.compress, chunk.parts), stream.flush()])
+
+    def _count_chunk(self, messages: int, first: int, last: int) -> None:
+        statistics = self.statistics
+        if statistics.chunk_count == 0 or first < statistics.message_start_time:
+            statistics.message_start_time = first
+        statistics.message_end_time = max(statistics.message_end_time, last)
+        statistics.message_count += messages
+        statistics.chunk_count += 1
+
+    def _write_summary(self) -> None:
+        self.statistics.schema_count = len(self._schemas)
+        self.statistics.channel_count = len(self._channels)
+        start = self._offset
+        builder = RecordBuilder()
+        offsets: list[SummaryOffset] = []
+        groups: list[tuple[Opcode, list[McapRecord]]] = [
+            (Opcode.SCHEMA, [*self._schemas]),
+            (Opcode.CHANNEL, [*self._channels]),
+            (Opcode.STATISTICS, [self.statistics]),
+            (Opcode.CHUNK_INDEX, [*self._chunk_indexes]),
+            (Opcode.ATTACHMENT_INDEX, [*self._attachment_indexes]),
+            (Opcode.METADATA_INDEX, [*self._metadata_indexes]),
+        ]
+        for opcode, records in groups:
+            begin = builder.count
+            for record in records:
+                record.write(builder)
+            offsets.append(SummaryOffset(opcode, start + begin, builder.count - begin))
+        offset_start = start + builder.count
+        for offset in offsets:
+            if offset.group_length:
+                offset.write(builder)
+        summary = _content(builder)
+        crc = zlib.crc32(struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offset_start), zlib.crc32(summary))
+        self._write(summary)
+        self._record(Footer(start, offset_start, crc))
+        self._write(MCAP0_MAGIC)
+
+    def _record(self, record: McapRecord) -> None:
+        builder = RecordBuilder()
+        record.write(builder)
+        self._write(_content(builder))
+
+    def _write(self, data: bytes) -> None:
+        if self._failure is not None:
+            raise self._failure
+        try:
+            self._stream.write(data)
+        except OSError as error:
+            raise self._failed(error) from error
+        self._offset += len(data)
+        self._crc = zlib.crc32(data, self._crc)
+
+    def _flush(self) -> None:
+        try:
+            self._stream.flush()
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def _close_stream(self) -> None:
+        try:
+            self._stream.close()
+        except OSError as error:
+            if self._failure is None:
+                raise self._failed(error) from error
+
+    def _failed(self, error: OSError) -> CncError:
+        self._failure = CncError(
+            26007,
+            f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}; "
+            "recording ends here, the chunks before it stay readable",
+        )
+        return self._failure
+
+
+class _OpenChunk:
+    """Records of a chunk before compression, and where the messages of each channel begin in it."""
+
+    def __init__(self) -> None:
+        self.parts: list[bytes | memoryview] = []
+        self.size = 0
+        self.message_count = 0
+        self.indexes: dict[int, list[npt.NDArray[np.void]]] = {}
+
+    def add_record(self, record: McapRecord) -> None:
+        builder = RecordBuilder()
+        record.write(builder)
+        data = _content(builder)
+        self.parts.append(data)
+        self.size += len(data)
+
+    def add_messages(self, channel_id: int, rows: Bytes, times: Times) -> None:
+        count, row_size = rows.shape
+        entries = np.empty(count, dtype=INDEX_ENTRY)
+        entries["log_time"] = times
+        entries["offset"] = np.arange(self.size, self.size + count * row_size, row_size, dtype=np.uint64)
+        self.indexes.setdefault(channel_id, []).append(entries)
+        self.parts.append(rows.reshape(-1).data)
+        self.size += rows.size
+        self.message_count += count
+
+    def crc(self) -> int:
+        crc = 0
+        for part in self.parts:
+            crc = zlib.crc32(part, crc)
+        return crc
+
+    def time_range(self) -> tuple[int, int]:
+        times = [entries["log_time"] for runs in self.indexes.values() for entries in runs]
+        return min(int(run.min()) for run in times), max(int(run.max()) for run in times)
+
+
+def _message_index(channel_id: int, runs: list[npt.NDArray[np.void]]) -> bytes:
+    entries = np.concatenate(runs)
+    if np.any(entries["log_time"][1:] < entries["log_time"][:-1]):
+        entries = entries[np.argsort(entries["log_time"], kind="stable")]
+    builder = RecordBuilder()
+    builder.start_record(Opcode.MESSAGE_INDEX)
+    builder.write2(channel_id)
+    builder.write4(entries.nbytes)
+    builder.write(entries.tobytes())
+    builder.finish_record()  # type: ignore[no-untyped-call]
+    return _content(builder)
+
+
+def _content(builder: RecordBuilder) -> bytes:
+    content: bytes = builder.end()  # type: ignore[no-untyped-call]
+    return content

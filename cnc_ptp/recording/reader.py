@@ -1,0 +1,294 @@
+"""Reads a recording: per-cycle states as NumPy arrays, events, commands, machine file, statistics."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from mcap.opcode import Opcode
+from mcap.records import Channel, Metadata, Schema
+from mcap_ros2.decoder import DecoderFactory
+
+from cnc_ptp.machine.blocks import CommandRecord, Event
+from cnc_ptp.recording.layout import Layout, Records, fixed_layout
+from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
+from cnc_ptp.recording.schemas import full_name, parse_schema
+from cnc_ptp.recording.writer import MACHINE_FILE, METADATA
+
+AXIS_STATE = "cnc_ptp/msg/AxisState"
+SPINDLE_STATE = "cnc_ptp/msg/SpindleState"
+CHANNEL_STATE = "cnc_ptp/msg/ChannelState"
+STATE_TYPES = (AXIS_STATE, SPINDLE_STATE, CHANNEL_STATE)
+TICK = "cnc_ptp/msg/CycleTick"
+EVENT = "cnc_ptp/msg/Event"
+COMMAND = "cnc_ptp/msg/CommandRecord"
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
+
+
+@dataclass(slots=True)
+class TopicInfo:
+    """What the file holds of a topic; log times in ns."""
+
+    topic: str
+    type_name: str
+    count: int = 0
+    first_ns: int = 0
+    last_ns: int = 0
+
+
+class Diagnostic(NamedTuple):
+    """One status of a diagnostics message."""
+
+    time_ns: int
+    name: str
+    values: dict[str, str]
+
+
+class RawMessage(NamedTuple):
+    """A message as it lies in the file."""
+
+    topic: str
+    type_name: str
+    log_time_ns: int
+    cdr: bytes
+
+
+@dataclass
+class Recorded:
+    """A recording that was read.
+
+    `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
+    `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`). `complete` is False when the file was cut off;
+    `missing` then says what is lacking.
+    """
+
+    path: Path
+    complete: bool = False
+    missing: str = ""
+    machine_yaml: str = ""
+    attachments: dict[str, str] = field(default_factory=dict)
+    metadata: dict[str, str] = field(default_factory=dict)
+    topics: dict[str, TopicInfo] = field(default_factory=dict)
+    states: dict[str, Records] = field(default_factory=dict)
+    ticks: Records | None = None
+    events: list[Event] = field(default_factory=list)
+    commands: list[CommandRecord] = field(default_factory=list)
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    @property
+    def start_ns(self) -> int:
+        return int(self.metadata.get("start_ns", "0"))
+
+    @property
+    def cycle_time_ns(self) -> int:
+        return int(self.metadata.get("cycle_time_ns", "1000000"))
+
+    @property
+    def last_cycle(self) -> int:
+        """The last cycle of which a state was recorded, -1 if there is none."""
+        return max((int(rows["cycle"].max()) for rows in self.states.values()), default=-1)
+
+    @property
+    def block_cycles(self) -> int:
+        """Cycles of a block, as most ticks have it; 10 where no ticks were recorded."""
+        if self.ticks is None or len(self.ticks) == 0:
+            return 10
+        counts, numbers = np.unique(self.ticks["count"], return_counts=True)
+        return int(counts[numbers.argmax()])
+
+    def of_type(self, type_name: str) -> dict[str, Records]:
+        """The per-cycle states of one message type, by the name of the unit."""
+        return {
+            topic.removeprefix("/").removesuffix("/state"): rows
+            for topic, rows in self.states.items()
+            if self.topics[topic].type_name == type_name
+        }
+
+    def seconds(self, cycles: npt.NDArray[np.uint64]) -> npt.NDArray[np.float64]:
+        """Time since cycle 0 in s."""
+        return cycles.astype(np.float64) * (self.cycle_time_ns * 1e-9)
+
+
+def read_recording(path: str | Path) -> Recorded:
+    """Reads all that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
+    reader = _Reader(Path(path))
+    for record in reader.records:
+        reader.take(record)
+    return reader.finish()
+
+
+def iter_messages(path: str | Path, topics: Collection[str] | None = None) -> Iterator[RawMessage]:
+    """All whole messages in log-time order, as bytes; of the given topics only. Same errors as read_recording."""
+    records = McapRecords(Path(path))
+    names = _Names(records)
+    waiting: list[tuple[int, int, RawMessage]] = []
+    serial = 0
+    for record in records:
+        names.take(record)
+        if record.opcode != Opcode.CHUNK:
+            continue
+        start = int.from_bytes(record.body[:8], "little")
+        while waiting and waiting[0][0] < start:
+            yield heapq.heappop(waiting)[2]
+        for item in records.in_chunk(record):
+            if not isinstance(item, MessageRun):
+                names.add(item)
+            elif topics is None or names.topic(item, record).topic in topics:
+                for message in _raw_messages(names.topic(item, record), item):
+                    heapq.heappush(waiting, (message.log_time_ns, serial := serial + 1, message))
+    while waiting:
+        yield heapq.heappop(waiting)[2]
+
+
+def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
+    for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
+        yield RawMessage(info.topic, info.type_name, time, content.tobytes())
+
+
+class _Names:
+    """Schemas and channels of a file as they come."""
+
+    def __init__(self, records: McapRecords) -> None:
+        self.records = records
+        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, Channel] = {}
+        self.topics: dict[int, TopicInfo] = {}
+        self.by_name: dict[str, TopicInfo] = {}
+
+    def take(self, record: RawRecord) -> None:
+        if record.opcode == Opcode.SCHEMA:
+            self.add(self.records.parse(Schema.read, record))
+        elif record.opcode == Opcode.CHANNEL:
+            self.add(self.records.parse(Channel.read, record))
+
+    def add(self, item: Schema | Channel) -> None:
+        if isinstance(item, Schema):
+            self.schemas[item.id] = item
+        elif item.id not in self.channels:
+            schema = self.schemas.get(item.schema_id)
+            info = TopicInfo(item.topic, full_name(schema.name) if schema else "")
+            self.channels[item.id] = item
+            self.topics[item.id] = self.by_name.setdefault(item.topic, info)
+
+    def topic(self, run: MessageRun, record: RawRecord) -> TopicInfo:
+        info = self.topics.get(run.channel_id)
+        if info is None:
+            raise self.records.corrupt(
+                record.offset, f"a message of the unknown channel {run.channel_id} is in the chunk"
+            )
+        return info
+
+
+class _Reader:
+    """Collects what the records of a file say."""
+
+    def __init__(self, path: Path) -> None:
+        self.records = McapRecords(path)
+        self.names = _Names(self.records)
+        self.recorded = Recorded(path)
+        self._layouts: dict[str, Layout] = {}
+        self._rows: dict[str, list[npt.NDArray[np.uint8]]] = {}
+        self._decoders = DecoderFactory()
+        self._handlers: dict[str, Callable[[int, Any], None]] = {
+            EVENT: self._event,
+            COMMAND: self._command,
+            DIAGNOSTICS: self._diagnostics,
+        }
+
+    def take(self, record: RawRecord) -> None:
+        self.names.take(record)
+        if record.opcode == Opcode.CHUNK:
+            for item in self.records.in_chunk(record):
+                if isinstance(item, MessageRun):
+                    self._messages(item, record)
+                else:
+                    self.names.add(item)
+        elif record.opcode == Opcode.ATTACHMENT:
+            attachment = self.records.attachment(record)
+            self.recorded.attachments[attachment.name] = attachment.data.decode(errors="replace")
+        elif record.opcode == Opcode.METADATA:
+            metadata = self.records.parse(Metadata.read, record)
+            if metadata.name == METADATA:
+                self.recorded.metadata.update(metadata.metadata)
+
+    def finish(self) -> Recorded:
+        recorded = self.recorded
+        recorded.complete, recorded.missing = self.records.complete, self.records.missing
+        recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
+        recorded.topics = {topic: info for topic, info in self.names.by_name.items() if info.count}
+        for topic, rows in self._rows.items():
+            self._store(recorded.topics[topic], self._layouts[topic].read(np.concatenate(rows).reshape(-1)))
+        recorded.events.sort(key=lambda event: event.cycle)
+        recorded.commands.sort(key=lambda command: command.cycle)
+        return recorded
+
+    def _store(self, info: TopicInfo, rows: Records) -> None:
+        if info.type_name == TICK:
+            self.recorded.ticks = rows
+        else:
+            self.recorded.states[info.topic] = rows
+
+    def _messages(self, run: MessageRun, record: RawRecord) -> None:
+        info = self.names.topic(run, record)
+        times = run.head["log_time"]
+        info.first_ns = int(times.min()) if info.count == 0 else min(info.first_ns, int(times.min()))
+        info.last_ns = max(info.last_ns, int(times.max()))
+        info.count += len(times)
+        if info.type_name in STATE_TYPES or info.type_name == TICK:
+            self._fixed(info, run, record)
+        elif info.type_name in self._handlers:
+            self._decode(info, run, record)
+
+    def _fixed(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> None:
+        layout = self._layouts.get(info.topic)
+        if layout is None:
+            schema = parse_schema(info.type_name, self._schema(run).data.decode())
+            layout = self._layouts[info.topic] = fixed_layout(schema)
+        if run.contents.shape[1] != layout.dtype.itemsize:
+            raise self.records.corrupt(
+                record.offset,
+                f"a message of {info.topic} has {run.contents.shape[1]} bytes instead of {layout.dtype.itemsize} "
+                f"({info.type_name} with empty frame_id)",
+            )
+        self._rows.setdefault(info.topic, []).append(run.contents)
+
+    def _decode(self, info: TopicInfo, run: MessageRun, record: RawRecord) -> None:
+        decoder = self._decoders.decoder_for("cdr", self._schema(run))
+        handler = self._handlers[info.type_name]
+        for time, content in zip(run.head["log_time"].tolist(), run.contents, strict=True):
+            try:
+                handler(time, decoder(content.tobytes()) if decoder else None)
+            except Exception as error:  # whatever the generated decoder raises on bytes that are no such message
+                reason = f"a message of {info.topic} is no {info.type_name}: {error!r}"
+                raise self.records.corrupt(record.offset, reason) from error
+
+    def _schema(self, run: MessageRun) -> Schema:
+        return self.names.schemas[self.names.channels[run.channel_id].schema_id]
+
+    def _event(self, _time: int, message: Any) -> None:
+        self.recorded.events.append(
+            Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line)
+        )
+
+    def _command(self, _time: int, message: Any) -> None:
+        self.recorded.commands.append(
+            CommandRecord(
+                message.cycle,
+                message.target,
+                message.command,
+                message.arguments_json,
+                message.accepted,
+                message.error_id,
+                message.message,
+            )
+        )
+
+    def _diagnostics(self, time: int, message: Any) -> None:
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            self.recorded.diagnostics.append(Diagnostic(time, status.name, values))

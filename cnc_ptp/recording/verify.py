@@ -1,0 +1,257 @@
+"""Compares a recording with a second computation of the same run, bit for bit.
+
+The kernel is re-run from the machine file and the commands of the recording (`cnc_ptp.machine` does that); here every
+field of every per-cycle state is compared. Numbers are equal when their bits are: NaN equals the same NaN, 0.0 differs
+from -0.0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, kind_of, set_stamps
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.writer import Stamps, topic_of
+
+Replay = Callable[[Recorded], Iterable[tuple[str, StateBlock]]]
+BATCH_BLOCKS = 500
+FIRST_DIFFERENCES = 20
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Difference:
+    """A sample that was not computed as it was recorded."""
+
+    cycle: int
+    topic: str
+    field: str
+    recorded: float
+    computed: float
+
+    def __str__(self) -> str:
+        recorded, computed = repr(self.recorded), repr(self.computed)
+        if recorded == computed:  # NaNs with different bits
+            recorded, computed = (
+                f"{text} (0x{_bits(value):016x})"
+                for text, value in ((recorded, self.recorded), (computed, self.computed))
+            )
+        return f"{self.topic} cycle {self.cycle} {self.field}: recorded {recorded}, computed {computed}"
+
+
+@dataclass(slots=True)
+class TopicResult:
+    """What the comparison of one topic found.
+
+    `missing`: cycles that were computed but not recorded; `duplicated`: recorded more than once; `surplus`: recorded but
+    not computed.
+    """
+
+    topic: str
+    compared: int = 0
+    differences: int = 0
+    first: list[Difference] = field(default_factory=list)
+    missing: list[int] = field(default_factory=list)
+    duplicated: list[int] = field(default_factory=list)
+    surplus: list[int] = field(default_factory=list)
+
+    @property
+    def equal(self) -> bool:
+        return not (self.differences or self.missing or self.duplicated or self.surplus)
+
+    def lines(self) -> list[str]:
+        lines = [str(difference) for difference in self.first]
+        if self.differences > len(self.first):
+            lines.append(f"{self.topic}: {self.differences - len(self.first)} further differences")
+        for what, cycles in (
+            ("missing", self.missing),
+            ("recorded twice", self.duplicated),
+            ("not computed", self.surplus),
+        ):
+            if cycles:
+                lines.append(f"{self.topic}: {len(cycles)} cycles {what}: {ranges_text(cycles)}")
+        return lines
+
+
+@dataclass(slots=True)
+class VerifyResult:
+    """What the comparison of a recording found, by topic."""
+
+    path: str
+    topics: dict[str, TopicResult]
+
+    @property
+    def equal(self) -> bool:
+        return bool(self.topics) and all(result.equal for result in self.topics.values())
+
+    @property
+    def compared(self) -> int:
+        return sum(result.compared for result in self.topics.values())
+
+    @property
+    def differences(self) -> int:
+        return sum(result.differences for result in self.topics.values())
+
+    @property
+    def first(self) -> list[Difference]:
+        """The earliest differences of all topics, in the order of their cycles."""
+        return sorted(difference for result in self.topics.values() for difference in result.first)[:FIRST_DIFFERENCES]
+
+    def text(self) -> str:
+        """One line when all is equal, otherwise a line for each finding."""
+        if self.equal:
+            return f"{self.path}: {self.compared} states of {len(self.topics)} topics are equal to the bit"
+        if not self.topics:
+            return f"{self.path}: holds no per-cycle states, nothing could be compared"
+        findings = [line for result in self.topics.values() for line in result.lines()]
+        return "\n".join([f"{self.path}: {self.differences} differences in {self.compared} states", *findings])
+
+
+def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
+    """Compares the recorded states with what `replay(recorded)` computes: pairs of unit name (or topic) and block.
+
+    Raises CncError 26004 when the recording has no machine file or its states have other fields than those computed
+    here. Of a file that was cut off, cycles after the last recorded one are not counted as missing.
+    """
+    if not recorded.machine_yaml:
+        raise CncError(
+            26004,
+            f"recording {recorded.path}: holds no attachment machine.yaml; it cannot be verified, record it "
+            "with cnc_ptp",
+        )
+    checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
+    for name, block in replay(recorded):
+        topic = state_topic(name)
+        if topic not in checks:
+            checks[topic] = _Check(topic, None, recorded)
+        checks[topic].add(block)
+    return VerifyResult(str(recorded.path), {topic: check.finish() for topic, check in checks.items()})
+
+
+def state_topic(name: str) -> str:
+    """`x`, `/x/block` or `/x/state` -> `/x/state`."""
+    return topic_of(name.removesuffix("/block").removesuffix("/state"), "state")
+
+
+class _Check:
+    """Compares the states of one topic batch by batch."""
+
+    def __init__(self, topic: str, rows: Records | None, recorded: Recorded) -> None:
+        self.result = TopicResult(topic)
+        self.recorded = recorded
+        self.stamps = Stamps(recorded.start_ns, recorded.cycle_time_ns)
+        self.rows = rows
+        self.cycles = np.empty(0, dtype=np.uint64)
+        if rows is not None:
+            order = np.argsort(rows["cycle"], kind="stable")
+            self.rows = rows[order]
+            self.cycles = self.rows["cycle"]
+            self.result.duplicated = np.unique(self.cycles[1:][self.cycles[1:] == self.cycles[:-1]]).tolist()
+        self.seen = np.zeros(len(self.cycles), dtype=bool)
+        self.batch: list[bytes] = []
+        self.form: tuple[StateKind, int, Packer] | None = None
+
+    def add(self, block: StateBlock) -> None:
+        if self.form is None or self.form[1] != block.count:
+            self.compare_batch()
+            kind = kind_of(block)
+            self.form = kind, block.count, kind.packer(block.count)
+            self.require_fields(kind)
+        self.batch.append(self.form[2].pack(block))
+        if len(self.batch) >= BATCH_BLOCKS:
+            self.compare_batch()
+
+    def finish(self) -> TopicResult:
+        self.compare_batch()
+        self.result.surplus = np.unique(self.cycles[~self.seen]).tolist()
+        return self.result
+
+    def require_fields(self, kind: StateKind) -> None:
+        if self.rows is None or set(self.rows.dtype.names or ()) == set(kind.layout.dtype.names or ()):
+            return
+        raise CncError(
+            26004,
+            f"recording {self.recorded.path}: {self.result.topic} has the fields {_names(self.rows)}, this version computes "
+            f"{', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that recorded it",
+        )
+
+    def compare_batch(self) -> None:
+        if self.form is None or not self.batch:
+            return
+        kind, count, packer = self.form
+        packed, self.batch = packer.rows(self.batch), []
+        cycles = cycles_of(packed, count)
+        computed = np.zeros(len(cycles), dtype=kind.layout.dtype)
+        computed["cycle"] = cycles
+        set_stamps(computed, self.stamps.at_all(cycles))
+        for name in kind.columns:
+            computed[name] = packed[name].reshape(-1)
+        self.compare(computed[np.argsort(cycles, kind="stable")])
+
+    def compare(self, computed: Records) -> None:
+        """`computed`: rows in the order of their cycles."""
+        cycles: Cycles = computed["cycle"]
+        begin, end = np.searchsorted(self.cycles, cycles[0], "left"), np.searchsorted(self.cycles, cycles[-1], "right")
+        here = self.cycles[begin:end]
+        partner = np.minimum(np.searchsorted(cycles, here), len(cycles) - 1)
+        matched = np.flatnonzero(cycles[partner] == here)
+        self.seen[begin + matched] = True
+        self.note_missing(cycles[~np.isin(cycles, here)])
+        self.result.compared += len(matched)
+        if self.rows is not None and len(matched):
+            self.compare_rows(self.rows[begin:end][matched], computed[partner[matched]])
+
+    def note_missing(self, cycles: Cycles) -> None:
+        if not self.recorded.complete:
+            last = int(self.cycles[-1]) if len(self.cycles) else -1
+            cycles = cycles[cycles.astype(np.int64) <= last]
+        self.result.missing.extend(cycles.tolist())
+
+    def compare_rows(self, recorded: Records, computed: Records) -> None:
+        found: list[Difference] = []
+        for name in computed.dtype.names or ():
+            places = np.flatnonzero(_as_bits(recorded[name]) != _as_bits(computed[name]))
+            self.result.differences += len(places)
+            found += [
+                Difference(
+                    int(computed["cycle"][place]),
+                    self.result.topic,
+                    name,
+                    recorded[name][place].item(),
+                    computed[name][place].item(),
+                )
+                for place in places[:FIRST_DIFFERENCES]
+            ]
+        self.result.first = sorted([*self.result.first, *found], key=lambda difference: difference.cycle)[
+            :FIRST_DIFFERENCES
+        ]
+
+
+def ranges_text(numbers: list[int], most: int = 5) -> str:
+    """`3-5, 9, 12-20, …`"""
+    ranges: list[list[int]] = []
+    for number in sorted(numbers):
+        if ranges and number == ranges[-1][1] + 1:
+            ranges[-1][1] = number
+        else:
+            ranges.append([number, number])
+    texts = [str(first) if first == last else f"{first}-{last}" for first, last in ranges[:most]]
+    return ", ".join(texts + ["…"] * (len(ranges) > most))
+
+
+def _names(rows: Records) -> str:
+    return ", ".join(rows.dtype.names or ())
+
+
+def _as_bits(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    return np.ascontiguousarray(values).view(f"u{values.dtype.itemsize}")
+
+
+def _bits(value: float) -> int:
+    return int(np.float64(value).view(np.uint64))
