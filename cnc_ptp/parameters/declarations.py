@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
@@ -137,7 +137,7 @@ def split_indexes(ros_name: str) -> tuple[str, tuple[int, ...]]:
 @cache
 def catalogue() -> Catalogue:
     """The declarations of declarations.yaml."""
-    text = files("cnc_ptp.parameters").joinpath("declarations.yaml").read_text(encoding="utf-8")
+    text = Path(__file__).with_name("declarations.yaml").read_text(encoding="utf-8")
     return make_catalogue(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)))
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from cnc_ptp.parameters.declarations import Declaration, Limit, Number, ParameterValue
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.ranges import range_text
 
 
 class RosDescriptor(NamedTuple):
@@ -22,6 +23,8 @@ class RosDescriptor(NamedTuple):
     text: str
     number: str
     read_only: bool
+    constraints: str
+    """Range and choices in words, for `additional_constraints`."""
 
     @property
     def description(self) -> str:
@@ -42,6 +45,7 @@ def ros_descriptors(parameters: ParameterSet) -> list[RosDescriptor]:
             text=parameter.declaration.text,
             number=parameter.declaration.id,
             read_only=parameter.declaration.read_only,
+            constraints=range_text(parameter.declaration),
         )
         for parameter in parameters.parameters()
     ]

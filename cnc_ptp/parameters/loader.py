@@ -36,12 +36,12 @@ def read_machine(path: str | Path) -> MachineParameters:
 def load_machine(text: str, file: str) -> MachineParameters:
     """The machine that the text of a ROS parameters file describes; `file` is for messages. Raises ParameterError."""
     sections, problems = read_sections(text, file)
+    if any(problem.error_id == errors.SYNTAX for problem in problems):
+        raise ParameterError(problems)
     machine_section = next((section for section in sections if section.node == "machine"), None)
     if machine_section is None:
         missing = "section /machine is missing, it says which channels, axes and spindles exist"
-        if not any(problem.error_id == errors.SYNTAX for problem in problems):
-            problems.append(Problem(errors.NO_MACHINE, Place(file, 1, 1), missing))
-        raise ParameterError(problems)
+        raise ParameterError([*problems, Problem(errors.NO_MACHINE, Place(file, 1, 1), missing)])
     machine = checked_section(machine_section, "machine", problems)
     units = list_units(machine, problems)
     problems += sections_without_unit(sections, units)

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import errors
-from cnc_ptp.parameters.declarations import DATA_TYPES, LISTS, Declaration, Limit, ParameterValue, catalogue
+from cnc_ptp.parameters.declarations import LISTS, Declaration, catalogue
+from cnc_ptp.parameters.ranges import default_text, range_text
 from cnc_ptp.parameters.source import dotted
 
 HEADLINES = {
@@ -30,12 +31,12 @@ A machine file is a ROS parameters file. `/machine` names the nodes, each node h
     /x: {ros__parameters: {kopf: {achs_nr: 1}, getriebe: {"0": {kv: 5000}}}}
 
 `getriebe[0].kv` of the lists is `getriebe: {"0": {kv: …}}` or `getriebe.0.kv` in the file and in ROS. Integers are
-decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that the
-file does not give has its default, cut to the limits that the file gives. All parameters are read-only while a node runs.
+decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that
+the file does not give has its default, cut to the limits that the file gives. All are read-only while a node runs.
 
 The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
-Axis types: T linear, R rotary, S spindle. **—** in the last column: accepted and checked, without effect in this version.
-A range with an id in it ends at the value of that parameter.
+Axis types: T linear, R rotary, S spindle. A range with an id in it ends at the value of that parameter.
+**—** in the last column: accepted and checked, without effect in this version.
 """
 
 
@@ -75,48 +76,9 @@ def table_row(declaration: Declaration) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def range_text(declaration: Declaration) -> str:
-    """'1 ≤ … ≤ P-AXIS-00212', or the choices."""
-    if declaration.choices:
-        if declaration.type == "string":
-            text = (" flags " if declaration.flags else " ") + ", ".join(
-                f"{name} 0x{number:x}" if declaration.flags else name for name, number in declaration.choices.items()
-            )
-        else:
-            text = ", ".join(f"{number} {meaning}" for number, meaning in declaration.choices.items())
-    elif declaration.type == "string":
-        text = f"at most {declaration.max_length} characters"
-        text += f", {declaration.form_text}" if declaration.form else ""
-    else:
-        text = limits_text(declaration)
-    unset = "" if declaration.unset is None else f"; {default_text(declaration.unset)} not configured"
-    return text.strip() + unset
-
-
-def limits_text(declaration: Declaration) -> str:
-    """'0 < … ≤ 1000'; the end of the data type is left out where something else limits too."""
-    lower, upper = (written_limits(declaration, limits) for limits in (declaration.lower, declaration.upper))
-    left = "".join(f"{limit.value} {'≤' if limit.inclusive else '<'} " for limit in lower)
-    right = "".join(f" {'≤' if limit.inclusive else '<'} {limit.value}" for limit in upper)
-    return f"{left}…{right}" if left or right else ""
-
-
-def written_limits(declaration: Declaration, limits: tuple[Limit, ...]) -> list[Limit]:
-    ends = DATA_TYPES[declaration.data_type][1:]
-    return [limit for limit in limits if len(limits) == 1 or limit.value not in ends]
-
-
 def unit_text(declaration: Declaration) -> str:
     linear, other = declaration.unit
     return linear if linear == other else f"{linear} / {other}"
-
-
-def default_text(value: ParameterValue) -> str:
-    if isinstance(value, bool):
-        return "1" if value else "0"
-    if isinstance(value, tuple):
-        return "[" + ", ".join(value) + "]"
-    return '""' if value == "" else f"{value}"
 
 
 def describe(id_or_name: str) -> str:

@@ -18,6 +18,7 @@ Scalar = bool | int | float | str | None
 Value = Scalar | tuple[Scalar, ...]
 
 MAX_DEPTH = 20
+TOO_DEEP = f"nested deeper than {MAX_DEPTH} levels"
 PARSER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 INTEGER = re.compile(r"[-+]?[0-9]+|0x[0-9a-fA-F]+")
 NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
@@ -125,7 +126,7 @@ class Reader:
             if isinstance(event, yaml.MappingStartEvent):
                 prefixes.append(name + ".")
                 if len(prefixes) > MAX_DEPTH:
-                    raise self.refusal(event, f"nested deeper than {MAX_DEPTH} levels")
+                    raise self.refusal(event, TOO_DEEP)
                 continue
             value = self.value(event, events)
             if name in seen:
@@ -172,6 +173,8 @@ class Reader:
             depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
             if depth == 0:
                 return
+            if depth > MAX_DEPTH:
+                raise self.refusal(event, TOO_DEEP)
             event = next(events)
 
     def place(self, event: Any) -> Place:

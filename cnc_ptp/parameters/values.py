@@ -59,11 +59,11 @@ def as_float(value: Number) -> float:
     try:
         return float(value)
     except OverflowError:
-        return math.copysign(math.inf, value)
+        return math.inf if value > 0 else -math.inf
 
 
 def check_number(declaration: Declaration, value: Number, unit: str) -> None:
-    if not math.isfinite(value):
+    if isinstance(value, float) and not math.isfinite(value):
         raise BadValue(errors.OUT_OF_RANGE, f"value {shown(value)} is not a finite number")
     if declaration.choices:
         if value not in declaration.choices:

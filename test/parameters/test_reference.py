@@ -1,0 +1,101 @@
+"""The parameter reference."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters.declarations import catalogue
+from cnc_ptp.parameters.reference import describe, reference_markdown
+
+ROOT = Path(__file__).parents[2]
+KV = """\
+P-AXIS-00099  getriebe[i].kv
+  Gain of the proportional position controller.
+  list     axis, axis types TRS
+  type     UNS32 (int)
+  range    0 < … ≤ 4294967295
+  unit     0.01/s
+  default  1000
+  source   spindle p.74"""
+
+
+def test_document_is_up_to_date() -> None:
+    """Otherwise: python -m cnc_ptp.parameters.reference > docs/parameters.md"""
+    assert (ROOT / "docs" / "parameters.md").read_text(encoding="utf-8") == reference_markdown()
+
+
+def test_module_prints_the_document() -> None:
+    command = [sys.executable, "-m", "cnc_ptp.parameters.reference"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
+    output = subprocess.run(command, check=True, capture_output=True, env=environment).stdout
+    assert output.decode("utf-8") == reference_markdown()
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "P-AXIS-00099",
+        "p-axis-00099",
+        "getriebe[i].kv",
+        "getriebe[0].kv",
+        "getriebe.0.kv",
+        "getriebe.*.kv",
+        "kv",
+        " kv ",
+    ],
+)
+def test_one_parameter_by_id_or_name(name: str) -> None:
+    assert describe(name) == KV
+
+
+def test_a_last_part_that_several_have() -> None:
+    headlines = [block.splitlines()[0] for block in describe("a_max").split("\n\n")]
+    assert headlines == [
+        "P-AXIS-00008  getriebe[i].dynamik.a_max",
+        "P-AXIS-00240  getriebe[i].beschl_kennlinie.a_max",
+        "P-TOOL-00015  wz[i].a_max",
+    ]
+
+
+def test_forms_of_ranges() -> None:
+    ranges = {
+        "P-AXIS-00209": "range    1 ≤ … ≤ P-AXIS-00212",
+        "P-AXIS-00177": "range    -2147483648 ≤ … < P-AXIS-00178",
+        "P-CHAN-00008": "range    1 lathe, 2 milling machine; 0 not configured",
+        "P-AXIS-00018": "range    ACHSTYP_TRANSLATOR, ACHSTYP_ROTATOR, ACHSTYP_SPINDEL",
+        "P-AXIS-00223": "range    flags NONE 0x0, VEL 0x1, ACC 0x2, JERK 0x4, ADD_VEL 0x101, ADD_ACC 0x202, "
+        "ADD_JERK 0x804",
+        "P-CHAN-00005": "range    at most 16 characters",
+        "P-CHAN-00053": "range    at most 16 characters, a capital S, then capital letters, digits and _; "
+        '"" not configured',
+    }
+    for number, text in ranges.items():
+        assert f"  {text}" in describe(number).splitlines()
+    assert "unit     0.1 µm / 0.0001°" in describe("P-AXIS-00177")
+    assert "range" not in describe("P-MACH-00005")
+    assert "default  []" in describe("P-MACH-00005")
+    assert "  Accepted and checked, but without effect in this version." in describe("P-AXIS-00223").splitlines()
+
+
+@pytest.mark.parametrize(
+    ("name", "hint"),
+    [
+        ("P-AXIS-0099", ", did you mean P-AXIS-00099 getriebe[i].kv?"),
+        ("getribe.0.kv", ", did you mean P-AXIS-00099 getriebe[i].kv?"),
+        ("!", ""),
+    ],
+)
+def test_unknown_parameter(name: str, hint: str) -> None:
+    with pytest.raises(CncError) as caught:
+        describe(name)
+    assert str(caught.value) == f"P-ERR-25018 no parameter is called '{name}'{hint}"
+
+
+def test_every_parameter_has_its_line() -> None:
+    document = reference_markdown()
+    for declaration in catalogue().by_id.values():
+        assert document.count(f"\n| {declaration.id} | `{declaration.name}` |") == 1

@@ -1,0 +1,297 @@
+"""Typed views: conversions to the digit, defaults, who belongs to whom."""
+
+import math
+import pickle
+
+import pytest
+
+from cnc_ptp.parameters import (
+    AxisParameters,
+    ChannelAxis,
+    ChannelParameters,
+    ChannelSpindle,
+    MachineParameters,
+    ParameterError,
+    SpindleParameters,
+    Synchronisation,
+    load_machine,
+)
+from cnc_ptp.parameters.encoder import resolution
+from cnc_ptp.parameters.units import to_kernel
+
+NONE = Synchronisation.NO_SYNCH
+
+
+def load(*sections: str, **units: list[str]) -> MachineParameters:
+    """A machine of the units, with the sections."""
+    lists = ", ".join(f"{kind}: [{', '.join(names)}]" for kind, names in units.items())
+    return load_machine("\n".join([f"/machine: {{ros__parameters: {{{lists}}}}}", *sections]), "m.yaml")
+
+
+def axis(parameters: str) -> AxisParameters:
+    return load(f"/x: {{ros__parameters: {{{parameters}}}}}", axes=["x"]).axes["x"]
+
+
+def spindle(parameters: str) -> SpindleParameters:
+    return load(f"/s: {{ros__parameters: {{{parameters}}}}}", spindles=["s"]).spindles["s"]
+
+
+def channel(*parameters: str) -> ChannelParameters:
+    """The channel of a machine with axes x (1), y (2), c (3) and spindles s (4), t (5)."""
+    section = "/ch: {ros__parameters: {" + ", ".join(parameters) + "}}"
+    c = "/c: {ros__parameters: {kenngr.achs_typ: ACHSTYP_ROTATOR}}"
+    t = "/t: {ros__parameters: {kopf.log_achs_name: S2}}"
+    return load(section, c, t, channels=["ch"], axes=["x", "y", "c"], spindles=["s", "t"]).channels["ch"]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "kernel"),
+    [
+        (3_000_000, "0.1 µm", 300.0),
+        (1, "0.1 µm", 0.0001),
+        (3_600_000, "0.0001°", 360.0),
+        (166_666, "µm/s", 166.666),
+        (72_000_000, "0.001°/s", 72_000.0),
+        (100, "0.001°/s", 0.1),
+        (4_500, "0.01/s", 45.0),
+        (50, "0.1 %", 0.05),
+        (3_000, "µs", 0.003),
+        (200, "ms", 0.2),
+        (1_000, "mm/s²", 1_000.0),
+        (-7, "°", -7.0),
+    ],
+)
+def test_units(value: int, unit: str, kernel: float) -> None:
+    assert to_kernel(value, unit) == kernel
+
+
+def test_machine_of_defaults() -> None:
+    machine = load(axes=["x"])
+    assert (machine.cycle_time_us, machine.block_cycles, machine.watchdog_ms, machine.life_sign_timeout_ms) == (
+        1000,
+        10,
+        200,
+        1000,
+    )
+    assert (machine.channels, machine.spindles, machine.warnings) == ({}, {}, ())
+    assert machine.axes["x"] == AxisParameters(
+        name="x",
+        number=1,
+        rotary=False,
+        modulo=False,
+        modulo_low=0.0,
+        modulo_high=0.0,
+        drive_type=4,
+        kv=10.0,
+        max_velocity=200.0,
+        rapid_velocity=166.666,
+        reference_velocity=200.0,
+        max_acceleration=1000.0,
+        acceleration=1000.0,
+        deceleration=1000.0,
+        emergency_deceleration=1000.0,
+        jerk=20_000.0,
+        soft_limit_negative=-10_000.0,
+        soft_limit_positive=10_000.0,
+        following_error_monitoring=False,
+        following_error_limit=10.0,
+        following_error_standstill_limit=2.0,
+        position_window=0.05,
+        encoder_increment=0.0001,
+        drive_time_constant=0.0,
+        override_type=1,
+        max_override_percent=100.0,
+        powered_at_start=True,
+        referenced_at_start=True,
+        start_position=0.0,
+    )
+
+
+def test_spindle_of_defaults() -> None:
+    assert spindle("") == SpindleParameters(
+        name="s",
+        number=1,
+        drive_type=4,
+        kv=10.0,
+        max_speed_deg_s=200.0,
+        positioning_speed_deg_s=166.666,
+        max_acceleration=1000.0,
+        acceleration=1000.0,
+        deceleration=1000.0,
+        emergency_deceleration=1000.0,
+        speed_reached_band=0.1,
+        zero_speed_deg_s=0.1,
+        preferred_direction=0,
+        gear=1,
+        stops_at_reset=True,
+        modulo_low=0.0,
+        modulo_high=360.0,
+        following_error_monitoring=False,
+        following_error_limit=10.0,
+        following_error_standstill_limit=2.0,
+        position_window=0.05,
+        encoder_increment=0.0001,
+        drive_time_constant=0.0,
+        max_override_percent=100.0,
+        powered_at_start=True,
+        referenced_at_start=True,
+        start_position=0.0,
+    )
+
+
+def test_resolution_of_the_feedforward_manual() -> None:
+    """Page 20: 2^20 increments, gear 3, 5 mm a revolution: 62.91456 increments per 0.1 µm."""
+    text = "antr.feed_const_num: 50000, getriebe.0: {incr_per_rev: 1048576, gear_fact_num: 3, gear_fact_denom: 1}"
+    machine = load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"])
+    assert float(resolution(machine.raw("x"), 0)) == 62.91456
+    assert machine.axes["x"].encoder_increment == 0.0001 / 62.91456
+
+
+def test_resolution_by_increments_per_way() -> None:
+    assert axis("getriebe.0: {wegaufz: 2, wegaufn: 5}").encoder_increment == 0.00025
+    assert axis("getriebe.0: {wegaufz: 2, wegaufn: 5}, simulation.encoder: 0").encoder_increment == 0.0
+
+
+def test_jerk_is_acceleration_over_ramp_time() -> None:
+    view = axis(
+        "getriebe.0: {dynamik: {a_max: 5000}, slope_profil: {a_beschl: 2000, a_brems: 2400, tr_beschl_zu: 40000}}"
+    )
+    assert (view.acceleration, view.deceleration, view.jerk, view.max_acceleration) == (
+        2000.0,
+        2400.0,
+        50_000.0,
+        5000.0,
+    )
+
+
+def test_defaults_give_way_to_the_limits_of_the_file() -> None:
+    view = axis("getriebe.0.dynamik: {vb_max: 100000, a_max: 500, tr_min: 60000}")
+    assert (view.rapid_velocity, view.acceleration, view.deceleration) == (100.0, 500.0, 500.0)
+    assert view.jerk == 500 / 0.06
+
+
+def test_emergency_deceleration() -> None:
+    assert axis("getriebe.0.dynamik: {a_max: 500, a_emergency: 1000}").emergency_deceleration == 1000.0
+
+
+def test_reference_velocity() -> None:
+    assert axis("ptp.reference_velocity: 150").reference_velocity == 150.0
+
+
+@pytest.mark.parametrize(("kind", "on"), [(0, False), (1, True), (2, True), (3, False), (4, True), (5, False)])
+def test_following_error_monitoring(kind: int, on: bool) -> None:
+    assert axis(f"getriebe.0: {{slep_ueberw_typ: {kind}, slep_max: 250000}}").following_error_monitoring is on
+    assert spindle(f"getriebe.0: {{slep_ueberw_typ: {kind}}}").following_error_monitoring is on
+
+
+def test_rotary_axis_with_and_without_modulo() -> None:
+    limited = axis("kenngr: {achs_typ: 0x2, swe_neg: -900000, swe_pos: 900000}")
+    assert (limited.rotary, limited.modulo, limited.soft_limit_negative, limited.soft_limit_positive) == (
+        True,
+        False,
+        -90.0,
+        90.0,
+    )
+    endless = axis(
+        "kenngr: {achs_typ: ACHSTYP_ROTATOR, achs_mode: 0x204}, getriebe.0: {modulou: -1800000, moduloo: 1800000}"
+    )
+    assert (endless.modulo, endless.modulo_low, endless.modulo_high) == (True, -180.0, 180.0)
+    assert (endless.soft_limit_negative, endless.soft_limit_positive) == (-math.inf, math.inf)
+
+
+@pytest.mark.parametrize(("restricted", "positive", "direction"), [(0, 0, 0), (0, 1, 0), (1, 0, -1), (1, 1, 1)])
+def test_preferred_direction(restricted: int, positive: int, direction: int) -> None:
+    assert spindle(f"kenngr: {{vorz_richtung: {restricted}, beweg_richt: {positive}}}").preferred_direction == direction
+
+
+def test_active_gear_selects_the_record() -> None:
+    view = spindle("kenngr.getriebe_stufe: 2, getriebe: {0: {kv: 100}, 1: {kv: 300, dynamik.vb_max: 60000000}}")
+    assert (view.gear, view.kv, view.max_speed_deg_s) == (2, 3.0, 60_000.0)
+
+
+def test_logical_numbers_that_the_file_leaves_out() -> None:
+    section = "/y: {ros__parameters: {kopf.achs_nr: 1}}"
+    machine = load(section, axes=["x", "y"], spindles=["s"])
+    assert (machine.axes["x"].number, machine.axes["y"].number, machine.spindles["s"].number) == (2, 1, 3)
+
+
+def test_channel_of_defaults_has_everything() -> None:
+    view = channel()
+    assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("C", "c"))
+    assert view.spindles == (
+        ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE),
+        ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE),
+    )
+    assert view.main_spindle == "S"
+    assert view.m_functions == dict.fromkeys((0, 1, 2, 3, 4, 5, 17, 19, 29, 30), NONE)
+    assert (view.max_override_percent, view.circle_center_tolerance, view.circle_center_ratio) == (100.0, 2.0, 0.05)
+
+
+def test_channel_with_lists() -> None:
+    view = channel(
+        "gruppe.0.achse: {1: {log_achs_nr: 1}, 3: {log_achs_nr: 3, bezeichnung: C1}}",
+        "spdl_anzahl: 2, main_spindle_ax_nr: 5, main_spindle_name: SMAIN",
+        "spindel.0: {log_achs_nr: 4, bezeichnung: S1, m3_synch: 0x00020002}",
+        "spindel.1: {log_achs_nr: 5, m19_synch: MNS_SNS}",
+        "m_synch: {8: MVS_SVS, 9: '0x8', 10: NOT_VALID, 3: PLC_INFO|MOS}",
+        "max_vb_override: 1500, mittelpkt_diff: 1000, mittelpkt_faktor: 5",
+    )
+    plc = Synchronisation.PLC_INFO | Synchronisation.MVS_SVS
+    assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("C1", "c"))
+    assert view.spindles == (
+        ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE),
+        ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE),
+    )
+    assert view.main_spindle == "SMAIN"
+    assert view.m_functions[8] is Synchronisation.MVS_SVS
+    assert view.m_functions[9] is Synchronisation.MNS_SNS
+    assert view.m_functions[3] == Synchronisation.MOS | Synchronisation.PLC_INFO
+    assert 10 not in view.m_functions
+    assert (view.max_override_percent, view.circle_center_tolerance, view.circle_center_ratio) == (150.0, 0.1, 0.005)
+
+
+def test_channel_without_spindle() -> None:
+    view = load(channels=["ch"], axes=["x"]).channels["ch"]
+    assert (view.spindles, view.main_spindle) == ((), "")
+
+
+def test_a_channel_that_lists_no_axes_gets_those_that_no_other_lists() -> None:
+    section = "/a: {ros__parameters: {gruppe.0.achse.0.log_achs_nr: 1}}"
+    machine = load(section, channels=["a", "b"], axes=["x", "y"])
+    assert machine.channels["a"].axes == (ChannelAxis("X", "x"),)
+    assert machine.channels["b"].axes == (ChannelAxis("Y", "y"),)
+
+
+def test_a_spindle_serves_several_channels() -> None:
+    machine = load(channels=["a", "b"], spindles=["s"])
+    assert machine.channels["a"].spindles == machine.channels["b"].spindles
+
+
+def test_warnings() -> None:
+    text = "kenngr.antr_typ: 2, vorsteuer.vs_v_faktor: 1, getriebe.0: {slep_ueberw_typ: 1, slep_max: 200000}"
+    assert load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"]).warnings == (
+        "m.yaml:2:67: P-AXIS-00228 vorsteuer.vs_v_faktor of /x: accepted, but without effect in this version",
+        "m.yaml:2:41: P-AXIS-00020 kenngr.antr_typ of /x: drive type 2 does not exist here, the drive is simulated",
+        "m.yaml:2:100: P-AXIS-00172 getriebe[0].slep_ueberw_typ of /x: monitoring type 1 is carried out as type 4",
+        "m.yaml:2:113: P-AXIS-00168 getriebe[0].slep_max of /x: "
+        "limit 20 mm is not above vb_max / kv, the 20 mm that P-AXIS-00212 brings",
+    )
+
+
+def test_a_machine_can_go_to_another_process() -> None:
+    machine = load("/x: {ros__parameters: {getriebe.0.kv: 5}}", channels=["ch"], axes=["x"], spindles=["s"])
+    copy = pickle.loads(pickle.dumps(machine))
+    assert copy == machine
+    assert copy.raw("x").kernel("P-AXIS-00099", 0) == 0.05
+
+
+def test_text_is_no_number() -> None:
+    with pytest.raises(TypeError, match=r"^P-AXIS-00018 is no number$"):
+        load(axes=["x"]).raw("x").number("P-AXIS-00018")
+
+
+def test_an_error_can_go_to_another_process() -> None:
+    with pytest.raises(ParameterError) as caught:
+        load("/x: {ros__parameters: {getriebe.0.kv: 0}}", axes=["x"])
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert (str(copy), copy.problems) == (str(caught.value), caught.value.problems)
