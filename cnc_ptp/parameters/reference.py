@@ -27,12 +27,13 @@ Made by `python -m cnc_ptp.parameters.reference` from `cnc_ptp/parameters/declar
 
 A machine file is a ROS parameters file. `/machine` names the nodes, each node has a section:
 
-    /machine: {ros__parameters: {channels: [channel], axes: [x, y, z], spindles: [s]}}
+    /machine: {ros__parameters: {channels: [channel], axes: [x, "y", z], spindles: [s]}}
     /x: {ros__parameters: {kopf: {achs_nr: 1}, getriebe: {"0": {kv: 5000}}}}
 
 `getriebe[0].kv` of the lists is `getriebe: {"0": {kv: …}}` or `getriebe.0.kv` in the file and in ROS. Integers are
 decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that
 the file does not give has its default, cut to the limits that the file gives. All are read-only while a node runs.
+Quote the name "y": ROS reads a bare y (and n) as a boolean.
 
 The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
 Axis types: T linear, R rotary, S spindle. A range with an id in it ends at the value of that parameter.

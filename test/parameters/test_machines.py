@@ -17,6 +17,14 @@ def test_machines_load_without_warnings(path: Path) -> None:
     assert read_machine(path).warnings == ()
 
 
+@pytest.mark.parametrize("path", sorted(CONFIG.glob("*.yaml")), ids=lambda path: path.stem)
+def test_ros_reads_the_machines_too(path: Path) -> None:
+    rclpy = pytest.importorskip("rclpy")
+    context = rclpy.Context()
+    context.init(args=["--ros-args", "--params-file", str(path)])
+    context.shutdown()
+
+
 def test_mill() -> None:
     mill = read_machine(CONFIG / "mill.yaml")
     limits = {name: (axis.soft_limit_negative, axis.soft_limit_positive) for name, axis in mill.axes.items()}
