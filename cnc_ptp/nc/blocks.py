@@ -4,10 +4,11 @@ Two ways with the same result: a fast one for lines of nothing but letters with 
 else, which also finds the column of an error.
 """
 
+from collections.abc import Sequence
+
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source, number
-from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.lexer import PLAIN_LINE, PLAIN_WORD, SKIP, Token, bracket_words, normalise, tokens
+from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, bracket_words, normalise, tokens
 from cnc_ptp.nc.program import Block, GCode, MCode, SpindleWords
 from cnc_ptp.nc.vocabulary import (
     AXIS_LETTERS,
@@ -25,31 +26,33 @@ _PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
 _G_BY_TEXT = {text: code for number_, code in G_CODES.items() for text in (f"{number_}", f"{number_:02d}")}
 
 
-def plain_block(source: Source) -> Block | None:
+def plain_block(file: str, line: int, text: str) -> Block | None:
     """Fast way for a line of nothing but known letters with numbers and G codes; None if it needs a careful look."""
-    line = source.text.upper()
-    if PLAIN_LINE.fullmatch(line) is None or not line.isascii():
+    parts = PLAIN_WORDS.split(text.upper())
+    if len(parts) == 1 or "".join(parts[::3]) or not text.isascii():
         return None
     codes: tuple[GCode, ...] = ()
     words: dict[str, float] = {}
     functions = False
-    for letter, text in PLAIN_WORD.findall(line):
+    number_text = ""
+    for letter, value in zip(parts[1::3], parts[2::3], strict=True):
         if letter in _PLAIN_VALUES:
             if letter in words:
                 return None
-            words[letter] = float(text)
+            words[letter] = float(value)
             if letter in FUNCTION_WORDS:
                 functions = True
         elif letter == "G":
-            code = _G_BY_TEXT.get(text)
+            code = _G_BY_TEXT.get(value)
             if code is None or (codes and any(code.group == other.group for other in codes)):
                 return None
             codes += (code,)
-        elif letter == "N" and not codes and not words and source.block_number == 0 and text.isdigit():
-            source = Source(source.file, source.line, int(text), source.text)
+        elif letter == "N" and not (codes or words or number_text) and value.isdigit():
+            number_text = value
         else:
             return None
-    return Block(source, codes, words, functions=functions)
+    source = Source(file, line, int(number_text) if number_text else 0, text)
+    return Block(source, codes, words, (), (), None, "", "", 0, functions)
 
 
 def careful_block(source: Source) -> Block | None:
@@ -121,9 +124,7 @@ class _BlockWords:
         code = G_CODES.get(int(value)) if value == int(value) else None
         if code is None:
             raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
-        rival = next((other for other in self.codes if other.group == code.group), None)
-        if rival is not None:
-            raise self._same_group(token, rival.name, code.name, code.group)
+        self._check_group(token, code, self.codes)
         self.codes.append(code)
 
     def _m(self, token: Token) -> None:
@@ -131,13 +132,17 @@ class _BlockWords:
         code = m_code(int(value)) if value == int(value) else None
         if code is None:
             raise faults.UNKNOWN_M.at(self.source, token.column, word=token.shown)
-        rival = next((other for other in self.m if other.group == code.group), None)
-        if rival is not None:
-            raise self._same_group(token, rival.name, code.name, code.group)
+        self._check_group(token, code, self.m)
         self.m.append(code)
 
-    def _same_group(self, token: Token, first: str, second: str, group: str) -> ProgramError:
-        return faults.SAME_GROUP.at(self.source, token.column, first=first, second=second, group=group)
+    def _check_group(self, token: Token, code: GCode | MCode, before: Sequence[GCode | MCode]) -> None:
+        rival = next((other for other in before if other.group == code.group), None)
+        if rival is None:
+            return
+        if rival.number == code.number:
+            raise faults.TWICE.at(self.source, token.column, word=code.name)
+        names = {"first": rival.name, "second": code.name, "group": code.group}
+        raise faults.SAME_GROUP.at(self.source, token.column, **names)
 
     def _value(self, token: Token) -> None:
         value = float(token.text)

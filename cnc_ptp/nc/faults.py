@@ -17,8 +17,8 @@ class ProgramError(CncError):
     """
 
     def __init__(self, error_id: int, reason: str, source: Source, column: int) -> None:
-        where = f"{source.file} line {source.line} column {column}"
-        super().__init__(error_id, f"{where}: {reason} in '{source.text.strip()}'")
+        where = f"{source.file} line {source.line} column {column} '{source.text.strip()}'"
+        super().__init__(error_id, f"{where}: {reason}")
         self.reason = reason
         self.source = source
         self.file = source.file
@@ -53,6 +53,7 @@ NUMBER_WITHOUT_WORD = Fault(21005, "number '{word}' without a letter; only G04 t
 COMMAND_UNKNOWN = Fault(21006, "command '{word}' is not available")
 COMMENT_NOT_OPEN = Fault(21007, "')' closes a comment that was never opened")
 DUPLICATE_WORD = Fault(21008, "word {word} twice in one block: {first} and {second}")
+TWICE = Fault(21042, "{word} twice in one block")
 BLOCK_NUMBER_PLACE = Fault(21009, "block number {word} must be the first word of the block")
 NOT_AN_INTEGER = Fault(21010, "{word}{value} must be an integer from 0 to {limit}")
 SKIP_LEVEL = Fault(21011, "block skip /{level} must be /1 to /{limit}")
@@ -71,7 +72,7 @@ PROGRAM_NAME = Fault(21016, "'{word}' is not a program name")
 END_MISSING = Fault(21017, "{program} has no {end} at its end")
 RETURN_IN_MAIN = Fault(21018, "{word} ends a subroutine, but this is the main program")
 UNKNOWN_SUBROUTINE = Fault(21019, "unknown subroutine {name}; known are: {known}")
-CALL_DEPTH = Fault(21020, "subroutine {name} is the {depth}th nested call, the limit is {limit}")
+CALL_DEPTH = Fault(21020, "call of subroutine {name} at depth {depth}, the limit is {limit}")
 WORDS_AFTER_CALL = Fault(21542, "'{word}' behind a subroutine call")
 CALL_AND_END = Fault(21021, "subroutine call and {word} in one block")
 

@@ -41,13 +41,13 @@ def rotation(channel: Channel, state: ModalState, block: Block, code: MCode) -> 
     """M03, M04, M05 in DIN syntax: for the main spindle, with the block's S word."""
     name = main_spindle(channel, block, code.name)
     words = SpindleWords(name, code.number, block.words.get("S"))
-    return spindle_function(state, block, words, "S" if "S" in block.words else "M")
+    return spindle_function(state, block, words, "S" if "S" in block.words else code.name)
 
 
 def main_spindle(channel: Channel, block: Block, word: str) -> str:
     """Name of the main spindle."""
     if not channel.spindles:
-        raise faults.NO_SPINDLE.at(block.source, column_of(block.source, word[0]), word=word)
+        raise faults.NO_SPINDLE.at(block.source, column_of(block.source, word), word=word)
     return channel.spindles[0]
 
 
@@ -66,7 +66,7 @@ def spindle_function(state: ModalState, block: Block, words: SpindleWords, place
         return SpindleFunction(name, 5, None)
     stored = state.speeds.get(name)
     if stored is None:
-        column = column_of(block.source, place, m if place == "M" else None)
+        column = column_of(block.source, place)
         raise faults.SPEED_MISSING.at(block.source, column, m=f"{m:02d}", spindle=name)
     return SpindleFunction(name, m, stored)
 

@@ -16,10 +16,8 @@ MAX_DIGITS = 9
 _NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
 _NAME = r"[A-Z_][A-Z0-9_]*+"
 
-PLAIN_LINE = re.compile(rf"(?:\s*[A-Z]\s*=?\s*{_NUMBER}(?!\s*[=\[]|[\d.]))*+\s*", re.ASCII)
-"""A line that is nothing but letters with numbers: nearly every line of a long program."""
-
-PLAIN_WORD = re.compile(rf"([A-Z])\s*=?\s*({_NUMBER})", re.ASCII)
+PLAIN_WORDS = re.compile(rf"\s*([A-Z])\s*=?\s*({_NUMBER})\s*", re.ASCII)
+"""Splits a line into remainder, letter, number, remainder, ...; with all remainders empty the line is plain words."""
 
 _TOKEN = re.compile(
     rf"""\s*(?:
@@ -132,8 +130,10 @@ def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
     return faults.BAD_NUMBER if shown[0].isalnum() or shown[0] in "+-." else faults.UNEXPECTED_CHARACTER
 
 
-def column_of(source: Source, name: str, number: int | None = None) -> int:
-    """Column (1-based) of the first token with this name (and integer) in a line that was parsed before; else 1."""
+def column_of(source: Source, word: str) -> int:
+    """Column (1-based) of the first word of this name (X, S2) or of a G or M code (G01) in a parsed line; else 1."""
+    code = re.fullmatch(r"([GM])(\d+)", word)
+    name, number = (code[1], int(code[2])) if code else (word, None)
     line = normalise(source)
     skip = SKIP.match(line)
     for token in tokens(line, source, begin=skip.end() if skip else 0):

@@ -73,7 +73,7 @@ def straight(channel: Channel, state: ModalState, block: Block, code: GCode) -> 
 
 
 def _no_feed(block: Block, code: GCode) -> faults.ProgramError:
-    return faults.FEED_MISSING.at(block.source, column_of(block.source, "G", code.number), g=code.name)
+    return faults.FEED_MISSING.at(block.source, column_of(block.source, code.name), g=code.name)
 
 
 def circular(channel: Channel, state: ModalState, block: Block, code: GCode) -> CircularMove | None:
@@ -115,9 +115,8 @@ class _Arc:
             raise self._fault(faults.PLANE_AXIS_MISSING, g=f"G{self.state.plane}", needed=needed, known=known)
         return first, second
 
-    def _fault(self, fault: faults.Fault, place: str = "G", **values: object) -> faults.ProgramError:
-        wanted = self.code.number if place == "G" else None
-        return fault.at(self.block.source, column_of(self.block.source, place, wanted), **values)
+    def _fault(self, fault: faults.Fault, place: str = "", **values: object) -> faults.ProgramError:
+        return fault.at(self.block.source, column_of(self.block.source, place or self.code.name), **values)
 
     def by_centre(self, given: list[str]) -> CircularMove:
         """Centre from I, J, K: relative to the start (G162) or absolute (G161); a missing word is 0."""
@@ -168,8 +167,8 @@ class _Arc:
     def by_radius(self) -> CircularMove:
         """Centre from the last R; the sign chooses the arc below or above 180 degrees."""
         radius = self.state.radius
-        word = "R" if "R" in self.block.words else "G"
-        if radius == 0.0 and word == "G":
+        word = "R" if "R" in self.block.words else ""
+        if radius == 0.0 and not word:
             words = ", ".join(self.plane.centre_words)
             raise self._fault(faults.ARC_WITHOUT_CENTRE, g=self.code.name, words=words)
         if abs(radius) < arcs.RESOLUTION:
@@ -202,10 +201,10 @@ def dwell(channel: Channel, state: ModalState, block: Block, code: GCode) -> Dwe
         word = next(iter(times))
         raise faults.DWELL_TWICE.at(block.source, column_of(block.source, word), word=word)
     if block.direct is None and not times:
-        raise faults.DWELL_MISSING.at(block.source, column_of(block.source, "G", 4))
+        raise faults.DWELL_MISSING.at(block.source, column_of(block.source, code.name))
     seconds = block.direct if block.direct is not None else _seconds(channel, state, block, times)
     if seconds < 0.0:
-        raise faults.DWELL_NEGATIVE.at(block.source, column_of(block.source, "G", 4), value=number(seconds))
+        raise faults.DWELL_NEGATIVE.at(block.source, column_of(block.source, code.name), value=number(seconds))
     return Dwell(seconds)
 
 

@@ -14,7 +14,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.lexer import column_of, normalise
 from cnc_ptp.nc.program import Block, Program
 
-_HEADER = re.compile(r"\s*%(?P<local>L(?=\s))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
+_HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
 
 
 def parse_program(text: str, file: str, *, mdi: bool = False) -> Program:
@@ -68,23 +68,24 @@ class _Reader:
 
     def read(self, line: int, text: str) -> None:
         """Parses one line into the current section."""
-        if not text or text.isspace():
-            return
-        source = self.last = Source(self.file, line, 0, text.rstrip())
-        try:
-            if text.lstrip().startswith("%"):
-                self._header(source)
-                return
-            block = plain_block(source) or careful_block(source)
-        except ProgramError as error:
-            self.errors.append(error)
-            block = Block(source, (), {}, error=error)
+        block = plain_block(self.file, line, text.rstrip())
+        if block is None and text and not text.isspace():
+            source = self.last = Source(self.file, line, 0, text.rstrip())
+            try:
+                if text.lstrip().startswith("%"):
+                    self._header(source)
+                else:
+                    block = careful_block(source)
+            except ProgramError as error:
+                self.errors.append(error)
+                block = Block(source, (), {}, error=error)
         if block is not None:
             if self.current is None:
-                self.current = self._section("main program", "", source)
+                self.current = self._section("main program", "", block.source)
             self.current.blocks.append(block)
 
     def _header(self, source: Source) -> None:
+        """`%name` or `%L name`: begins a section."""
         normalise(source)
         match = _HEADER.match(source.text)
         assert match is not None
@@ -136,7 +137,7 @@ class _Reader:
         for index, block in enumerate(main.blocks):
             if block.flow == "return":
                 code = next(code for code in block.m if code.flow == "return")
-                column = column_of(block.source, "M", code.number)
+                column = column_of(block.source, code.name)
                 self._mark(main, index, faults.RETURN_IN_MAIN.at(block.source, column, word=code.name))
 
     def _mark(self, section: _Section, index: int, error: ProgramError) -> None:

@@ -1,0 +1,65 @@
+"""Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
+
+import pytest
+from nc_support import HERE, machine
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import format_block
+from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.parser import parse_program
+
+GOOD = sorted((HERE / "golden").glob("*.nc"))
+BAD = sorted((HERE / "bad").glob("*.nc"))
+
+
+def stream(text: str, file: str) -> list[str]:
+    axes, spindles = machine(text)
+    program = parse_program(text, file)
+    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_canonical_stream_is_the_golden_one(path):
+    expected = path.with_suffix(".txt").read_text().splitlines()
+    assert stream(path.read_text(), path.name) == expected
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_check_finds_nothing_in_good_programs(path):
+    text = path.read_text()
+    axes, spindles = machine(text)
+    assert check(text, path.name, axes, spindles) == []
+
+
+def test_example_bracket_gives_its_golden_stream():
+    path = HERE.parents[1] / "examples" / "bracket.nc"
+    expected = (HERE / "golden" / "bracket.txt").read_text().splitlines()
+    assert stream(path.read_text(), path.name) == expected
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
+def test_bad_program_raises_the_text_of_its_first_line(path):
+    text = path.read_text()
+    with pytest.raises(ProgramError) as caught:
+        stream(text, path.name)
+    assert str(caught.value) == text.split("\n")[0].removeprefix("; ")
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
+def test_check_finds_the_same_error(path):
+    text = path.read_text()
+    axes, spindles = machine(text)
+    found = [str(error) for error in check(text, path.name, axes, spindles)]
+    assert text.split("\n")[0].removeprefix("; ") in found
+
+
+def test_every_fault_has_a_bad_program():
+    known = {fault.error_id for fault in vars(faults).values() if isinstance(fault, Fault)}
+    shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
+    assert known == shown
+
+
+def test_fault_numbers_are_unique():
+    numbers = [fault.error_id for fault in vars(faults).values() if isinstance(fault, Fault)]
+    assert len(numbers) == len(set(numbers))
