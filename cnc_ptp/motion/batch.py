@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cnc_ptp.motion.limits import LARGEST_LIMIT, LARGEST_STATE, SMALLEST_LIMIT, Limits, check_limit, check_state
+from cnc_ptp.motion.limits import (
+    LARGEST_LIMIT,
+    LARGEST_STATE,
+    NEGLIGIBLE_WAY,
+    SMALLEST_LIMIT,
+    Limits,
+    check_limit,
+    check_state,
+)
 from cnc_ptp.motion.profile import Profile
 
 Floats = NDArray[np.float64]
@@ -74,6 +82,7 @@ def _reachable(distance: Floats, bound: Floats, j: Floats) -> Floats:
 def _plan(begin: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats, j: Floats) -> Floats:
     way = end - begin
     distance = np.abs(way)
+    distance[distance < NEGLIGIBLE_WAY] = 0.0
     s = np.copysign(1.0, way)
     v = velocity
     rise, rise_hold, rise_top = _ramp_shapes(v, up, j)
@@ -89,7 +98,8 @@ def _plan(begin: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats
         ramps = 2.0 * (rise[short] + fall[short]) + rise_hold[short] + fall_hold[short]
         cruise[short] = np.maximum(distance[short] - 0.5 * reduced * ramps, 0.0)
     rows = np.zeros((5, 8, len(way)))
-    phases = (rise, rise_hold, rise, cruise / v, fall, fall_hold, fall)
+    cruise /= np.where(v > 0.0, v, 1.0)
+    phases = (rise, rise_hold, rise, cruise, fall, fall_hold, fall)
     for phase, d in enumerate(phases):
         np.add(rows[0, phase], d, out=rows[0, phase + 1])
     _fill(rows, begin, end, s * v, s * j, phases, s * rise_top, s * fall_top)

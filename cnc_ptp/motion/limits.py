@@ -9,6 +9,8 @@ from cnc_ptp.errors import CncError
 SMALLEST_LIMIT = 1e-9
 LARGEST_LIMIT = 1e12
 LARGEST_STATE = 1e12
+NEGLIGIBLE_WAY = 1e-30
+"""mm; a way below this is none (its powers would leave the range of the numbers)."""
 
 
 class Limits(NamedTuple):

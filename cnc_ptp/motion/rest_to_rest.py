@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import cbrt, sqrt
 
-from cnc_ptp.motion.limits import Limits, check_limit, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limit, check_limits, check_state
 from cnc_ptp.motion.profile import Profile, Row
 
 
@@ -50,9 +50,14 @@ def plan_rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
     """
     check_limits(limits)
     check_state(start=start, target=target)
+    return rest_to_rest(start, target, limits)
+
+
+def rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
+    """`plan_rest_to_rest` for values that have been checked."""
     velocity, acceleration, deceleration, jerk = limits
     distance = abs(target - start)
-    if distance == 0.0:
+    if distance < NEGLIGIBLE_WAY:
         return Profile(((0.0, target, 0.0, 0.0, 0.0),))
     up, up_hold, up_top = _ramp_shape(velocity, acceleration, jerk)
     down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)

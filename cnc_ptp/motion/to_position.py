@@ -16,10 +16,10 @@ from __future__ import annotations
 
 from math import sqrt
 
-from cnc_ptp.motion.limits import Limits, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
 from cnc_ptp.motion.profile import Piece, Profile, Row, integrate
 from cnc_ptp.motion.ramp import NEGLIGIBLE, brake, brake_term, ramp, stop_way
-from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest
+from cnc_ptp.motion.rest_to_rest import rest_to_rest
 
 WAY_ROUNDING = 1e-13
 PLACE_ROUNDING = 4e-15
@@ -38,7 +38,7 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
     way = target - p
     stop = stop_way(v, a, deceleration, jerk)
     gap = way - stop
-    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)):
+    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_WAY:
         return _table(p, v, target, 1.0, [], ramp(v, a, 0.0, limits))
     s = 1.0 if gap > 0.0 else -1.0
     v *= s
@@ -53,7 +53,7 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
 def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
     """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target."""
     rows, t, p, _ = integrate(0.0, p, v, ramp(v, a, 0.0, limits))
-    back = plan_rest_to_rest(p, target, limits)
+    back = rest_to_rest(p, target, limits)
     return Profile(rows + [(t + row[0], *row[1:]) for row in back.rows])
 
 
