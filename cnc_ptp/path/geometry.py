@@ -95,6 +95,7 @@ class Line:
         feed           programmed path velocity, mm/s; inf for rapid traverse, where the axes alone decide
         override_max   largest factor on the feed that will be asked for
         """
+        _check_feed(feed)
         slopes = [abs(k) for _, k in self._axes]
         return _combine(feed * override_max, [_project(slopes, axes)])
 
@@ -216,6 +217,7 @@ class Arc:
         All are taken at the highest velocity, so that a later override within it needs no other limits; where the
         velocity is low against the radius they tend to those of a line. `feed`, `override_max` as for a line.
         """
+        _check_feed(feed)
         r = self.radius
         first, second = axes[self.plane[0]], axes[self.plane[1]]
         velocity = min(first.velocity, second.velocity)
@@ -256,14 +258,18 @@ def _combine(feed: float, parts: Sequence[Limits]) -> Limits:
 
     A path on which nothing moves gets the largest limits that planners take.
     """
-    if not feed > 0.0:
-        raise CncError(22103, f"path feed {feed!r} mm/s must be greater than 0; the motion is refused")
     return Limits(
         min(feed, LARGEST_LIMIT, *(part.velocity for part in parts)),
         min(LARGEST_LIMIT, *(part.acceleration for part in parts)),
         min(LARGEST_LIMIT, *(part.deceleration for part in parts)),
         min(LARGEST_LIMIT, *(part.jerk for part in parts)),
     )
+
+
+def _check_feed(feed: float) -> None:
+    """Refuse a feed that is not above 0 (inf is rapid traverse). Raises CncError 22103."""
+    if not feed > 0.0:
+        raise CncError(22103, f"path feed {feed!r} mm/s must be greater than 0; the motion is refused")
 
 
 def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
