@@ -18,7 +18,7 @@ import numpy.typing as npt
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
 from cnc_ptp.recording.layout import Layout, Records, fixed_layout
-from cnc_ptp.recording.schemas import Schema, load_schema
+from cnc_ptp.recording.schemas import PRIMITIVES, Schema, load_schema
 
 StateBlock = AxisBlock | SpindleBlock | ChannelBlock
 Cycles = npt.NDArray[np.uint64]
@@ -78,14 +78,29 @@ class Packer:
                 numbers += column
             return self._struct.pack(*numbers)
         except (struct.error, TypeError) as error:
-            raise CncError(
-                26006,
-                f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does "
-                f"not fit its message: {error}; it was not recorded",
-            ) from error
+            raise misfit(block, str(error)) from error
 
     def rows(self, packed: Iterable[bytes]) -> Records:
         return np.frombuffer(b"".join(packed), dtype=self.dtype)
+
+
+def misfit(block: Any, reason: str) -> CncError:
+    return CncError(
+        26006,
+        f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does not fit its "
+        f"message: {reason}; it was not recorded",
+    )
+
+
+def require_shape(kind: StateKind, block: StateBlock) -> None:
+    """Refuses blocks whose per-cycle fields do not hold `count` values, or whose setpoints differ in length (channel)."""
+    setpoints = len(block.set_position) if isinstance(block, ChannelBlock) else 0
+    for field in kind.block.fields:
+        if field.length is None or field.type not in PRIMITIVES:
+            continue
+        count = len(getattr(block, field.name))
+        if count != (block.count if field.name in kind.columns else setpoints):
+            raise misfit(block, f"{field.name} holds {count} values")
 
 
 class BlockLayout:

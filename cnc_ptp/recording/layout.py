@@ -68,10 +68,12 @@ class _Writer:
 
     def message(self, type_name: str, value: Any, prefix: str = "") -> None:
         for field in self.schema.types[type_name]:
-            if field.type == HEADER_TYPE and not hasattr(value, field.name):
-                content: Any = self.header_of(value)
+            if isinstance(value, Mapping):
+                content: Any = value[field.name]
+            elif field.type == HEADER_TYPE and not hasattr(value, field.name):
+                content = self.header_of(value)
             else:
-                content = value[field.name] if isinstance(value, Mapping) else getattr(value, field.name)
+                content = getattr(value, field.name)
             self.field(field, content, prefix + field.name)
 
     def field(self, field: Field, value: Any, name: str) -> None:

@@ -15,12 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Block, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, kind_of, set_stamps
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import Stamps, topic_of
 
-Replay = Callable[[Recorded], Iterable[tuple[str, StateBlock]]]
+Replay = Callable[[Recorded], Iterable[tuple[str, Block]]]
 BATCH_BLOCKS = 500
 FIRST_DIFFERENCES = 20
 
@@ -49,8 +50,8 @@ class Difference:
 class TopicResult:
     """What the comparison of one topic found.
 
-    `missing`: cycles that were computed but not recorded; `duplicated`: recorded more than once; `surplus`: recorded but
-    not computed.
+    `missing`: cycles that were computed but not recorded; `duplicated`: recorded more than once; `surplus`: recorded
+    but not computed.
     """
 
     topic: str
@@ -116,6 +117,7 @@ class VerifyResult:
 def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
     """Compares the recorded states with what `replay(recorded)` computes: pairs of unit name (or topic) and block.
 
+    PLC blocks among them are passed over, they have no per-cycle states.
     Raises CncError 26004 when the recording has no machine file or its states have other fields than those computed
     here. Of a file that was cut off, cycles after the last recorded one are not counted as missing.
     """
@@ -127,6 +129,8 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
         )
     checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
     for name, block in replay(recorded):
+        if isinstance(block, PlcBlock):
+            continue
         topic = state_topic(name)
         if topic not in checks:
             checks[topic] = _Check(topic, None, recorded)
@@ -177,8 +181,8 @@ class _Check:
             return
         raise CncError(
             26004,
-            f"recording {self.recorded.path}: {self.result.topic} has the fields {_names(self.rows)}, this version computes "
-            f"{', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that recorded it",
+            f"recording {self.recorded.path}: {self.result.topic} has the fields {_names(self.rows)}, this version "
+            f"computes {', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that recorded it",
         )
 
     def compare_batch(self) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import (
     AxisBlock,
+    Block,
     ChannelBlock,
     CommandRecord,
     CycleTick,
@@ -34,6 +35,7 @@ from cnc_ptp.recording.blocks import (
     cycles_of,
     fill_states,
     kind_of,
+    require_shape,
 )
 from cnc_ptp.recording.layout import Bytes, Header, encode, header_at, repeat
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
@@ -162,6 +164,7 @@ class _Unit:
     def encoders(self, key: Hashable, block: StateBlock) -> tuple[_Blocks, _States]:
         known = self._encoders.get(key)
         if known is None:
+            require_shape(self.kind, block)
             blocks = _Blocks(BlockLayout(self.kind.block, block))
             known = self._encoders[key] = blocks, _States(self.kind, block.count, blocks.packer)
         return known
@@ -205,6 +208,17 @@ class Recording:
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
         self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
 
+    def block(self, name: str, block: Block) -> None:
+        """Whatever unit it comes from: the block, and its per-cycle states if it has any."""
+        if isinstance(block, AxisBlock):
+            self.axis_block(name, block)
+        elif isinstance(block, SpindleBlock):
+            self.spindle_block(name, block)
+        elif isinstance(block, ChannelBlock):
+            self.channel_block(name, block)
+        else:
+            self.plc_block(block, name)
+
     # whole blocks with their states (offline)
 
     def axis_block(self, name: str, block: AxisBlock) -> None:
@@ -237,14 +251,13 @@ class Recording:
 
     def axis_block_message(self, name: str, block: AxisBlock) -> None:
         """`/<name>/block`."""
-        self._block(topic_of(name, "block"), "cnc_ptp/msg/AxisBlock", block, block.count)
+        self._block_alone(name, block)
 
     def spindle_block_message(self, name: str, block: SpindleBlock) -> None:
-        self._block(topic_of(name, "block"), "cnc_ptp/msg/SpindleBlock", block, block.count)
+        self._block_alone(name, block)
 
     def channel_block_message(self, name: str, block: ChannelBlock) -> None:
-        shape = None if block.commands or block.requests else _channel_shape(block)
-        self._block(topic_of(name, "block"), "cnc_ptp/msg/ChannelBlock", block, shape)
+        self._block_alone(name, block)
 
     def plc_block(self, block: PlcBlock, name: str = "plc") -> None:
         self._block(topic_of(name, "block"), "cnc_ptp/msg/PlcBlock", block, None if block.commands else "plc")
@@ -330,6 +343,10 @@ class Recording:
         if encoder is None:
             encoder = self._encoders[kind, block.count] = _States(kind, block.count, kind.packer(block.count))
         self._add_packed(topic_of(name, "state"), kind.state.name, encoder, block)
+
+    def _block_alone(self, name: str, block: StateBlock) -> None:
+        require_shape(kind_of(block), block)
+        self._block(topic_of(name, "block"), kind_of(block).block.name, block, None)
 
     def _block(self, topic: str, type_name: str, block: Any, shape: Hashable) -> None:
         """`shape`: None for blocks that hold more than numbers at known places."""
