@@ -136,3 +136,8 @@ def test_batch_takes_plain_numbers_for_all():
     batch = plan_rest_to_rest_batch(0.0, [1000.0, 800.0], 2000.0, 5000.0, 5000.0, 50000.0)
     assert batch.duration[0] == pytest.approx(1.0, rel=1e-14)
     assert batch.duration[1] == pytest.approx(PRINTED["3.3"][2], rel=1e-14)
+
+
+def test_batch_in_which_every_velocity_is_reached():
+    batch = plan_rest_to_rest_batch(0.0, [3000.0, -3000.0], 2000.0, 5000.0, 5000.0, 50000.0)
+    assert batch.duration == pytest.approx([2.0, 2.0], rel=1e-14)
