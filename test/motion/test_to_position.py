@@ -168,7 +168,7 @@ def test_planning_again_while_braking_does_not_reverse_far_from_zero():
 
 
 def test_solvers_stay_in_their_brackets_at_a_vanishing_slope():
-    """The slope is 0 where √q = 0 in the free equation and a = -A- in the bounded one; a target behind leaves at once."""
+    """The slope is 0 where √q = 0 in the free equation and a = -A- in the bounded one; a target behind ends it."""
     assert to_position._solve_free(2.0, 2.0, -4.0, -8.0) == 2.0
     assert to_position._solve_bounded(-3.0, -3.0, 9.0, 0.0, 3.0) == -3.0
     assert to_position._leave_at_constant_acceleration(10.0, 5.0, 4.0, -90.0, 8.0, 100.0) == 508.0
