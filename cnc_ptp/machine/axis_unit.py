@@ -10,7 +10,7 @@ from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, ChannelBlock, CycleTick, Severity, StatusBit
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.motion import Limits
 from cnc_ptp.parameters import AxisParameters
 
@@ -22,7 +22,6 @@ BELOW_INCREMENT = 23007
 STILL_MOVING = 23008
 PATH_NOT_ACCEPTED = 23009
 ENABLE_REMOVED = 23010
-UPSTREAM_LOST = 26001
 SOFT_LIMIT_NEGATIVE = 120003
 SOFT_LIMIT_POSITIVE = 120002
 FOLLOWING_ERROR = 0x4550
@@ -142,7 +141,7 @@ class AxisUnit(Unit):
             self._cycle(first_cycle + index, path[index] if path and self._state == S.SYNCHRONIZED_MOTION else None)
             for index in range(count)
         ]
-        return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))  # type: ignore[arg-type]
+        return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
 
     def _cycle(self, cycle: int, path: State | None) -> tuple[float | int, ...]:
         setpoint = path or self._ptp.state(cycle)

@@ -128,7 +128,7 @@ class CycleTick(NamedTuple):
     """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
 
     first_cycle: int
-    count: int
+    count: int  # type: ignore[assignment]  # tuple.count is not wanted here
 
 
 @dataclass(slots=True)

@@ -25,7 +25,7 @@ from cnc_ptp.machine.blocks import (
 )
 from cnc_ptp.machine.function_output import FunctionOutput, Outputs, Wait
 from cnc_ptp.machine.program_check import ProgramCheck
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove, Source
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Program
@@ -41,7 +41,6 @@ NOTHING_TO_ACKNOWLEDGE = 22007
 STILL_MOVING = 22008
 NO_TEXT = 22009
 MEMBER_IN_ERROR = 22012
-UPSTREAM_LOST = 26001
 
 C = ChannelStateCode
 NO_SOURCE = Source("", 0, 0, "")
@@ -216,15 +215,14 @@ class ChannelUnit(Unit):
         by_axis = [state for axis in zip(*axes, strict=True) for state in axis]
         position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
         return ChannelBlock(
-            tick.first_cycle,
-            tick.count,
+            *tick,
             path_active,
             self._axis_nodes,
             position,
             velocity,
             acceleration,
             jerk,
-            *map(list, columns),  # type: ignore[arg-type]
+            **dict(zip(Row._fields[1:], map(list, columns), strict=True)),
             done=self._phase is Phase.IDLE,
             blocks_done=self._next_block,
             blocks_total=len(self._blocks),

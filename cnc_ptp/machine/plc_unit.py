@@ -21,10 +21,9 @@ from cnc_ptp.machine.blocks import (
     StatusBit,
 )
 from cnc_ptp.machine.scenario import Entry
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 
 NOTHING_TO_ACKNOWLEDGE = 22101
-UPSTREAM_LOST = 26001
 SETTLING_TIME = 0.2
 """Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Source, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import CheckTarget, interpret
+from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
+from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Program
-from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
+from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters
 
 SOFT_LIMIT_POSITIVE = 120002
 SOFT_LIMIT_NEGATIVE = 120003
 SPINDLE_TOO_FAST = 22010
 UNKNOWN_M_FUNCTION = 22011
+NO_CHANNEL = 26112
 DEG_S_PER_RPM = 6.0
 
 
@@ -36,6 +39,38 @@ class ProgramCheck:
         main = [spindle.name for spindle in channel.spindles if spindle.name == channel.main_spindle]
         others = [spindle.name for spindle in channel.spindles if spindle.name != channel.main_spindle]
         self._spindle_names = tuple(main + others)
+
+    @classmethod
+    def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
+        """For the first channel of a machine. Raises CncError 26112 when it has none to run `file`."""
+        if not machine.channels:
+            raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
+        return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
+
+    def errors(self, text: str, file: str) -> list[ProgramError]:
+        """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
+        return check(
+            text,
+            file,
+            self._axis_names,
+            self._spindle_names,
+            start=self.start,
+            check_target=self.target,
+            centre_offset=self._channel.circle_center_tolerance,
+            centre_offset_ratio=self._channel.circle_center_ratio,
+        ) or self._function_errors(text, file)
+
+    def _function_errors(self, text: str, file: str) -> list[ProgramError]:
+        try:
+            self.blocks(parse_program(text, file), self.start)
+        except ProgramError as error:
+            return [error]
+        return []
+
+    @property
+    def start(self) -> tuple[float, ...]:
+        """Start positions of the channel's axes, mm."""
+        return tuple(axis.start_position for axis in self._axes)
 
     def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
         """All blocks from `start` (mm, in the order of the channel's axes). Raises ProgramError; then `state` is void."""

@@ -9,7 +9,7 @@ from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.motion import Profile
 from cnc_ptp.parameters import SpindleParameters
 from cnc_ptp.spindle.speed_ramp import plan_speed
@@ -19,7 +19,6 @@ SPEED_TOO_HIGH = 24002
 NOT_READY = 24003
 STILL_TURNING = 24004
 BAD_OVERRIDE = 24005
-UPSTREAM_LOST = 26001
 FOLLOWING_ERROR = 0x4550
 AGAINST_PREFERRED_DIRECTION = 60254
 
@@ -51,7 +50,7 @@ class SpindleUnit(Unit):
             encoder_increment=parameters.encoder_increment,
         )
         self._origin = 0
-        self._profile = plan_speed(0.0, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
+        self._profile: Profile = plan_speed(0.0, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
         self._commanded_speed = 0.0
         self._override_percent = 100.0
         self._mode = SpindleMode.STOP
@@ -116,7 +115,7 @@ class SpindleUnit(Unit):
         """Computes one block; a spindle is moved by commands alone."""
         first_cycle, count = tick
         rows = [self._cycle(first_cycle + index) for index in range(count)]
-        return SpindleBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))  # type: ignore[arg-type]
+        return SpindleBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
 
     def _cycle(self, cycle: int) -> tuple[float | int | bool, ...]:
         drive = self._drive
@@ -165,7 +164,7 @@ class SpindleUnit(Unit):
     def _ramp(self, cycle: int) -> None:
         position, speed, _, _ = self._setpoint(cycle)
         self._origin = cycle
-        self._profile: Profile = plan_speed(
+        self._profile = plan_speed(
             position,
             speed,
             self._wanted_speed(),

@@ -12,6 +12,9 @@ from cnc_ptp.machine.commands import check_command
 
 Handler = Callable[..., str | None]
 
+UPSTREAM_LOST = 26101
+"""A unit that is needed has sent nothing within the watchdog time."""
+
 
 class Unit(ABC):
     """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.

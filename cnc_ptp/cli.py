@@ -1,0 +1,140 @@
+"""The command line. Exit status: 0 done, 1 the run ended in an error, 2 wrong usage or input."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import click
+from rich.console import Console
+
+from cnc_ptp.errors import CncError
+
+RUN_FAILED = 1
+WRONG_INPUT = 2
+
+MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
+RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+
+
+def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Options that offline run and graph share."""
+    for option in (
+        click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
+        click.option("--duration", type=click.FloatRange(min=0.0), help="Seconds; without it the run ends by itself."),
+        click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
+        MACHINE,
+    ):
+        function = option(function)
+    return function
+
+
+class Group(click.Group):
+    """Prints a refusal as one text and ends with status 2, without a traceback."""
+
+    def invoke(self, context: click.Context) -> Any:
+        try:
+            return super().invoke(context)
+        except CncError as error:
+            print_error(error)
+            sys.exit(WRONG_INPUT)
+
+
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="cnc_ptp")
+def main() -> None:
+    """CNC and axis kernel: run NC programs and PLC scenarios offline or as a ROS 2 graph, record, replay, report."""
+
+
+@main.command("simulate")
+@run_options
+def simulate_command(**options: Any) -> None:
+    """Run a machine offline, as fast as possible."""
+    from cnc_ptp.commands.simulate import simulate
+
+    sys.exit(simulate(**options))
+
+
+@main.command("run")
+@run_options
+@click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
+@click.option("--composed", is_flag=True, help="All nodes in one process.")
+def run_command(**options: Any) -> None:
+    """Run a machine as a ROS graph, one process a node, until the job is done."""
+    from cnc_ptp.commands.run import run
+
+    sys.exit(run(**options))
+
+
+@main.command("check")
+@click.argument("program", type=click.Path(dir_okay=False))
+@click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
+def check_command(**options: Any) -> None:
+    """Check an NC program: syntax and modal states, errors with line and column."""
+    from cnc_ptp.commands.check import check
+
+    sys.exit(check(**options))
+
+
+@main.command("replay")
+@RECORDING
+@click.option("--verify", is_flag=True, help="Re-run the kernel and compare every setpoint to the bit (the default).")
+@click.option("--publish", is_flag=True, help="Put the recorded topics back on the graph.")
+@click.option(
+    "--rate", type=click.FloatRange(min=0.0, min_open=True), default=1.0, show_default=True, help="Speed of --publish."
+)
+def replay_command(**options: Any) -> None:
+    """Re-run the kernel from a recording, or publish the recording again."""
+    from cnc_ptp.commands.replay import replay
+
+    sys.exit(replay(**options))
+
+
+@main.command("report")
+@RECORDING
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
+def report_command(**options: Any) -> None:
+    """Make one self-contained HTML page of a recording: plots, events, errors, statistics."""
+    from cnc_ptp.commands.report import report
+
+    sys.exit(report(**options))
+
+
+@main.command("params")
+@click.argument("name", required=False)
+def params_command(name: str | None) -> None:
+    """Show the parameter reference: all of it, or one parameter by ID (P-AXIS-00099) or name."""
+    from cnc_ptp.commands.params import params
+
+    sys.exit(params(name))
+
+
+def print_error(error: CncError) -> None:
+    """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console.print(str(error), style="red", markup=False)
+    caret = getattr(error, "caret", "")
+    if caret:
+        console.print(caret, markup=False)
+
+
+def _entry(command: click.Command) -> Callable[[], Any]:
+    """A command of its own, so that `ros2 run cnc_ptp simulate ...` serves the same."""
+
+    def call() -> Any:
+        return main.main(args=[command.name or "", *sys.argv[1:]], prog_name="cnc_ptp")
+
+    return call
+
+
+simulate = _entry(simulate_command)
+run = _entry(run_command)
+check = _entry(check_command)
+replay = _entry(replay_command)
+report = _entry(report_command)
+params = _entry(params_command)
+
+if __name__ == "__main__":
+    main()

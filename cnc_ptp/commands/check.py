@@ -1,0 +1,29 @@
+"""`cnc_ptp check`: an NC program's errors with line and column."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cnc_ptp.cli import WRONG_INPUT, print_error
+from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.program_check import ProgramCheck
+from cnc_ptp.nc.interpreter import check as check_text
+from cnc_ptp.parameters import read_machine
+
+AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
+SPINDLES_WITHOUT_MACHINE = ("S",)
+
+
+def check(program: str, machine: str | None) -> int:
+    """Prints all syntax errors and the first modal one; without a machine, axes X Y Z and spindle S are taken."""
+    text = read_file("NC program", program)
+    if machine is None:
+        errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE)
+    else:
+        parameters = read_machine(machine)
+        errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program)
+    for error in errors:
+        print_error(error)
+    if not errors:
+        print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
+    return WRONG_INPUT if errors else 0

@@ -1,0 +1,73 @@
+"""`cnc_ptp run`: the ROS graph, until the job is done."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.commands.progress import RunProgress
+from cnc_ptp.commands.simulate import print_faults
+from cnc_ptp.machine.job import read_job
+from cnc_ptp.nodes.composed import run_composed
+from cnc_ptp.nodes.monitor import RunMonitor
+from cnc_ptp.nodes.recorder import require_writable
+from cnc_ptp.nodes.supervisor import Job, Supervisor
+from cnc_ptp.parameters import MachineParameters, read_machine
+
+
+def run(
+    machine: str,
+    program: str | None,
+    scenario: str | None,
+    duration: float | None,
+    record: str | None,
+    free_run: bool,
+    composed: bool,
+) -> int:
+    """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died."""
+    parameters = read_machine(machine)
+    read_job(parameters, program=program, scenario=scenario)
+    if record is not None:
+        require_writable(record)
+    job = Job(machine, program, scenario, duration, record, free_run)
+    with RunProgress() as progress:
+
+        def show(monitor: RunMonitor) -> None:
+            at = monitor.progress
+            progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
+
+        if composed:
+            monitor, failures = run_composed(parameters, job, show=show), []
+        else:
+            supervisor = Supervisor(parameters, job, show=show)
+            monitor, failures = supervisor.run(), supervisor.failures
+    print_summary(parameters, monitor, failures)
+    return RUN_FAILED if failures or monitor.run_failed else 0
+
+
+def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: list[str]) -> None:
+    console = Console(highlight=False, soft_wrap=True)
+    cycle_time = machine.cycle_time_us * 1e-6
+    cycles = monitor.progress.cycle
+    console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
+    console.print(f"program time {monitor.progress.program_cycles * cycle_time:.3f} s")
+    total = {
+        key: sum(int(node[key]) for node in monitor.diagnostics.values())
+        for key in ("blocks", "lost_blocks", "duplicates")
+    }
+    console.print(
+        f"blocks {total['blocks']} in {len(monitor.diagnostics)} nodes, lost {total['lost_blocks']}, computed twice {total['duplicates']}"
+    )
+    for name, values in monitor.diagnostics.items():
+        if "following_error_max" in values:
+            unit = "deg" if machine.axes[name].rotary else "mm"
+            console.print(f"largest following error {name}: {float(values['following_error_max']):.4f} {unit}")
+    lateness = monitor.lateness()
+    if lateness.counts:
+        p50, p99 = lateness.percentile_us(50.0) / 1000.0, lateness.percentile_us(99.0) / 1000.0
+        console.print(
+            f"block lateness p50 {p50:.1f} ms, p99 {p99:.1f} ms, largest {lateness.largest_us / 1000.0:.1f} ms"
+        )
+    for text in failures:
+        console.print(f"failed: {text}", style="bold red", markup=False)
+    print_faults(console, monitor.errors, monitor.refusals)

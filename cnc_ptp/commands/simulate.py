@@ -1,0 +1,108 @@
+"""`cnc_ptp simulate`: the offline run."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+
+from rich.console import Console
+
+from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.commands.progress import RunProgress
+from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, CycleTick, PlcBlock, Severity
+from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.recording.writer import Recording
+
+
+@dataclass
+class Result:
+    """What is told at the end of a run."""
+
+    cycles: int = 0
+    program_cycles: int = 0
+    failed: bool = False
+    following_errors: dict[str, float] = field(default_factory=Counter)
+    errors: list[str] = field(default_factory=list)
+    refusals: list[str] = field(default_factory=list)
+
+    def add(self, outputs: Outputs) -> None:
+        for name, output in outputs.items():
+            block = output.block
+            if isinstance(block, AxisBlock):
+                largest = max(max(block.following_error), -min(block.following_error))
+                self.following_errors[name] = max(self.following_errors[name], largest)
+            elif isinstance(block, ChannelBlock):
+                self.program_cycles += block.count if block.path_active else 0
+            elif isinstance(block, PlcBlock):
+                self.cycles = block.first_cycle + block.count
+                self.failed = block.run_failed
+            self.errors += [
+                f"P-ERR-{event.error_id} {event.text}" for event in output.events if event.severity == Severity.ERROR
+            ]
+            self.refusals += [
+                f"P-ERR-{record.error_id} {record.message}" for record in output.records if not record.accepted
+            ]
+
+
+def simulate(
+    machine: str, program: str | None, scenario: str | None, duration: float | None, record: str | None
+) -> int:
+    """Runs offline; prints a summary. Status 1 when a unit ended in error."""
+    parameters = read_machine(machine)
+    job = read_job(parameters, program=program, scenario=scenario)
+    offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
+    cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
+    result = Result()
+    started = time.monotonic()
+    with ExitStack() as stack:
+        progress = stack.enter_context(RunProgress())
+        recording = None
+        if record is not None:
+            recording = stack.enter_context(
+                Recording(record, read_file("machine file", machine), 0, parameters.cycle_time_us * 1000)
+            )
+        for outputs in offline.run(cycles=cycles):
+            result.add(outputs)
+            progress.show_block(outputs)
+            if recording is not None:
+                write(recording, outputs)
+    print_summary(parameters, result, time.monotonic() - started)
+    return RUN_FAILED if result.failed else 0
+
+
+def write(recording: Recording, outputs: Outputs) -> None:
+    """Records what all units gave for one tick."""
+    plc = outputs[PLC].block
+    recording.tick(CycleTick(plc.first_cycle, plc.count))
+    for name, output in outputs.items():
+        recording.block(name, output.block)
+        for event in output.events:
+            recording.event(event)
+        for record in output.records:
+            recording.command(record)
+
+
+def print_summary(machine: MachineParameters, result: Result, wall_seconds: float) -> None:
+    cycle_time = machine.cycle_time_us * 1e-6
+    console = Console(highlight=False, soft_wrap=True)
+    seconds = result.cycles * cycle_time
+    console.print(
+        f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: {seconds / max(wall_seconds, 1e-9):.0f} times real time"
+    )
+    console.print(f"program time {result.program_cycles * cycle_time:.3f} s")
+    for axis, error in result.following_errors.items():
+        console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
+    print_faults(console, result.errors, result.refusals)
+
+
+def print_faults(console: Console, errors: list[str], refusals: list[str]) -> None:
+    """Errors and refused commands of a run."""
+    for text in errors:
+        console.print(f"error: {text}", style="red", markup=False)
+    for text in refusals:
+        console.print(f"refused: {text}", style="yellow", markup=False)

@@ -1,0 +1,93 @@
+"""The gate of a unit: holds ticks and blocks back until all that one block of cycles needs is there. Knows no transport."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from cnc_ptp.machine.blocks import Block, CycleTick
+from cnc_ptp.machine.wiring import Inputs
+
+CLOCK = "clock"
+
+
+class BlockGate:
+    """Collects ticks and blocks in any order of arrival; gives out one computation after the other in the order of cycles.
+
+    A source whose needed block was skipped (a later one came) or that its watchdog gave up is dropped for good.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        self._upstream = list(inputs.upstream)
+        self._feedback = list(inputs.feedback)
+        self._blocks: dict[str, dict[int, Block]] = {name: {} for name in (*inputs.upstream, *inputs.feedback)}
+        self._ticks: deque[CycleTick] = deque()
+        self._next_cycle = 0
+        self.closed = False
+        """True: no more block is computed (the run is over)."""
+        self.duplicates = 0
+        """Ticks and blocks that came a second time and were not used again."""
+
+    def add_tick(self, tick: CycleTick) -> bool:
+        """Takes a tick; False when ticks before it are missing."""
+        expected = self._ticks[-1].first_cycle + self._ticks[-1].count if self._ticks else self._next_cycle
+        if tick.first_cycle < expected:
+            self.duplicates += 1
+            return True
+        self._ticks.append(tick)
+        return tick.first_cycle == expected
+
+    def add_block(self, source: str, block: Block) -> None:
+        """Takes a block of an upstream or feedback unit; blocks of dropped sources are ignored."""
+        waiting = self._blocks.get(source)
+        if waiting is None:
+            return
+        if block.first_cycle in waiting or block.first_cycle + block.count < self._next_cycle:
+            self.duplicates += 1
+            return
+        waiting[block.first_cycle] = block
+
+    def missing(self) -> list[str]:
+        """Sources that the next tick waits for; [clock] when no tick is there; empty when it can be computed."""
+        if not self._ticks:
+            return [CLOCK]
+        tick = self._ticks[0]
+        before = tick.first_cycle - tick.count
+        missing = [name for name in self._upstream if tick.first_cycle not in self._blocks[name]]
+        if before >= 0:
+            missing += [name for name in self._feedback if before not in self._blocks[name]]
+        return missing
+
+    def skipped(self) -> list[str]:
+        """Of the missing sources, those that have sent a later block already: the needed one is lost."""
+        if not self._ticks:
+            return []
+        tick = self._ticks[0]
+        needed = {name: tick.first_cycle for name in self._upstream}
+        needed |= {name: tick.first_cycle - tick.count for name in self._feedback}
+        return [name for name in self.missing() if any(cycle > needed[name] for cycle in self._blocks[name])]
+
+    def take(self) -> tuple[CycleTick, dict[str, Block]] | None:
+        """The next tick with its inputs, in the order of the wiring; None while something is missing."""
+        if self.closed or self.missing():
+            return None
+        tick = self._ticks.popleft()
+        inputs = {name: self._blocks[name].pop(tick.first_cycle) for name in self._upstream}
+        before = tick.first_cycle - tick.count
+        inputs |= {name: self._blocks[name].pop(before) for name in self._feedback if before >= 0}
+        self._next_cycle = tick.first_cycle + tick.count
+        return tick, inputs
+
+    def drop(self, source: str) -> None:
+        """Goes on without `source` from now on."""
+        self._upstream = [name for name in self._upstream if name != source]
+        self._feedback = [name for name in self._feedback if name != source]
+        self._blocks.pop(source, None)
+
+    @property
+    def next_cycle(self) -> int:
+        """First cycle of the next block to be computed."""
+        return self._next_cycle
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        return tuple(self._blocks)

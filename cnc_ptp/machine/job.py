@@ -1,0 +1,52 @@
+"""The job of a run: an NC program and a scenario, read and checked before anything starts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.program_check import ProgramCheck
+from cnc_ptp.machine.scenario import Entry, parse_scenario
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.parameters import MachineParameters
+
+UNREADABLE = 26110
+
+
+def read_job(machine: MachineParameters, *, program: str | None, scenario: str | None) -> list[Entry]:
+    """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
+
+    Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
+    """
+    entries: list[Entry] = []
+    if program is not None:
+        text = read_file("NC program", program)
+        check_program(machine, text, program)
+        channel = next(iter(machine.channels))
+        entries.append(Entry(0.0, Command(channel, "load", {"program": program, "text": text})))
+        entries.append(Entry(0.0, Command(channel, "start", {})))
+    if scenario is not None:
+        folder = Path(scenario).parent
+        text = read_file("scenario", scenario)
+        entries += parse_scenario(
+            text, scenario, unit_kinds(machine), lambda path: read_file("NC program", str(folder / path))
+        )
+    return sorted(entries, key=lambda entry: entry.at)
+
+
+def check_program(machine: MachineParameters, text: str, file: str) -> None:
+    """Interprets a program for the first channel as if it were started from the start positions. Raises ProgramError, 26112."""
+    check = ProgramCheck.of_first_channel(machine, file)
+    check.blocks(parse_program(text, file), check.start)
+
+
+def read_file(what: str, path: str) -> str:
+    """Text of a file. Raises CncError 26110."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}; nothing was started") from None
+    except UnicodeDecodeError:
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text; nothing was started") from None

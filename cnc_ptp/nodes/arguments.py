@@ -1,0 +1,45 @@
+"""Command line of the unit nodes: `axis MACHINE.yaml x`; also under `ros2 run` and `ros2 launch` (ROS arguments pass)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import click
+from rclpy.utilities import remove_ros_args
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.parameters import MachineParameters
+
+MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
+NAME = click.argument("name")
+FREE_RUN = click.option(
+    "--free-run", is_flag=True, help="Report every block, so that the clock runs as fast as all can."
+)
+RECORDERS = click.option(
+    "--recorders", default=0, show_default=True, help="Recorders that must have found the blocks first."
+)
+
+
+def unit_command(function: Callable[..., Any]) -> click.Command:
+    """A command with the arguments that every unit node has."""
+    for decorate in (RECORDERS, FREE_RUN, NAME, MACHINE):
+        function = decorate(function)
+    return click.command()(function)
+
+
+def call(command: click.Command) -> None:
+    """Runs a node's command with the process arguments less those for ROS."""
+    command.main(args=remove_ros_args(sys.argv)[1:])
+
+
+def require_unit(machine: MachineParameters, name: str, kinds: Iterable[str]) -> None:
+    """Raises CncError 26111 when the machine has no unit `name` of these kinds."""
+    units = unit_kinds(machine)
+    if units.get(name) not in kinds:
+        known = ", ".join(unit for unit, kind in units.items() if kind in kinds) or "none"
+        raise CncError(
+            26111, f"the machine has no {' or '.join(kinds)} '{name}'; the node does not start. Known: {known}"
+        )

@@ -1,0 +1,67 @@
+"""`axis MACHINE.yaml NAME`: the node of one axis with position controller and drive."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any
+
+from sensor_msgs.msg import JointState
+
+from cnc_ptp.machine.blocks import AxisBlock, Block
+from cnc_ptp.machine.wiring import build_unit
+from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes.topics import JOINT_STATES, PLC_INPUT
+from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
+from cnc_ptp.parameters import MachineParameters, read_machine
+
+JOINT_STATE_HZ = 50.0
+
+
+class AxisNode(UnitNode):
+    """UnitNode of an axis; also publishes /joint_states (sensor_msgs/JointState, m or rad, about 50 Hz)."""
+
+    def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
+        arguments.require_unit(machine, name, ["axis"])
+        super().__init__(machine, build_unit(machine, name), **options)
+        self._following_error = 0.0
+        self._to_si = math.pi / 180.0 if machine.axes[name].rotary else 1e-3
+        block_time = machine.block_cycles * machine.cycle_time_us * 1e-6
+        self._joint_blocks = max(1, round(1.0 / (JOINT_STATE_HZ * block_time)))
+        self._joint_publisher = self.create_publisher(JointState, JOINT_STATES, PLC_INPUT)
+
+    def after_block(self, block: Block) -> None:
+        if not isinstance(block, AxisBlock):
+            return
+        self._following_error = max(self._following_error, max(block.following_error), -min(block.following_error))
+        if block.first_cycle // block.count % self._joint_blocks:
+            return
+        message = JointState(name=[self.unit.name])
+        message.header.stamp = self.stamp(block.first_cycle + block.count - 1)
+        message.position = [block.actual_position[-1] * self._to_si]
+        message.velocity = [block.actual_velocity[-1] * self._to_si]
+        self._joint_publisher.publish(message)
+
+    def extra_diagnostics(self) -> dict[str, object]:
+        return {"following_error_max": self._following_error}
+
+
+@arguments.unit_command
+def command(machine: str, name: str, free_run: bool, recorders: int) -> None:
+    """Runs the axis NAME of MACHINE as a ROS node."""
+
+    def make() -> AxisNode:
+        parameters = read_machine(machine)
+        return AxisNode(
+            parameters, name, consumers=consumers_of(parameters, name, recorders=recorders), free_run=free_run
+        )
+
+    sys.exit(process.run_node(make))
+
+
+def main() -> None:
+    arguments.call(command)
+
+
+if __name__ == "__main__":
+    main()

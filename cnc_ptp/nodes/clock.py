@@ -1,0 +1,147 @@
+"""`clock MACHINE.yaml`: issues the ticks, paced by the wall or as fast as every node reports back (free run)."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import click
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, TICK, block_topic
+from cnc_ptp.parameters import MachineParameters, read_machine
+
+POLL = 0.02
+FAREWELL = 0.3
+"""Seconds between the last tick and the end of the clock, so that the last messages arrive."""
+
+
+class ClockNode(Node):
+    """The clock of the graph.
+
+    Publishes /clock/tick (CycleTick). Subscriptions: /heartbeat (BlockReport), /plc/block (PlcBlock, for the end).
+    Starts when every expected node has said that it is ready; ends when the PLC ends the run or after `duration`.
+    A node that is silent for the watchdog time no longer holds up a free run.
+    """
+
+    def __init__(self, machine: MachineParameters, *, recorders: int, free_run: bool, cycles: int | None) -> None:
+        super().__init__("clock", enable_rosout=False)
+        self._expected = {*unit_kinds(machine), *(["recorder"] if recorders else [])}
+        self._free_run = free_run
+        self._cycles = cycles
+        self._count = machine.block_cycles
+        self._cycle_ns = machine.cycle_time_us * 1000
+        self._block_time = machine.block_cycles * machine.cycle_time_us * 1e-6
+        self._watchdog = machine.watchdog_ms / 1000.0
+        self._first_cycle = 0
+        self._ready: set[str] = set()
+        self._open: set[str] = set()
+        self._heard: dict[str, float] = {}
+        self._started_at: float | None = None
+        self._start_ns = 0
+        self._ended_at: float | None = None
+        self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
+        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_report, BLOCKS)
+        self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+
+    @property
+    def done(self) -> bool:
+        return self._ended_at is not None and time.monotonic() - self._ended_at > FAREWELL
+
+    def wait_time(self) -> float:
+        """Seconds until there is something to do without a message."""
+        if self._started_at is None or self._ended_at is not None or self._free_run:
+            return POLL
+        return max(0.0, self._due_at() - time.monotonic())
+
+    def advance(self) -> None:
+        """Issues the ticks that are due."""
+        if self._ended_at is not None:
+            return
+        if self._started_at is None:
+            self._start_when_ready()
+        elif self._free_run:
+            self._drop_silent_nodes()
+            if not self._open:
+                self._tick(0)
+        else:
+            while self._ended_at is None and time.monotonic() >= self._due_at():
+                self._tick(int(self._due_at() * 1e9))
+
+    def _due_at(self) -> float:
+        return (self._started_at or 0.0) + self._first_cycle // self._count * self._block_time
+
+    def _start_when_ready(self) -> None:
+        if self._expected <= self._ready and self._publisher.get_subscription_count() >= len(self._expected):
+            self._start_ns = time.time_ns()
+            self._started_at = time.monotonic() + self._block_time
+
+    def _tick(self, scheduled_ns: int) -> None:
+        if self._cycles is not None and self._first_cycle >= self._cycles:
+            self._end()
+            return
+        tick = msg.CycleTick(first_cycle=self._first_cycle, count=self._count, scheduled_monotonic_ns=scheduled_ns)
+        tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
+        self._publisher.publish(tick)
+        self._first_cycle += self._count
+        if self._free_run:
+            self._open = set(self._expected)
+            self._heard = dict.fromkeys(self._expected, time.monotonic())
+
+    def _on_report(self, message: msg.BlockReport) -> None:
+        if message.first_cycle < 0:
+            self._ready.add(message.source)
+        elif message.source in self._heard:
+            self._heard[message.source] = time.monotonic()
+            if message.first_cycle == self._first_cycle - self._count:
+                self._open.discard(message.source)
+                self.advance()
+
+    def _drop_silent_nodes(self) -> None:
+        now = time.monotonic()
+        silent = {name for name in self._open if now - self._heard[name] > self._watchdog}
+        self._expected -= silent
+        self._open -= silent
+
+    def _on_plc(self, message: msg.PlcBlock) -> None:
+        if message.run_done and self._cycles is None:
+            self._end()
+
+    def _end(self) -> None:
+        if self._ended_at is None:
+            self._ended_at = time.monotonic()
+
+
+def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
+    """Cycles of a run of `duration` seconds, None when the run ends by itself."""
+    return None if duration is None else round(duration * 1e6 / machine.cycle_time_us)
+
+
+@click.command()
+@arguments.MACHINE
+@click.option("--duration", type=click.FloatRange(min=0.0), help="Seconds; without it the run ends by itself.")
+@arguments.FREE_RUN
+@arguments.RECORDERS
+def command(machine: str, duration: float | None, free_run: bool, recorders: int) -> None:
+    """Runs the clock of MACHINE as a ROS node."""
+
+    def make() -> ClockNode:
+        parameters = read_machine(machine)
+        return ClockNode(parameters, recorders=recorders, free_run=free_run, cycles=cycles_of(parameters, duration))
+
+    sys.exit(
+        process.run_node(
+            make, done=lambda node: node.done, wait=lambda node: node.wait_time(), after=lambda node: node.advance()
+        )
+    )
+
+
+def main() -> None:
+    arguments.call(command)
+
+
+if __name__ == "__main__":
+    main()

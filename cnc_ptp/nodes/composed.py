@@ -1,0 +1,66 @@
+"""All nodes of a machine in one process with one executor: the same nodes, topics and numbers as the graph."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import rclpy
+from rclpy.node import Node
+
+from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.axis import AxisNode
+from cnc_ptp.nodes.clock import ClockNode, cycles_of
+from cnc_ptp.nodes.monitor import RunMonitor
+from cnc_ptp.nodes.nc_channel import ChannelNode
+from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
+from cnc_ptp.nodes.recorder import RecorderNode
+from cnc_ptp.nodes.spindle import SpindleNode
+from cnc_ptp.nodes.supervisor import Job
+from cnc_ptp.nodes.unit_node import consumers_of
+from cnc_ptp.parameters import MachineParameters
+
+UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
+
+
+def run_composed(machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]) -> RunMonitor:
+    """Runs the job in this process; `show` is called about 20 times a second."""
+    process.stay_on_this_machine()
+    rclpy.init()
+    monitor = RunMonitor(machine)
+    recorders = 1 if job.record else 0
+    clock = ClockNode(machine, recorders=recorders, free_run=job.free_run, cycles=cycles_of(machine, job.duration))
+    nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders), clock]
+    if job.record:
+        machine_yaml = read_file("machine file", job.machine)
+        nodes.append(RecorderNode(machine, job.record, machine_yaml, free_run=job.free_run))
+    next_show = 0.0
+
+    def after() -> None:
+        nonlocal next_show
+        clock.advance()
+        if time.monotonic() >= next_show:
+            next_show = time.monotonic() + 0.05
+            show(monitor)
+
+    process.spin(nodes, done=lambda: clock.done, wait=clock.wait_time, after=after)
+    return monitor
+
+
+def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[Node]:
+    nodes: list[Node] = []
+    for name, kind in unit_kinds(machine).items():
+        consumers = consumers_of(machine, name, recorders=recorders)
+        if kind == PLC:
+            entries = read_job(machine, program=job.program, scenario=job.scenario)
+            idle_ends = job.duration is None
+            nodes.append(
+                PlcBridgeNode(
+                    machine, scenario=entries, end_when_idle=idle_ends, consumers=consumers, free_run=job.free_run
+                )
+            )
+        else:
+            nodes.append(UNIT_NODES[kind](machine, name, consumers=consumers, free_run=job.free_run))
+    return nodes

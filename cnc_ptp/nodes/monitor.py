@@ -1,0 +1,98 @@
+"""What a run shows of itself: progress, events, statistics; collected from the topics of the graph."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.machine.blocks import Severity
+from cnc_ptp.machine.wiring import PLC
+from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, PLC_INPUT, block_topic
+from cnc_ptp.parameters import MachineParameters
+
+
+@dataclass
+class Progress:
+    """Where the program is."""
+
+    line: int = 0
+    block_number: int = 0
+    blocks_done: int = 0
+    blocks_total: int = 0
+    feed_mm_per_min: float = 0.0
+    position: dict[str, float] = field(default_factory=dict)
+    cycle: int = 0
+    program_cycles: int = 0
+
+
+class RunMonitor(Node):
+    """Subscriptions: /<first channel>/block, /plc/block, /events, /commands, /diagnostics."""
+
+    def __init__(self, machine: MachineParameters) -> None:
+        super().__init__("run_monitor", enable_rosout=False, start_parameter_services=False)
+        self.progress = Progress()
+        self.errors: list[str] = []
+        self.refusals: list[str] = []
+        self.run_done = False
+        self.run_failed = False
+        self.diagnostics: dict[str, dict[str, str]] = {}
+        self.standing: dict[str, bool] = {}
+        for channel in list(machine.channels)[:1]:
+            self.create_subscription(msg.ChannelBlock, block_topic(channel), self._on_channel, BLOCKS)
+        self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+        self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
+        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
+
+    def watch_standstill(self, axes: list[str]) -> None:
+        """Follows from now on whether `axes` stand (`standing`)."""
+        for axis in axes:
+            self.standing[axis] = False
+            self.create_subscription(msg.AxisBlock, block_topic(axis), self._axis_callback(axis), BLOCKS)
+
+    def _axis_callback(self, axis: str) -> Any:
+        def received(message: msg.AxisBlock) -> None:
+            self.standing[axis] = message.set_velocity[-1] == 0.0
+
+        return received
+
+    def lateness(self) -> Lateness:
+        """Over the blocks of all nodes."""
+        total = Lateness()
+        for values in self.diagnostics.values():
+            total.merge(values["lateness_counts"], int(values["lateness_max_us"]))
+        return total
+
+    def _on_channel(self, message: msg.ChannelBlock) -> None:
+        progress = self.progress
+        progress.line, progress.block_number = message.line[-1], message.block_number[-1]
+        progress.blocks_done, progress.blocks_total = message.blocks_done, message.blocks_total
+        progress.feed_mm_per_min = message.path_velocity[-1] * 60.0
+        last = range(message.count - 1, len(message.set_position), message.count)
+        progress.position = {axis: message.set_position[index] for axis, index in zip(message.axes, last, strict=True)}
+        if message.path_active:
+            progress.program_cycles += message.count
+
+    def _on_plc(self, message: msg.PlcBlock) -> None:
+        self.progress.cycle = message.first_cycle + message.count
+        if message.run_done:
+            self.run_done, self.run_failed = True, message.run_failed
+
+    def _on_event(self, message: msg.Event) -> None:
+        if message.severity == Severity.ERROR:
+            where = f" (cycle {message.cycle}, line {message.line})" if message.line else f" (cycle {message.cycle})"
+            self.errors.append(f"P-ERR-{message.error_id} {message.text}{where}")
+
+    def _on_command(self, message: msg.CommandRecord) -> None:
+        if not message.accepted:
+            self.refusals.append(f"P-ERR-{message.error_id} {message.message} (cycle {message.cycle})")
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            if status.hardware_id == "cnc_ptp":
+                self.diagnostics[status.name] = {value.key: value.value for value in status.values}

@@ -1,0 +1,133 @@
+"""`plc_bridge MACHINE.yaml`: the PLC interface (HLI). Topics of a PLC and the scenario become commands in PlcBlocks."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+import click
+
+from cnc_ptp import msg
+from cnc_ptp.machine.blocks import Command, Event, Severity
+from cnc_ptp.machine.job import read_job
+from cnc_ptp.machine.plc_unit import PlcUnit
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.wiring import PLC, build_unit
+from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT
+from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
+from cnc_ptp.parameters import MachineParameters, read_machine
+
+LIFE_SIGN_LOST = 26103
+FULL_OVERRIDE = 100.0
+
+
+class PlcBridgeNode(UnitNode):
+    """UnitNode of the PLC.
+
+    Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
+    /<axis>/enable (Switch), /plc/life_sign (LifeSign). A value counts when it changes; the last one holds when messages
+    stop; `valid` = false means 100 %, no feed hold, enabled. A life sign that was seen once and then stays away for
+    P-MACH life_sign_timeout_ms sets feed hold on all channels.
+    """
+
+    def __init__(
+        self, machine: MachineParameters, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True, **options: Any
+    ) -> None:
+        super().__init__(machine, build_unit(machine, PLC, scenario=scenario, end_when_idle=end_when_idle), **options)
+        self._sequence: dict[str, int] = {}
+        self._last: dict[str, Any] = {}
+        self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
+        self._life_sign_counter: int | None = None
+        self._life_sign_seen = 0.0
+        self._life_sign_lost = False
+        self._channels = list(machine.channels)
+        for unit in (*machine.channels, *machine.axes, *machine.spindles):
+            self._listen(msg.Override, unit, "override", self._override)
+        for unit in machine.channels:
+            self._listen(msg.Switch, unit, "feed_hold", partial(self._switch, command="feed_hold", idle=False))
+        for unit in machine.axes:
+            self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
+        self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
+        self.create_timer(self._life_sign_timeout / 4.0, self._watch_life_sign)
+
+    def _listen(self, message_type: Any, unit: str, name: str, convert_message: Callable[[str, Any], Command]) -> None:
+        topic = f"/{unit}/{name}"
+
+        def received(message: Any) -> None:
+            if message.sequence and message.sequence <= self._sequence.get(topic, 0):
+                return
+            self._sequence[topic] = message.sequence
+            command = convert_message(unit, message)
+            if self._last.get(topic) != command.arguments:
+                self._last[topic] = command.arguments
+                self._input(command)
+
+        self.create_subscription(message_type, topic, received, PLC_INPUT)
+
+    @staticmethod
+    def _override(unit: str, message: msg.Override) -> Command:
+        return Command(unit, "set_override", {"percent": message.percent if message.valid else FULL_OVERRIDE})
+
+    @staticmethod
+    def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
+        return Command(unit, command, {"on": message.on if message.valid else idle})
+
+    def _input(self, command: Command) -> None:
+        if isinstance(self.unit, PlcUnit):
+            self.unit.input(command)
+
+    def _on_life_sign(self, message: msg.LifeSign) -> None:
+        if message.counter != self._life_sign_counter:
+            self._life_sign_counter = message.counter
+            self._life_sign_seen = time.monotonic()
+            self._life_sign_lost = False
+
+    def _watch_life_sign(self) -> None:
+        """The external PLC: its silence holds the feed, which only its next command takes away."""
+        silent = time.monotonic() - self._life_sign_seen
+        if self._life_sign_counter is None or self._life_sign_lost or silent <= self._life_sign_timeout:
+            return
+        self._life_sign_lost = True
+        for channel in self._channels:
+            self._input(Command(channel, "feed_hold", {"on": True}))
+        text = f"plc: no life sign of the external PLC for {self._life_sign_timeout * 1000.0:.0f} ms; feed hold is set on all channels"
+        cycle = self._gate.next_cycle
+        event = Event(cycle, PLC, Severity.WARNING, LIFE_SIGN_LOST, text)
+        self._event_publisher.publish(convert.event_to_message(event, self.stamp(cycle)))
+
+
+@click.command()
+@arguments.MACHINE
+@click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
+@click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
+@click.option("--stay", is_flag=True, help="Go on when everything stands, instead of ending the run.")
+@arguments.FREE_RUN
+@arguments.RECORDERS
+def command(
+    machine: str, program: str | None, scenario: str | None, stay: bool, free_run: bool, recorders: int
+) -> None:
+    """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
+
+    def make() -> PlcBridgeNode:
+        parameters = read_machine(machine)
+        return PlcBridgeNode(
+            parameters,
+            scenario=read_job(parameters, program=program, scenario=scenario),
+            end_when_idle=not stay,
+            consumers=consumers_of(parameters, PLC, recorders=recorders),
+            free_run=free_run,
+        )
+
+    sys.exit(process.run_node(make))
+
+
+def main() -> None:
+    arguments.call(command)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,178 @@
+"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph."""
+
+from __future__ import annotations
+
+import sys
+import time
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+
+from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.topics import (
+    BLOCK_TYPES,
+    BLOCKS,
+    COMMAND,
+    DIAGNOSTICS,
+    EVENT,
+    EVENTS,
+    HEARTBEAT,
+    PLC_INPUT,
+    TICK,
+    block_topic,
+)
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.recording.writer import Recording
+
+NAME = "recorder"
+NOT_WRITABLE = 26113
+READY_PERIOD = 0.05
+FLUSH_PERIOD = 0.25
+
+
+class RecorderNode(Node):
+    """Writes the recording of a run.
+
+    Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics.
+    Publishes /heartbeat: ready, and in free run every tick that is recorded completely.
+    """
+
+    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
+        super().__init__(NAME, enable_rosout=False)
+        require_writable(path)
+        self._machine_yaml = machine_yaml
+        self._path = path
+        self._cycle_ns = machine.cycle_time_us * 1000
+        self._free_run = free_run
+        self._recording: Recording | None = None
+        self._early: list[Any] = []
+        self._units = unit_kinds(machine)
+        self._received: dict[int, int] = {}
+        self._last_complete = -1
+        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)
+        for unit, kind in self._units.items():
+            block_type = BLOCK_TYPES[kind]
+            received = partial(self._on_block, unit, block_type)
+            self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True)
+        self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
+        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT, raw=True)
+        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
+        self.create_timer(FLUSH_PERIOD, self._flush)
+
+    def destroy_node(self) -> None:
+        if self._recording is not None:
+            self._recording.close()
+        super().destroy_node()
+
+    def _report_ready(self) -> None:
+        if self._recording is not None:
+            self._ready_timer.cancel()
+        elif all(self.count_publishers(topic) for topic in (TICK, *map(block_topic, self._units))):
+            self._say(-1)
+
+    def _say(self, first_cycle: int) -> None:
+        self._heartbeat_publisher.publish(msg.BlockReport(source=NAME, first_cycle=first_cycle))
+
+    def _on_tick(self, message: msg.CycleTick) -> None:
+        if self._recording is None:
+            start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+            self._recording = Recording(self._path, self._machine_yaml, start_ns, self._cycle_ns)
+            for record in self._early:
+                record()
+            self._early.clear()
+        self._recording.tick(convert.message_to_tick(message), message.scheduled_monotonic_ns)
+
+    def _on_block(self, unit: str, block_type: Any, data: bytes) -> None:
+        message = deserialize_message(data, block_type)
+        recording = self._recording
+        if recording is None:
+            self._early.append(lambda: self._on_block(unit, block_type, data))
+            return
+        stamp_ns = convert.nanoseconds(message.header.stamp)
+        recording.raw(block_topic(unit), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
+        block = convert.message_to_block(message)
+        if isinstance(block, AxisBlock):
+            recording.axis_states(unit, block)
+        elif isinstance(block, SpindleBlock):
+            recording.spindle_states(unit, block)
+        elif isinstance(block, ChannelBlock):
+            recording.channel_states(unit, block)
+        self._note_complete(block.first_cycle)
+
+    def _note_complete(self, first_cycle: int) -> None:
+        if not self._free_run:
+            return
+        received = self._received.get(first_cycle, 0) + 1
+        self._received[first_cycle] = received
+        if received == len(self._units):
+            del self._received[first_cycle]
+            self._say(first_cycle)
+
+    def _on_event(self, message: msg.Event) -> None:
+        self._single(lambda: self._recorded.event(convert.message_to_event(message)))
+
+    def _on_command(self, message: msg.CommandRecord) -> None:
+        self._single(lambda: self._recorded.command(convert.message_to_record(message)))
+
+    def _on_diagnostics(self, data: bytes) -> None:
+        stamp_ns = convert.nanoseconds(deserialize_message(data, DiagnosticArray).header.stamp)
+        self._single(lambda: self._recorded.raw(DIAGNOSTICS, "diagnostic_msgs/msg/DiagnosticArray", data, stamp_ns))
+
+    def _single(self, record: Any) -> None:
+        if self._recording is None:
+            self._early.append(record)
+        else:
+            record()
+
+    @property
+    def _recorded(self) -> Recording:
+        assert self._recording is not None
+        return self._recording
+
+    def _flush(self) -> None:
+        if self._recording is not None:
+            self._recording.flush_if_due(time.monotonic())
+
+
+def require_writable(path: str) -> None:
+    """Raises CncError 26113 when no file can be made at `path`."""
+    try:
+        with Path(path).open("wb"):
+            pass
+    except OSError as error:
+        raise CncError(
+            NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}; nothing was started"
+        ) from None
+
+
+@click.command()
+@arguments.MACHINE
+@click.argument("output", type=click.Path(dir_okay=False))
+@arguments.FREE_RUN
+def command(machine: str, output: str, free_run: bool) -> None:
+    """Records the graph of MACHINE to the MCAP file OUTPUT."""
+
+    def make() -> RecorderNode:
+        return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
+
+    sys.exit(process.run_node(make))
+
+
+def main() -> None:
+    arguments.call(command)
+
+
+if __name__ == "__main__":
+    main()

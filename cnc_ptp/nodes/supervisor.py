@@ -1,0 +1,185 @@
+"""Runs the graph: starts one process a node, watches them, ends them in order; leaves no orphan."""
+
+from __future__ import annotations
+
+import ctypes
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import rclpy
+
+from cnc_ptp import msg, srv
+from cnc_ptp.machine.blocks import Event, Severity
+from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.nodes import convert, process
+from cnc_ptp.nodes.monitor import RunMonitor
+from cnc_ptp.nodes.topics import EVENT, EVENTS
+from cnc_ptp.parameters import MachineParameters
+
+NODE_DIED = 26104
+NOT_READY = 26105
+INTERRUPTED = 26106
+POLL = 0.05
+START_TIMEOUT = 60.0
+STOP_TIMEOUT = 15.0
+"""Seconds for all ramps after a fault or an interrupt."""
+END_TIMEOUT = 5.0
+MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc": "plc_bridge"}
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be run, as paths for the node processes."""
+
+    machine: str
+    program: str | None = None
+    scenario: str | None = None
+    duration: float | None = None
+    record: str | None = None
+    free_run: bool = False
+
+
+class Supervisor:
+    """Starts, watches and ends the processes of one run."""
+
+    def __init__(self, machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]) -> None:
+        """`show` is called about 20 times a second with the monitor, for a progress bar."""
+        self._machine = machine
+        self._job = job
+        self._show = show
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+        self._stop_deadline: float | None = None
+        self._settled_at = 0.0
+        self._dead: set[str] = set()
+        self._interrupts = 0
+        self.failures: list[str] = []
+
+    def run(self) -> RunMonitor:
+        """Runs the job to its end; `failures` then says what went wrong with processes."""
+        process.stay_on_this_machine()
+        rclpy.init(signal_handler_options=rclpy.SignalHandlerOptions.NO)
+        monitor = RunMonitor(self._machine)
+        self._event_publisher = monitor.create_publisher(msg.Event, EVENT, EVENTS)
+        self._stop_all = monitor.create_client(srv.Execute, f"/{PLC}/stop_all")
+        previous = {number: signal.signal(number, self._interrupted) for number in (signal.SIGINT, signal.SIGTERM)}
+        self._monitor = monitor
+        self._started_at = time.monotonic()
+        try:
+            self._start_all()
+            process.spin([monitor], done=self._over, wait=lambda: POLL, after=lambda: self._show(monitor))
+        finally:
+            self._end_all()
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+        return monitor
+
+    # processes
+
+    def _start_all(self) -> None:
+        for name, arguments in self._command_lines():
+            self._processes[name] = subprocess.Popen(
+                [sys.executable, "-m", f"cnc_ptp.nodes.{arguments[0]}", *arguments[1:]],
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+                preexec_fn=die_with_parent,
+            )
+
+    def _command_lines(self) -> Iterator[tuple[str, list[str]]]:
+        job = self._job
+        free_run = ["--free-run"] if job.free_run else []
+        recorders = ["--recorders", "1"] if job.record else []
+        if job.record:
+            yield "recorder", ["recorder", job.machine, job.record, *free_run]
+        for name, kind in unit_kinds(self._machine).items():
+            if kind != "plc":
+                yield name, [MODULES[kind], job.machine, name, *free_run, *recorders]
+        program = ["--program", job.program] if job.program else []
+        scenario = ["--scenario", job.scenario] if job.scenario else []
+        stay = ["--stay"] if job.duration is not None else []
+        yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *free_run, *recorders]
+        duration = ["--duration", str(job.duration)] if job.duration is not None else []
+        yield "clock", ["clock", job.machine, *duration, *free_run, *recorders]
+
+    def _over(self) -> bool:
+        """True when the run has come to its end, in order or after a fault."""
+        clock = self._processes["clock"]
+        if clock.poll() == 0:
+            return True
+        self._note_deaths()
+        if self._stop_deadline is None:
+            return self._not_started_in_time()
+        if not self._monitor.progress.cycle:
+            return True
+        living = [name for name in self._machine.axes if self._processes[name].poll() is None]
+        standing = self._monitor.standing
+        settled = time.monotonic() > self._settled_at and all(standing.get(name, True) for name in living)
+        return settled or time.monotonic() > self._stop_deadline
+
+    def _not_started_in_time(self) -> bool:
+        if self._monitor.progress.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
+            return False
+        self.failures.append(
+            f"P-ERR-{NOT_READY} the nodes did not find each other within {START_TIMEOUT:.0f} s; the run ends"
+        )
+        return True
+
+    def _note_deaths(self) -> None:
+        for name, child in self._processes.items():
+            status = child.poll()
+            if status is None or name in self._dead:
+                continue
+            self._dead.add(name)
+            reason = (
+                f"was ended by {signal.Signals(-status).name}" if status < 0 else f"ended with exit status {status}"
+            )
+            self._fail(
+                NODE_DIED, f"node '{name}' (process {child.pid}) {reason} during the run; everything stops on its ramps"
+            )
+
+    def _fail(self, error_id: int, text: str) -> None:
+        """Notes a failure, tells it to the graph, and has everything that still lives stopped."""
+        self.failures.append(f"P-ERR-{error_id} {text}")
+        event = Event(self._monitor.progress.cycle, "supervisor", Severity.ERROR, error_id, text)
+        self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
+        if PLC not in self._dead:
+            self._stop_all.call_async(srv.Execute.Request())
+        if self._stop_deadline is None:
+            now = time.monotonic()
+            self._stop_deadline = now + STOP_TIMEOUT
+            self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5
+            self._monitor.watch_standstill([name for name in self._machine.axes if name not in self._dead])
+
+    def _interrupted(self, number: int, frame: object) -> None:
+        """First interrupt: controlled stop; second: at once."""
+        self._interrupts += 1
+        if self._interrupts == 1:
+            self._fail(
+                INTERRUPTED, f"the run was interrupted ({signal.Signals(number).name}); everything stops on its ramps"
+            )
+        else:
+            self._stop_deadline = 0.0
+
+    def _end_all(self) -> None:
+        """Ends the nodes, the recorder after all others, so that it has seen everything."""
+        others = [child for name, child in self._processes.items() if name != "recorder"]
+        recorder = [child for name, child in self._processes.items() if name == "recorder"]
+        for group in (others, recorder):
+            for child in group:
+                if child.poll() is None:
+                    child.send_signal(signal.SIGINT)
+            deadline = time.monotonic() + END_TIMEOUT
+            for child in group:
+                try:
+                    child.wait(max(0.0, deadline - time.monotonic()))
+                except subprocess.TimeoutExpired:
+                    child.kill()
+                    child.wait()
+
+
+def die_with_parent() -> None:
+    """In the child: the kernel sends SIGTERM when the supervisor dies, however it dies (Linux prctl PR_SET_PDEATHSIG)."""
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM)

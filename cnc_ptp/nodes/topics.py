@@ -1,0 +1,77 @@
+"""Topics, quality of service and message types of the graph: the one place that names them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+
+from cnc_ptp import msg, srv
+
+BLOCKS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Numbered blocks: nothing is lost while a reader stalls for up to 100 blocks."""
+
+EVENTS = QoSProfile(
+    depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
+)
+"""Events and command records: late joiners see what has happened."""
+
+PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Cyclic values that PLC programmers write: `ros2 topic pub` works as it is."""
+
+TICK = "/clock/tick"
+HEARTBEAT = "/heartbeat"
+EVENT = "/events"
+COMMAND = "/commands"
+DIAGNOSTICS = "/diagnostics"
+JOINT_STATES = "/joint_states"
+LIFE_SIGN = "/plc/life_sign"
+
+BLOCK_TYPES: dict[str, Any] = {
+    "plc": msg.PlcBlock,
+    "channel": msg.ChannelBlock,
+    "axis": msg.AxisBlock,
+    "spindle": msg.SpindleBlock,
+}
+
+SERVICES: dict[str, dict[str, Any]] = {
+    "axis": {
+        "power": srv.SetSwitch,
+        "reset": srv.Execute,
+        "move_absolute": srv.MoveAbsolute,
+        "move_relative": srv.MoveRelative,
+        "set_override": srv.SetOverride,
+        "stop": srv.Execute,
+    },
+    "spindle": {
+        "start": srv.StartSpindle,
+        "stop": srv.Execute,
+        "set_override": srv.SetOverride,
+        "reset": srv.Execute,
+    },
+    "channel": {
+        "load": srv.LoadProgram,
+        "start": srv.Execute,
+        "feed_hold": srv.SetSwitch,
+        "set_override": srv.SetOverride,
+        "single_block": srv.SetSwitch,
+        "optional_stop": srv.SetSwitch,
+        "reset": srv.Execute,
+        "mdi": srv.ManualDataInput,
+    },
+    "plc": {
+        "acknowledge": srv.Acknowledge,
+        "auto_acknowledge": srv.SetSwitch,
+        "set_life_sign": srv.SetSwitch,
+        "stop_all": srv.Execute,
+    },
+}
+"""Service of a unit -> type; the service's name and fields are those of the command."""
+
+
+def block_topic(unit: str) -> str:
+    return f"/{unit}/block"
+
+
+def handshake_topic(channel: str) -> str:
+    return f"/{channel}/handshake"

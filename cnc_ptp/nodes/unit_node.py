@@ -1,0 +1,318 @@
+"""The node around a unit: store what arrives, compute a block when all of it is there, publish."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.machine.blocks import Block, Command, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.machine.gate import CLOCK, BlockGate
+from cnc_ptp.machine.runner import UnitRunner
+from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
+from cnc_ptp.nodes import convert
+from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.parameters import declare_parameters
+from cnc_ptp.nodes.topics import (
+    BLOCK_TYPES,
+    BLOCKS,
+    COMMAND,
+    DIAGNOSTICS,
+    EVENT,
+    EVENTS,
+    HEARTBEAT,
+    PLC_INPUT,
+    SERVICES,
+    TICK,
+    block_topic,
+)
+from cnc_ptp.parameters import MachineParameters
+
+MACHINE = "machine"
+"""The PLC node shows the parameters of the machine."""
+BLOCK_SKIPPED = 26102
+READY_PERIOD = 0.05
+DIAGNOSTICS_PERIOD = 1.0
+
+
+class UnitNode(Node):
+    """Runs one unit of the machine as a ROS node of the unit's name.
+
+    Subscriptions: /clock/tick (CycleTick), /<unit>/block of every upstream and feedback unit, /heartbeat (BlockReport).
+    Publishers: /<name>/block, /events, /commands, /heartbeat, /diagnostics (1 Hz).
+    Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
+    Parameters: all of its list, read-only, with range, unit and P number as descriptor.
+    """
+
+    def __init__(self, machine: MachineParameters, unit: Unit, *, consumers: int, free_run: bool = False) -> None:
+        """`consumers`: nodes that must have found this one's blocks before it reports ready. `free_run`: report each block."""
+        super().__init__(unit.name, enable_rosout=False)
+        self._kinds = unit_kinds(machine)
+        self._free_run = free_run
+        self._consumers = consumers
+        self._watchdog = machine.watchdog_ms / 1000.0
+        self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
+        self._inputs: Inputs = wiring(machine)[unit.name]
+        self._gate = BlockGate(self._inputs)
+        self._cycle_ns = machine.cycle_time_us * 1000
+        self._count = machine.block_cycles
+        self._start_ns = 0
+        self._lateness = Lateness()
+        self._scheduled_ns: dict[int, int] = {}
+        self._blocks_done = 0
+        self._blocks_lost = 0
+        self._running = False
+        self._alone = False
+        self._busy = False
+        now = time.monotonic()
+        self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
+        self._said = self._checked = now
+        declare_parameters(self, machine, MACHINE if unit.kind == PLC else unit.name)
+        self._make_publishers()
+        self._make_subscriptions()
+        self._make_services()
+        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
+        self.create_timer(self._watchdog / 4.0, self._watch)
+        self.create_timer(DIAGNOSTICS_PERIOD, self._publish_diagnostics)
+        threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
+
+    @property
+    def unit(self) -> Unit:
+        return self._runner.unit
+
+    # set-up
+
+    def _make_publishers(self) -> None:
+        name = self.unit.name
+        self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), BLOCKS)
+        self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
+        self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
+        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
+
+    def _make_subscriptions(self) -> None:
+        self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)
+        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
+        for source in self._gate.sources:
+            kind = self._kinds[source]
+            self.create_subscription(BLOCK_TYPES[kind], block_topic(source), partial(self._on_block, source), BLOCKS)
+
+    def _make_services(self) -> None:
+        for command, service_type in SERVICES[self.unit.kind].items():
+            callback = partial(self._on_service, command)
+            self.create_service(service_type, f"/{self.unit.name}/{command}", callback)
+
+    def _report_ready(self) -> None:
+        """Says `ready` until the first tick, once everybody that is needed has found each other."""
+        if self._running:
+            self._ready_timer.cancel()
+            return
+        found = self._block_publisher.get_subscription_count() >= self._consumers
+        topics = [TICK, *(block_topic(source) for source in self._gate.sources)]
+        if found and all(self.count_publishers(topic) for topic in topics):
+            self._say(-1)
+
+    # what arrives
+
+    def _on_tick(self, message: msg.CycleTick) -> None:
+        if self._alone:
+            return
+        self._running = True
+        self._heard[CLOCK] = time.monotonic()
+        self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+        if message.scheduled_monotonic_ns:
+            self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
+        if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):
+            self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
+        self._compute_ready_blocks()
+
+    def _on_block(self, source: str, message: Any) -> None:
+        self._heard[source] = time.monotonic()
+        self._gate.add_block(source, convert.message_to_block(message))
+        self._compute_ready_blocks()
+
+    def _on_heartbeat(self, message: msg.BlockReport) -> None:
+        if message.source in self._heard:
+            self._heard[message.source] = time.monotonic()
+
+    def _on_service(self, command: str, request: Any, response: Any) -> Any:
+        record = self._command(Command(self.unit.name, command, self._arguments(command, request)))
+        response.accepted, response.error_id = record.accepted, record.error_id
+        response.message, response.cycle = record.message, record.cycle
+        return response
+
+    def _arguments(self, command: str, request: Any) -> dict[str, Any]:
+        """The fields of a service request; optional numbers that are 0 or NaN count as left out."""
+        arguments = {}
+        for name, argument in COMMANDS[self.unit.kind][command].items():
+            if not hasattr(request, name):
+                continue
+            value = getattr(request, name)
+            if argument.required or (value != 0.0 and not math.isnan(value)):
+                arguments[name] = value
+        if command == "load":
+            arguments["text"] = read_text(arguments["program"])
+        return {name: value for name, value in arguments.items() if value is not None}
+
+    def _command(self, command: Command) -> Any:
+        with self._working():
+            record = self._runner.command(command)
+        self._publish_records()
+        return record
+
+    # one block
+
+    def _compute_ready_blocks(self) -> None:
+        for source in self._gate.skipped():
+            self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
+        while (work := self._gate.take()) is not None:
+            self._compute(*work)
+
+    def _compute(self, tick: CycleTick, inputs: dict[str, Block]) -> None:
+        with self._working():
+            block = self._runner.run(tick, inputs)
+        self._publish_block(block)
+        self._publish_records()
+        self._blocks_done += 1
+        scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
+        if scheduled:
+            self._lateness.add((time.monotonic_ns() - scheduled) // 1000)
+        if self._free_run:
+            self._say(tick.first_cycle)
+        plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
+        if isinstance(plc, PlcBlock) and plc.run_done:
+            self._gate.closed = True
+        self.after_block(block)
+        if self._gate.closed:
+            self._publish_diagnostics()
+
+    def after_block(self, block: Block) -> None:
+        """For subclasses: what else is to be published of a block."""
+
+    def extra_diagnostics(self) -> dict[str, object]:
+        """For subclasses: more values for /diagnostics."""
+        return {}
+
+    def stamp(self, cycle: int) -> Time:
+        return convert.time_message(self._start_ns + cycle * self._cycle_ns)
+
+    def _publish_block(self, block: Block) -> None:
+        self._block_publisher.publish(convert.block_to_message(block, self.stamp(block.first_cycle)))
+        self._said = time.monotonic()
+
+    def _publish_records(self) -> None:
+        for record in self.unit.take_records():
+            self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
+        for event in self.unit.take_events():
+            self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+
+    # watchdog
+
+    def _watch(self) -> None:
+        """Says that this node lives while it waits, and gives up sources that have been silent for the watchdog time."""
+        now = time.monotonic()
+        stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
+        if stalled or self._gate.closed or not self._running:
+            self._heard = dict.fromkeys(self._heard, now)
+            return
+        if self._alone:
+            self._tick_alone()
+            return
+        if now - self._said > self._watchdog / 4.0:
+            self._say(self._gate.next_cycle)
+        for source in self._gate.missing():
+            if now - self._heard[source] > self._watchdog:
+                self._lose(source, None)
+        self._compute_ready_blocks()
+
+    def _lose(self, source: str, reason: str | None) -> None:
+        """Goes on without `source`; the unit decides what that means for its motion."""
+        if reason is not None:
+            self._blocks_lost += 1
+            event = Event(
+                self._gate.next_cycle, self.unit.name, Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}"
+            )
+            self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+        self._gate.drop(source)
+        self._command(Command(self.unit.name, "upstream_lost", {"source": source}))
+        if source == CLOCK:
+            self._alone = True
+            for other in self._gate.sources:
+                self._gate.drop(other)
+
+    def _tick_alone(self) -> None:
+        """Without a clock the unit ticks by itself, so that its own ramp comes to its end."""
+        blocks = max(1, round(self._watchdog / 4.0 * 1e9 / (self._cycle_ns * self._count)))
+        for _ in range(blocks):
+            self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
+            self._compute_ready_blocks()
+
+    def _say(self, first_cycle: int) -> None:
+        self._said = time.monotonic()
+        self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
+
+    @contextmanager
+    def _working(self) -> Iterator[None]:
+        self._busy = True
+        try:
+            yield
+        finally:
+            self._busy = False
+
+    def _heartbeat_while_busy(self) -> None:
+        """A long command (a big program is interpreted at once) must not look like a dead node."""
+        period = self._watchdog / 4.0
+        was_busy = False
+        while self.context.ok():
+            if self._busy and was_busy:
+                self._say(self._gate.next_cycle)
+            was_busy = self._busy
+            time.sleep(period)
+
+    def _publish_diagnostics(self) -> None:
+        if not self._running:
+            return
+        values: dict[str, object] = {
+            "blocks": self._blocks_done,
+            "lost_blocks": self._blocks_lost,
+            "duplicates": self._gate.duplicates,
+            "lateness_p50_us": self._lateness.percentile_us(50.0),
+            "lateness_p99_us": self._lateness.percentile_us(99.0),
+            "lateness_max_us": self._lateness.largest_us,
+            "lateness_counts": self._lateness.to_text(),
+        }
+        values |= self.extra_diagnostics()
+        level = DiagnosticStatus.ERROR if self._blocks_lost else DiagnosticStatus.OK
+        status = DiagnosticStatus(
+            name=self.unit.name, level=level, hardware_id="cnc_ptp", message=f"block {self._blocks_done}"
+        )
+        status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
+        message = DiagnosticArray(status=[status])
+        message.header.stamp = self.stamp(self._gate.next_cycle)
+        self._diagnostics_publisher.publish(message)
+
+
+def read_text(path: str) -> str | None:
+    """Text of a program file, None when it cannot be read (the unit refuses then)."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return None
+
+
+def consumers_of(machine: MachineParameters, name: str, *, recorders: int) -> int:
+    """How many nodes need the blocks of unit `name`."""
+    units = sum(name in (*inputs.upstream, *inputs.feedback) for inputs in wiring(machine).values())
+    return units + recorders
