@@ -41,7 +41,9 @@ class GenerateInterfaces(build_ext):
         ]  # fmt: skip
         jobs = str(os.cpu_count() or 1)
         for command in (configure, ["cmake", "--build", str(build), "-j", jobs], ["cmake", "--install", str(build)]):
-            subprocess.run(command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL)
+            subprocess.run(
+                command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL
+            )
         self.take_python_part(stage)
         self.hand_on_prefix_part(stage)
 
@@ -107,7 +109,9 @@ setup(
     license="Apache-2.0",
     maintainer="cnc_ptp maintainers",
     maintainer_email="maintainers@cnc-ptp.example.org",
-    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"], exclude=[f"{PACKAGE}.{part}" for part in ("msg", "srv", "action")]),
+    packages=find_packages(
+        include=[PACKAGE, f"{PACKAGE}.*"], exclude=[f"{PACKAGE}.{part}" for part in ("msg", "srv", "action")]
+    ),
     package_data={PACKAGE: ["parameters/*.yaml", "py.typed"]},
     ext_modules=[Extension(f"{PACKAGE}._interfaces", sources=[])],
     cmdclass={"build_ext": GenerateInterfaces},

@@ -83,6 +83,11 @@ class Command:
     def arguments_json(self) -> str:
         return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False)
 
+    @classmethod
+    def from_record(cls, record: CommandRecord) -> Command:
+        """The command that a record was made of."""
+        return cls(record.target, record.command, json.loads(record.arguments_json))
+
 
 @dataclass(slots=True)
 class CommandRecord:

@@ -106,6 +106,8 @@ class ChannelUnit(Unit):
         self._feed = 0.0
         self._phase = Phase.IDLE
         self._just_started = False
+        self._owns_axes = False
+        """A program ran at the begin of the block before: its last setpoint is the first of this block."""
         self._position = tuple(a.start_position for a in own)
         self._ready = {a.name: a.powered_at_start for a in own}
         self._states: tuple[AxisState, ...] = standing(self._position)
@@ -205,10 +207,11 @@ class ChannelUnit(Unit):
         first_cycle, count = tick
         self._read_feedback(first_cycle, inputs)
         outputs = self._send_outputs(first_cycle)
-        active = self._phase is not Phase.IDLE
+        active = self._owns_axes
+        self._owns_axes = self._phase is not Phase.IDLE
         rows = [self._row()]
         self._fill(rows, first_cycle, count + 1)
-        return self._channel_block(tick, rows[:count], outputs, path_active=active)
+        return self._channel_block(tick, rows[:count], outputs, path_active=active or self._owns_axes)
 
     def _channel_block(self, tick: CycleTick, rows: list[Row], outputs: Outputs, *, path_active: bool) -> ChannelBlock:
         axes, *columns = zip(*rows, strict=True)
@@ -223,7 +226,7 @@ class ChannelUnit(Unit):
             acceleration,
             jerk,
             **dict(zip(Row._fields[1:], map(list, columns), strict=True)),
-            done=self._phase is Phase.IDLE,
+            done=self._phase is Phase.IDLE and not self._owns_axes,
             blocks_done=self._next_block,
             blocks_total=len(self._blocks),
             commands=outputs.commands,
@@ -406,7 +409,7 @@ class ChannelUnit(Unit):
         """Takes over what axes and spindles reported for the block before."""
         self._feedback = inputs
         axes = {node: block for node in self._axis_nodes if isinstance(block := inputs.get(node), AxisBlock)}
-        if self._phase is Phase.IDLE or self._just_started:
+        if not self._owns_axes:
             self._take_positions(first_cycle, axes)
         self._just_started = False
         if self._phase is Phase.IDLE:
@@ -450,7 +453,7 @@ class ChannelUnit(Unit):
     def _require_idle(self, command: str) -> None:
         if self._error_id:
             self._refuse(command, NOT_NOW, f"the channel is in error P-ERR-{self._error_id}; reset it first")
-        if self._phase is not Phase.IDLE:
+        if self._phase is not Phase.IDLE or self._owns_axes:
             self._refuse(command, NOT_NOW, f"a program is running (line {self._source.line})")
 
     def _refuse(self, command: str, error_id: int, reason: str) -> None:

@@ -63,6 +63,7 @@ class PlcUnit(Unit):
         self._idle_cycles = 0
         self._lost: set[str] = set()
         self._failed = False
+        self._reported: Mapping[str, Block] = {}
 
     def input(self, command: Command) -> None:
         """A command from outside (topic, button): goes out with the next block."""
@@ -90,9 +91,16 @@ class PlcUnit(Unit):
         self._life_sign_on = on
 
     def do_stop_all(self, cycle: int) -> None:
-        """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps."""
+        """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps.
+
+        Left out is what stops by itself: axes on the path of a channel, units in error.
+        """
         self._scenario.clear()
-        self._outgoing += [Command(unit, STOP_COMMAND[kind], {}) for unit, kind in self._kinds.items()]
+        self._end_when_idle = True
+        for unit, kind in self._kinds.items():
+            block = self._reported.get(unit)
+            if unit not in self._lost and (block is None or needs_stop(block)):
+                self._outgoing.append(Command(unit, STOP_COMMAND[kind], {}))
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` reports no more; the run is a failed one."""
@@ -111,6 +119,7 @@ class PlcUnit(Unit):
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> PlcBlock:
         """Computes one block from the units' blocks before."""
         first_cycle, count = tick
+        self._reported = inputs
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
         run_done = self._end_when_idle and self._run_done(count, inputs)
@@ -174,6 +183,15 @@ def at_rest(block: Block) -> bool:
     if isinstance(block, SpindleBlock):
         return block.set_acceleration_deg_s2[-1] == 0.0
     return True
+
+
+def needs_stop(block: Block) -> bool:
+    """True when a unit goes on moving unless it is told to stop."""
+    if isinstance(block, ChannelBlock):
+        return not block.done and not block.error_id[-1]
+    if isinstance(block, AxisBlock):
+        return block.state[-1] == AxisStateCode.DISCRETE_MOTION
+    return isinstance(block, SpindleBlock) and block.set_speed_rpm[-1] != 0.0
 
 
 def error_of(block: Block) -> int:

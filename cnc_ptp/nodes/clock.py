@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterable
 
 import click
 from rclpy.node import Node
@@ -11,7 +12,7 @@ from rclpy.node import Node
 from cnc_ptp import msg
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
-from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, TICK, block_topic
+from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, TICK, block_topic
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 POLL = 0.02
@@ -27,9 +28,19 @@ class ClockNode(Node):
     A node that is silent for the watchdog time no longer holds up a free run.
     """
 
-    def __init__(self, machine: MachineParameters, *, recorders: int, free_run: bool, cycles: int | None) -> None:
+    def __init__(
+        self,
+        machine: MachineParameters,
+        *,
+        wait_for: Iterable[str] = (),
+        free_run: bool = False,
+        cycles: int | None = None,
+    ) -> None:
+        """`wait_for`: nodes besides the units that must be ready first. `cycles`: length of the run, None = the PLC ends it."""
         super().__init__("clock", enable_rosout=False)
-        self._expected = {*unit_kinds(machine), *(["recorder"] if recorders else [])}
+        self._units = {*unit_kinds(machine)}
+        self._expected = {*self._units, *wait_for}
+        self._reporting = self._expected - {MONITOR}
         self._free_run = free_run
         self._cycles = cycles
         self._count = machine.block_cycles
@@ -75,7 +86,7 @@ class ClockNode(Node):
         return (self._started_at or 0.0) + self._first_cycle // self._count * self._block_time
 
     def _start_when_ready(self) -> None:
-        if self._expected <= self._ready and self._publisher.get_subscription_count() >= len(self._expected):
+        if self._expected <= self._ready and self._publisher.get_subscription_count() >= len(self._units):
             self._start_ns = time.time_ns()
             self._started_at = time.monotonic() + self._block_time
 
@@ -88,8 +99,8 @@ class ClockNode(Node):
         self._publisher.publish(tick)
         self._first_cycle += self._count
         if self._free_run:
-            self._open = set(self._expected)
-            self._heard = dict.fromkeys(self._expected, time.monotonic())
+            self._open = set(self._reporting)
+            self._heard = dict.fromkeys(self._open, time.monotonic())
 
     def _on_report(self, message: msg.BlockReport) -> None:
         if message.first_cycle < 0:
@@ -103,11 +114,11 @@ class ClockNode(Node):
     def _drop_silent_nodes(self) -> None:
         now = time.monotonic()
         silent = {name for name in self._open if now - self._heard[name] > self._watchdog}
-        self._expected -= silent
+        self._reporting -= silent
         self._open -= silent
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
-        if message.run_done and self._cycles is None:
+        if message.run_done:
             self._end()
 
     def _end(self) -> None:
@@ -123,14 +134,14 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 @click.command()
 @arguments.MACHINE
 @click.option("--duration", type=click.FloatRange(min=0.0), help="Seconds; without it the run ends by itself.")
+@click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @arguments.FREE_RUN
-@arguments.RECORDERS
-def command(machine: str, duration: float | None, free_run: bool, recorders: int) -> None:
+def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:
     """Runs the clock of MACHINE as a ROS node."""
 
     def make() -> ClockNode:
         parameters = read_machine(machine)
-        return ClockNode(parameters, recorders=recorders, free_run=free_run, cycles=cycles_of(parameters, duration))
+        return ClockNode(parameters, wait_for=wait_for, free_run=free_run, cycles=cycles_of(parameters, duration))
 
     sys.exit(
         process.run_node(

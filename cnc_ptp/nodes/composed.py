@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-import rclpy
 from rclpy.node import Node
 
 from cnc_ptp.machine.job import read_file, read_job
@@ -18,7 +17,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import Job
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of
 from cnc_ptp.nodes.unit_node import consumers_of
 from cnc_ptp.parameters import MachineParameters
 
@@ -27,11 +26,12 @@ UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 
 def run_composed(machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]) -> RunMonitor:
     """Runs the job in this process; `show` is called about 20 times a second."""
-    process.stay_on_this_machine()
-    rclpy.init()
+    process.initialise()
     monitor = RunMonitor(machine)
     recorders = 1 if job.record else 0
-    clock = ClockNode(machine, recorders=recorders, free_run=job.free_run, cycles=cycles_of(machine, job.duration))
+    clock = ClockNode(
+        machine, wait_for=observers_of(job), free_run=job.free_run, cycles=cycles_of(machine, job.duration)
+    )
     nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders), clock]
     if job.record:
         machine_yaml = read_file("machine file", job.machine)
@@ -45,8 +45,21 @@ def run_composed(machine: MachineParameters, job: Job, *, show: Callable[[RunMon
             next_show = time.monotonic() + 0.05
             show(monitor)
 
-    process.spin(nodes, done=lambda: clock.done, wait=clock.wait_time, after=after)
+    end = process.EndRequest()
+    process.spin(nodes, done=lambda: clock.done or stopped(end, nodes), wait=clock.wait_time, after=after)
     return monitor
+
+
+def stopped(end: process.EndRequest, nodes: list[Node]) -> bool:
+    """After an interrupt: everything is stopped on its ramps first, at most for STOP_TIMEOUT."""
+    if not end.given:
+        return False
+    if end.deadline == 0.0:
+        end.deadline = time.monotonic() + STOP_TIMEOUT
+        for node in nodes:
+            if isinstance(node, PlcBridgeNode):
+                node.stop_all()
+    return time.monotonic() > end.deadline
 
 
 def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[Node]:

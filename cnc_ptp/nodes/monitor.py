@@ -12,8 +12,12 @@ from cnc_ptp import msg
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, PLC_INPUT, block_topic
+from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, HEARTBEAT, MONITOR, PLC_INPUT, block_topic
 from cnc_ptp.parameters import MachineParameters
+
+READY_PERIOD = 0.05
+SUPERVISOR = "supervisor"
+"""Source of events about node processes, which the supervisor prints itself."""
 
 
 @dataclass
@@ -34,7 +38,7 @@ class RunMonitor(Node):
     """Subscriptions: /<first channel>/block, /plc/block, /events, /commands, /diagnostics."""
 
     def __init__(self, machine: MachineParameters) -> None:
-        super().__init__("run_monitor", enable_rosout=False, start_parameter_services=False)
+        super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
         self.progress = Progress()
         self.errors: list[str] = []
         self.refusals: list[str] = []
@@ -42,12 +46,21 @@ class RunMonitor(Node):
         self.run_failed = False
         self.diagnostics: dict[str, dict[str, str]] = {}
         self.standing: dict[str, bool] = {}
+        self._needed = [block_topic(name) for name in (PLC, *list(machine.channels)[:1])]
+        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         for channel in list(machine.channels)[:1]:
             self.create_subscription(msg.ChannelBlock, block_topic(channel), self._on_channel, BLOCKS)
         self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
+
+    def _report_ready(self) -> None:
+        if self.progress.cycle:
+            self._ready_timer.cancel()
+        elif all(self.count_publishers(topic) for topic in self._needed):
+            self._heartbeat_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 
     def watch_standstill(self, axes: list[str]) -> None:
         """Follows from now on whether `axes` stand (`standing`)."""
@@ -75,16 +88,17 @@ class RunMonitor(Node):
         progress.feed_mm_per_min = message.path_velocity[-1] * 60.0
         last = range(message.count - 1, len(message.set_position), message.count)
         progress.position = {axis: message.set_position[index] for axis, index in zip(message.axes, last, strict=True)}
+        progress.cycle = max(progress.cycle, message.first_cycle + message.count)
         if message.path_active:
             progress.program_cycles += message.count
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
-        self.progress.cycle = message.first_cycle + message.count
+        self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)
         if message.run_done:
             self.run_done, self.run_failed = True, message.run_failed
 
     def _on_event(self, message: msg.Event) -> None:
-        if message.severity == Severity.ERROR:
+        if message.severity == Severity.ERROR and message.source != SUPERVISOR:
             where = f" (cycle {message.cycle}, line {message.line})" if message.line else f" (cycle {message.cycle})"
             self.errors.append(f"P-ERR-{message.error_id} {message.text}{where}")
 

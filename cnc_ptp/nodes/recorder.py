@@ -28,13 +28,13 @@ from cnc_ptp.nodes.topics import (
     EVENTS,
     HEARTBEAT,
     PLC_INPUT,
+    RECORDER,
     TICK,
     block_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
 
-NAME = "recorder"
 NOT_WRITABLE = 26113
 READY_PERIOD = 0.05
 FLUSH_PERIOD = 0.25
@@ -48,7 +48,7 @@ class RecorderNode(Node):
     """
 
     def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
-        super().__init__(NAME, enable_rosout=False)
+        super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
         self._machine_yaml = machine_yaml
         self._path = path
@@ -83,7 +83,7 @@ class RecorderNode(Node):
             self._say(-1)
 
     def _say(self, first_cycle: int) -> None:
-        self._heartbeat_publisher.publish(msg.BlockReport(source=NAME, first_cycle=first_cycle))
+        self._heartbeat_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
     def _on_tick(self, message: msg.CycleTick) -> None:
         if self._recording is None:

@@ -10,14 +10,12 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-import rclpy
-
 from cnc_ptp import msg, srv
 from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.topics import EVENT, EVENTS
+from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
+from cnc_ptp.nodes.topics import EVENT, EVENTS, MONITOR, RECORDER
 from cnc_ptp.parameters import MachineParameters
 
 NODE_DIED = 26104
@@ -60,8 +58,7 @@ class Supervisor:
 
     def run(self) -> RunMonitor:
         """Runs the job to its end; `failures` then says what went wrong with processes."""
-        process.stay_on_this_machine()
-        rclpy.init(signal_handler_options=rclpy.SignalHandlerOptions.NO)
+        process.initialise()
         monitor = RunMonitor(self._machine)
         self._event_publisher = monitor.create_publisher(msg.Event, EVENT, EVENTS)
         self._stop_all = monitor.create_client(srv.Execute, f"/{PLC}/stop_all")
@@ -93,7 +90,7 @@ class Supervisor:
         free_run = ["--free-run"] if job.free_run else []
         recorders = ["--recorders", "1"] if job.record else []
         if job.record:
-            yield "recorder", ["recorder", job.machine, job.record, *free_run]
+            yield RECORDER, ["recorder", job.machine, job.record, *free_run]
         for name, kind in unit_kinds(self._machine).items():
             if kind != "plc":
                 yield name, [MODULES[kind], job.machine, name, *free_run, *recorders]
@@ -102,7 +99,8 @@ class Supervisor:
         stay = ["--stay"] if job.duration is not None else []
         yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *free_run, *recorders]
         duration = ["--duration", str(job.duration)] if job.duration is not None else []
-        yield "clock", ["clock", job.machine, *duration, *free_run, *recorders]
+        wait_for = [word for name in observers_of(job) for word in ("--wait-for", name)]
+        yield "clock", ["clock", job.machine, *duration, *free_run, *wait_for]
 
     def _over(self) -> bool:
         """True when the run has come to its end, in order or after a fault."""
@@ -143,7 +141,7 @@ class Supervisor:
     def _fail(self, error_id: int, text: str) -> None:
         """Notes a failure, tells it to the graph, and has everything that still lives stopped."""
         self.failures.append(f"P-ERR-{error_id} {text}")
-        event = Event(self._monitor.progress.cycle, "supervisor", Severity.ERROR, error_id, text)
+        event = Event(self._monitor.progress.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
         if PLC not in self._dead:
             self._stop_all.call_async(srv.Execute.Request())
@@ -165,8 +163,8 @@ class Supervisor:
 
     def _end_all(self) -> None:
         """Ends the nodes, the recorder after all others, so that it has seen everything."""
-        others = [child for name, child in self._processes.items() if name != "recorder"]
-        recorder = [child for name, child in self._processes.items() if name == "recorder"]
+        others = [child for name, child in self._processes.items() if name != RECORDER]
+        recorder = [child for name, child in self._processes.items() if name == RECORDER]
         for group in (others, recorder):
             for child in group:
                 if child.poll() is None:
@@ -178,6 +176,11 @@ class Supervisor:
                 except subprocess.TimeoutExpired:
                     child.kill()
                     child.wait()
+
+
+def observers_of(job: Job) -> list[str]:
+    """Nodes besides the units that the clock waits for."""
+    return [MONITOR, *([RECORDER] if job.record else [])]
 
 
 def die_with_parent() -> None:

@@ -19,6 +19,10 @@ EVENTS = QoSProfile(
 PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 """Cyclic values that PLC programmers write: `ros2 topic pub` works as it is."""
 
+RECORDER = "recorder"
+MONITOR = "run_monitor"
+"""Nodes besides the units that say when they are ready."""
+
 TICK = "/clock/tick"
 HEARTBEAT = "/heartbeat"
 EVENT = "/events"

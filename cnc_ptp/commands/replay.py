@@ -1,0 +1,42 @@
+"""`cnc_ptp replay`: verify a recording to the bit, or publish it again."""
+
+from __future__ import annotations
+
+import sys
+from collections import defaultdict
+from collections.abc import Iterator
+
+from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.machine.blocks import Block, Command
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.recording.reader import Recorded, read_recording
+from cnc_ptp.recording.verify import verify as verify_recording
+
+
+def replay(recording: str, verify: bool, publish: bool, rate: float) -> int:
+    """Verifies unless only publishing is asked for. Status 1 when a setpoint differs."""
+    status = 0
+    if verify or not publish:
+        result = verify_recording(read_recording(recording), replay_blocks)
+        print(result.text(), file=sys.stdout if result.equal else sys.stderr)
+        status = 0 if result.equal else RUN_FAILED
+    if publish:
+        from cnc_ptp.nodes.player import publish_recording
+
+        publish_recording(recording, rate=rate)
+    return status
+
+
+def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, Block]]:
+    """Re-runs the kernel with the machine file and the commands of a recording; all blocks up to its last cycle."""
+    machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
+    offline = OfflineMachine(machine, build_units(machine, end_when_idle=False))
+    commands: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
+    for record in recorded.commands:
+        if record.target != PLC:
+            commands[record.cycle][record.target].append(Command.from_record(record))
+    for first_cycle in range(0, recorded.last_cycle + 1, machine.block_cycles):
+        outputs = offline.replay_tick(commands.get(first_cycle, {}))
+        yield from ((name, output.block) for name, output in outputs.items())
