@@ -25,7 +25,7 @@ def replay(recording: str, verify: bool, publish: bool, rate: float) -> int:
     if publish:
         from cnc_ptp.nodes.player import publish_recording
 
-        publish_recording(recording, rate=rate)
+        status = publish_recording(recording, rate=rate) or status
     return status
 
 
