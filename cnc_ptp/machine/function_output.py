@@ -6,7 +6,7 @@ before the motion for MVS_SVS, at the block's end for MVS_SNS and MNS_SNS, never
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBlock
@@ -35,6 +35,14 @@ class Wait:
         block = spindles.get(self.spindle)
         return not self.spindle or (isinstance(block, SpindleBlock) and block.speed_reached[-1])
 
+    def text(self, open_requests: set[int]) -> str:
+        """What is waited for; empty before the function has gone out."""
+        if self.sent_cycle is None:
+            return ""
+        if self.request_id in open_requests:
+            return f"the acknowledgement of request {self.request_id}"
+        return f"the speed of spindle {self.spindle}" if self.spindle else ""
+
 
 @dataclass(slots=True)
 class Outputs:
@@ -49,11 +57,11 @@ class Outputs:
 class FunctionOutput:
     """Turns the functions of canonical blocks into spindle commands, handshake requests and waits."""
 
-    def __init__(self, channel: ChannelParameters) -> None:
+    def __init__(self, channel: ChannelParameters, request_numbers: Iterator[int]) -> None:
         self._channel = channel
         self._spindles = {spindle.name: spindle for spindle in channel.spindles}
         self._directions: dict[str, str] = {}
-        self._last_id = 0
+        self._request_numbers = request_numbers
 
     def of_block(self, block: CanonicalBlock, *, after_motion: bool) -> Outputs:
         """The functions of `block` that go out before, or after, its motion."""
@@ -64,10 +72,12 @@ class FunctionOutput:
                 self._output(function, synchronisation, block, outputs)
         return outputs
 
-    def stop_spindles(self) -> list[Command]:
-        """M05 for every spindle that the channel has set turning: the program that was the reason is gone."""
-        turning, self._directions = self._directions, {}
-        return [Command(self._spindles[name].node, "stop", {}) for name in turning]
+    def stop_spindles(self, keep: Container[str] = ()) -> list[Command]:
+        """M05 for every spindle that the channel has set turning, except the nodes in `keep`."""
+        stopped = [name for name in self._directions if self._spindles[name].node not in keep]
+        for name in stopped:
+            del self._directions[name]
+        return [Command(self._spindles[name].node, "stop", {}) for name in stopped]
 
     def _synchronisation(self, function: Function) -> Synchronisation:
         if isinstance(function, AuxiliaryFunction):
@@ -124,9 +134,9 @@ class FunctionOutput:
     def _request(
         self, block: CanonicalBlock, kind: str, spindle: str, number: int, value: float, waits: bool
     ) -> HandshakeRequest:
-        self._last_id += 1
+        request_id = next(self._request_numbers)
         return HandshakeRequest(
-            0, self._last_id, self._channel.name, kind, spindle, number, value, block.source.line, waits
+            0, request_id, self._channel.name, kind, spindle, number, value, block.source.line, waits
         )
 
 

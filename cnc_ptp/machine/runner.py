@@ -35,7 +35,9 @@ class UnitRunner:
         return self.replay(tick, inputs)
 
     def replay(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
-        """Computes the block without looking for commands: these come from the recording."""
+        """Computes the block without looking for commands: these come from the recording. Lost sources stay lost."""
+        if self.unit.lost:
+            inputs = {name: block for name, block in inputs.items() if name not in self.unit.lost}
         block = self.unit.step(tick, inputs)
         self.next_cycle = tick.first_cycle + tick.count
         return block

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, Severity
+from cnc_ptp.machine.blocks import AxisStateCode, Block, Command, CommandRecord, CycleTick, Event, Severity
 from cnc_ptp.machine.commands import check_command
 
 Handler = Callable[..., str | None]
@@ -31,6 +31,8 @@ class Unit(ABC):
         """Events since the last block; the harness takes them away."""
         self.records: list[CommandRecord] = []
         """Commands carried out or refused since the last block; the harness takes them away."""
+        self.lost: set[str] = set()
+        """Sources that a watchdog has given up; their blocks count no more, even if they should come."""
 
     @abstractmethod
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
@@ -58,6 +60,8 @@ class Unit(ABC):
         check_command(self.kind, self.name, command, arguments)
         handler: Handler = getattr(self, f"do_{command}")
         self._warning = handler(cycle, **arguments) or ""
+        if command == "upstream_lost":
+            self.lost.add(arguments["source"])
 
     def event(self, cycle: int, severity: int, error_id: int, text: str, line: int = 0) -> None:
         self.events.append(Event(cycle, self.name, severity, error_id, text, line))
@@ -72,3 +76,8 @@ class Unit(ABC):
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name}>"
+
+
+def state_name(state: AxisStateCode) -> str:
+    """PLCopen spelling: DISCRETE_MOTION -> DiscreteMotion."""
+    return "".join(part.capitalize() for part in state.name.split("_"))

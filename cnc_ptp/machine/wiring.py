@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import count
 
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.channel_unit import ChannelUnit
@@ -59,7 +60,13 @@ def build_unit(
     if kinds[name] == "spindle":
         return SpindleUnit(machine.spindles[name], cycle_time=cycle_time)
     if kinds[name] == "channel":
-        return ChannelUnit(machine.channels[name], axes=machine.axes, spindles=machine.spindles, cycle_time=cycle_time)
+        return ChannelUnit(
+            machine.channels[name],
+            axes=machine.axes,
+            spindles=machine.spindles,
+            cycle_time=cycle_time,
+            request_numbers=count(1 + list(machine.channels).index(name), len(machine.channels)),
+        )
     return PlcUnit(name, kinds=kinds, scenario=scenario, cycle_time=cycle_time, end_when_idle=end_when_idle)
 
 

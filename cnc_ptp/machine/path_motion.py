@@ -1,0 +1,133 @@
+"""The motion of a channel's axes: the running path element or dwell, its override and its stop ramp."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, Motion
+from cnc_ptp.parameters import AxisParameters, ChannelParameters
+from cnc_ptp.path.geometry import Arc, AxisLimits, AxisState, Line
+from cnc_ptp.path.interpolator import PathInterpolator
+
+AxisStates = tuple[AxisState, ...]
+PathPoint = tuple[AxisStates, float, float]
+"""One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
+
+
+class PathMotion:
+    """Runs the motions of canonical blocks; between them the axes stand.
+
+    states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out
+    velocity         path velocity, mm/s
+    distance_to_go   mm to the end of the element
+    feed             programmed feed, mm/s; in rapid traverse the velocity that the axes allow
+    """
+
+    def __init__(self, channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> None:
+        """`axes` in the order of the channel, standing at their start positions; `cycle_time` in s."""
+        self._cycle_time = cycle_time
+        self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        self._path_axes = sum(1 for axis in channel.axes if axis.name in ("X", "Y", "Z")) or len(axes)
+        self._max_factor = channel.max_override_percent / 100.0
+        self._interpolator = PathInterpolator()
+        self._element: Line | Arc | None = None
+        self.states = standing([a.start_position for a in axes])
+        self.velocity = 0.0
+        self.distance_to_go = 0.0
+        self.feed = 0.0
+
+    @property
+    def position(self) -> tuple[float, ...]:
+        """Position of each axis, mm or deg."""
+        return tuple(state[0] for state in self.states)
+
+    @property
+    def on_path(self) -> bool:
+        """An element runs (a dwell is none)."""
+        return self._element is not None
+
+    @property
+    def held(self) -> bool:
+        """Feed hold or override 0 act; the path stands, or is on its ramp to standstill."""
+        return self._element is not None and self._interpolator.factor == 0.0
+
+    @property
+    def stopped(self) -> bool:
+        """True when `stop` was called and the path stands."""
+        return self._interpolator.stopped
+
+    @property
+    def point(self) -> PathPoint:
+        """The last cycle that was given out."""
+        return self.states, self.velocity, self.distance_to_go
+
+    def place(self, index: int, position: float) -> None:
+        """An axis stands at `position`, where something else has moved it."""
+        if position != self.states[index][0]:
+            self.states = (*self.states[:index], (position, 0.0, 0.0, 0.0), *self.states[index + 1 :])
+
+    def start(self, motion: Motion) -> None:
+        """Begins a motion, directly after another one at its exact end inside a cycle.
+
+        Raises CncError (22101–22112, 23001) for what cannot be moved; then nothing is begun.
+        """
+        if isinstance(motion, Dwell):
+            self._interpolator.dwell(motion.seconds)
+            return
+        element = self._make_element(motion)
+        rapid = isinstance(motion, LinearMove) and motion.rapid
+        axis_limits = self._rapid_limits if rapid else self._feed_limits
+        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_factor)
+        feed = limits.velocity if rapid else motion.feed
+        self._interpolator.start(element, limits, feed)
+        self._element, self.feed, self.distance_to_go = element, feed, element.length
+
+    def _make_element(self, motion: LinearMove | CircularMove) -> Line | Arc:
+        start = self.position
+        if isinstance(motion, LinearMove):
+            return Line(start, motion.target, self._path_axes)
+        return Arc(start, motion.target, motion.center, motion.plane, motion.radius, motion.sweep, self._path_axes)
+
+    def follow(self, count: int) -> list[PathPoint]:
+        """The next `count` cycles of the running motion; fewer when it ends before."""
+        rows = self._interpolator.step(count, self._cycle_time)
+        element = self._element
+        if element is None:
+            return [(self.states, 0.0, 0.0)] * len(rows)
+        points = [(element.evaluate(s, v, a, j), v, element.length - s) for s, v, a, j, _ in rows]
+        if points:
+            self.states, self.velocity, self.distance_to_go = points[-1]
+        return points
+
+    def stand(self) -> None:
+        """A cycle passes in which no motion runs."""
+        self._interpolator.step(1, self._cycle_time)
+
+    def set_factor(self, factor: float) -> None:
+        """Path override, 0 is feed hold; acts from the last cycle given out."""
+        self._interpolator.set_velocity_factor(factor)
+
+    def stop(self) -> None:
+        """Ramps down on the path; `follow` goes on until `stopped` or the end of the element."""
+        self._interpolator.stop()
+
+    def finish(self) -> None:
+        """The motion is through: the axes stand exactly at its target, or where its stop ramp has brought them."""
+        element = self._element
+        self.states = standing(element.target if element and self._interpolator.done else self.position)
+        self._element = None
+        self.velocity = self.distance_to_go = 0.0
+
+    def abandon(self) -> None:
+        """Forgets the motion of an aborted program, once the axes stand."""
+        self.finish()
+        factor = self._interpolator.factor
+        self._interpolator = PathInterpolator()
+        self._interpolator.set_velocity_factor(factor)
+
+
+def standing(position: Sequence[float]) -> AxisStates:
+    """States of axes that stand at `position` (mm)."""
+    return tuple([(value, 0.0, 0.0, 0.0) for value in position])
