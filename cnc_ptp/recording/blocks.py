@@ -93,7 +93,7 @@ def misfit(block: Any, reason: str) -> CncError:
 
 
 def require_shape(kind: StateKind, block: StateBlock) -> None:
-    """Refuses blocks whose per-cycle fields do not hold `count` values, or whose setpoints differ in length (channel)."""
+    """Refuses blocks whose per-cycle fields do not hold `count` values, or whose setpoints differ in length."""
     setpoints = len(block.set_position) if isinstance(block, ChannelBlock) else 0
     for field in kind.block.fields:
         if field.length is None or field.type not in PRIMITIVES:

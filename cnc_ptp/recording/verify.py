@@ -182,7 +182,8 @@ class _Check:
         raise CncError(
             26004,
             f"recording {self.recorded.path}: {self.result.topic} has the fields {_names(self.rows)}, this version "
-            f"computes {', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that recorded it",
+            f"computes {', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that "
+            "recorded it",
         )
 
     def compare_batch(self) -> None:

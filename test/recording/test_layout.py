@@ -5,14 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import CommandRecord, Event
-from cnc_ptp.recording.layout import Header, Layout, encode, fixed_layout, header_at, zero
-from cnc_ptp.recording.schemas import load_schema, parse_schema
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.records import Schema as McapSchema
 from mcap_ros2.decoder import DecoderFactory
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import CommandRecord, Event
+from cnc_ptp.recording.layout import Header, Layout, encode, fixed_layout, header_at, zero
+from cnc_ptp.recording.schemas import load_schema, parse_schema
 
 STATE_TYPES = ["AxisState", "SpindleState", "ChannelState"]
 BLOCK_TYPES = {
@@ -70,7 +71,7 @@ def test_many_states_at_once_are_read_by_the_library(type_name):
     rows = layout.empty(50)
     generator = np.random.default_rng(1)
     for name in rows.dtype.names:
-        rows[name] = generator.integers(0, 2, 50) if rows.dtype[name] == bool else generator.integers(0, 200, 50)
+        rows[name] = generator.integers(0, 2, 50) if rows.dtype[name].kind == "b" else generator.integers(0, 200, 50)
     data = np.ascontiguousarray(rows).tobytes()
     size = layout.dtype.itemsize
     for index in range(50):
@@ -97,8 +98,22 @@ def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
 
 
 def test_alignment_of_every_number_type():
-    text = "uint8 a\nint64 b\nbool c\nint16 d\nfloat32 e\nuint8 f\nfloat64[2] g\nstring h\nuint16[] i\nfloat64[] j\nint8 k\n"
-    schema = parse_schema("my/msg/Mix", text)
+    types = [
+        "uint8",
+        "int64",
+        "bool",
+        "int16",
+        "float32",
+        "uint8",
+        "float64[2]",
+        "string",
+        "uint16[]",
+        "float64[]",
+        "int8",
+    ]
+    schema = parse_schema(
+        "my/msg/Mix", "".join(f"{kind} {name}\n" for kind, name in zip(types, "abcdefghijk", strict=True))
+    )
     values = SimpleNamespace(a=1, b=-2, c=True, d=-3, e=0.5, f=4, g=[1.5, 2.5], h="ä", i=[5, 6, 7], j=[], k=-8)
     data = encode(schema, values)
     decoded = decode(schema, data)

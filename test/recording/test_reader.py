@@ -5,16 +5,17 @@ import zlib
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from mcap.writer import CompressionType, Writer
+from recording_support import MACHINE, Blocks, record
+
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, iter_messages, read_recording
 from cnc_ptp.recording.schemas import load_schema, parse_schema, schema_text
 from cnc_ptp.recording.writer import Recording
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
-from mcap.writer import CompressionType, Writer
-from recording_support import MACHINE, Blocks, record
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +158,8 @@ def test_missing_file(tmp_path):
     with pytest.raises(CncError) as error:
         read_recording(tmp_path / "none.mcap")
     assert str(error.value) == (
-        f"P-ERR-26001 recording {tmp_path}/none.mcap: cannot be opened: No such file or directory; nothing was read, check the path"
+        f"P-ERR-26001 recording {tmp_path}/none.mcap: cannot be opened: No such file or directory; nothing was "
+        "read, check the path"
     )
 
 
@@ -167,7 +169,8 @@ def test_file_that_is_no_mcap(scratch, content):
     with pytest.raises(CncError) as error:
         read_recording(scratch)
     assert str(error.value) == (
-        f"P-ERR-26002 recording {scratch}: not an MCAP file: it begins with {content[:8]!r} instead of b'\\x89MCAP0\\r\\n'; nothing was "
+        f"P-ERR-26002 recording {scratch}: not an MCAP file: it begins with {content[:8]!r} instead of "
+        "b'\\x89MCAP0\\r\\n'; nothing was "
         "read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written"
     )
 

@@ -1,6 +1,7 @@
 """Schema texts as MCAP embeds them, and the fields in them."""
 
 import pytest
+
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.schemas import DIVIDER, Field, full_name, load_schema, parse_schema, schema_text, short_name
 
@@ -62,7 +63,8 @@ def test_unknown_type_is_refused():
         schema_text("nowhere/msg/Thing")
     assert error.value.error_id == 26005
     assert str(error.value).startswith(
-        "P-ERR-26005 recording: message type nowhere/msg/Thing is not installed (looked for msg/Thing.msg in the ROS prefixes and "
+        "P-ERR-26005 recording: message type nowhere/msg/Thing is not installed (looked for msg/Thing.msg in the "
+        "ROS prefixes and "
     )
     assert str(error.value).endswith("; it cannot be recorded, install package nowhere")
 
@@ -80,6 +82,7 @@ def test_type_that_is_not_defined_is_refused(used):
     with pytest.raises(CncError) as error:
         parse_schema("my/msg/Thing", f"{used} part\n")
     assert str(error.value) == (
-        f"P-ERR-26005 recording: message type my/msg/Thing: type {used} of field my/msg/Thing.part is neither defined in the "
+        f"P-ERR-26005 recording: message type my/msg/Thing: type {used} of field my/msg/Thing.part is neither "
+        "defined in the "
         "schema nor supported; the schema is not usable"
     )

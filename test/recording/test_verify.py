@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from recording_support import Blocks, record
+
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import PlcBlock
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.verify import Difference, ranges_text, state_topic, verify
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from recording_support import Blocks, record
 
 COUNT = 60
 
@@ -196,7 +197,8 @@ def test_recording_without_states_or_machine_file(recorded):
     with pytest.raises(CncError) as error:
         verify(recorded, lambda _: iter(()))
     assert str(error.value) == (
-        f"P-ERR-26004 recording {recorded.path}: holds no attachment machine.yaml; it cannot be verified, record it with cnc_ptp"
+        f"P-ERR-26004 recording {recorded.path}: holds no attachment machine.yaml; it cannot be verified, record it "
+        "with cnc_ptp"
     )
 
 
@@ -206,7 +208,8 @@ def test_recording_of_another_version(recorded):
     with pytest.raises(CncError) as error:
         verify(recorded, lambda _: computed())
     assert str(error.value).startswith(
-        f"P-ERR-26004 recording {recorded.path}: /x/state has the fields cycle, set_position, this version computes header.stamp.sec, "
+        f"P-ERR-26004 recording {recorded.path}: /x/state has the fields cycle, set_position, this version computes "
+        "header.stamp.sec, "
     )
     assert str(error.value).endswith("; it cannot be verified, use the version that recorded it")
 

@@ -7,16 +7,17 @@ import sys
 from pathlib import Path
 
 import pytest
+from mcap.reader import NonSeekingReader, make_reader
+from mcap.stream_reader import StreamReader
+from mcap_ros2.decoder import DecoderFactory
+from recording_support import MACHINE, record
+
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.writer import Recording
-from mcap.reader import NonSeekingReader, make_reader
-from mcap.stream_reader import StreamReader
-from mcap_ros2.decoder import DecoderFactory
-from recording_support import MACHINE, record
 
 
 @pytest.fixture
@@ -233,7 +234,8 @@ def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, 
             recording.axis_states("x", bad)
         recording.axis_block("x", blocks.axis(20))
     assert str(error.value) == (
-        "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected 162 items for "
+        "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected "
+        "162 items for "
         "packing (got 163); it was not recorded"
     )
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == [*range(10), *range(20, 30)]
@@ -248,7 +250,8 @@ def test_first_block_with_another_number_of_values_is_refused(path, blocks, make
             recording.block("u", bad)
         recording.block("u", getattr(blocks, maker)(10))
     assert str(error.value) == (
-        f"P-ERR-26006 recording: {type(bad).__name__} with first cycle 0, count 10 does not fit its message: {field} holds 11 "
+        f"P-ERR-26006 recording: {type(bad).__name__} with first cycle 0, count 10 does not fit its message: "
+        f"{field} holds 11 "
         "values; it was not recorded"
     )
     assert read_recording(path).topics["/u/state"].count == 10
@@ -260,7 +263,8 @@ def test_channel_setpoints_of_different_length_are_refused(path, blocks):
     with Recording(path, MACHINE) as recording, pytest.raises(CncError) as error:
         recording.channel_block("channel", bad)
     assert str(error.value) == (
-        "P-ERR-26006 recording: ChannelBlock with first cycle 0, count 10 does not fit its message: set_velocity holds 29 values; "
+        "P-ERR-26006 recording: ChannelBlock with first cycle 0, count 10 does not fit its message: set_velocity "
+        "holds 29 values; "
         "it was not recorded"
     )
 
@@ -283,7 +287,8 @@ def test_topic_with_two_types_is_refused(path, blocks):
             recording.spindle_block("x", blocks.spindle(0))
         recording.raw("/x/block", "cnc_ptp/AxisBlock", b"\0\1\0\0", 0)
     assert str(error.value) == (
-        f"P-ERR-26008 recording {path}: topic /x/block holds cnc_ptp/msg/AxisBlock, a message of cnc_ptp/msg/SpindleBlock "
+        f"P-ERR-26008 recording {path}: topic /x/block holds cnc_ptp/msg/AxisBlock, a message of "
+        "cnc_ptp/msg/SpindleBlock "
         "came; it was not recorded"
     )
 

@@ -1,0 +1,352 @@
+"""The figures of a report: everything over time on linked axes, and the path."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum
+from html import escape
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import plotly.graph_objects as go  # type: ignore[import-untyped]
+from plotly.subplots import make_subplots  # type: ignore[import-untyped]
+
+from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode, Severity
+from cnc_ptp.recording.decimate import line_points, path_points
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+
+SET, ACTUAL, OTHER, DEVIATION = "#5b93d6", "#d9480f", "#6a4fa3", "#b3261e"
+INK, GRID, FAINT = "#1c2430", "#e6eaf0", "#8a94a3"
+ROW_HEIGHT, ROW_GAP, TOP, BOTTOM = 150, 54, 84, 48
+MOST_BANDS = 4000
+STATE_COLOURS = {
+    "DISABLED": "#c9ced6",
+    "IDLE": "#dfe3e9",
+    "STANDSTILL": "#dfe3e9",
+    "READY": "#b9d3ee",
+    "HOMING": "#9d7bd8",
+    "DISCRETE_MOTION": "#2f7fd1",
+    "CONTINUOUS_MOTION": "#2aa198",
+    "SYNCHRONIZED_MOTION": "#3f9b4f",
+    "RUNNING": "#3f9b4f",
+    "WAITING": "#7fb2e5",
+    "HOLD": "#f2b63c",
+    "STOPPED": "#f0d37a",
+    "STOPPING": "#e07b00",
+    "ERROR": "#c62828",
+    "ERROR_STOP": "#c62828",
+}
+SEVERITY_COLOURS = {Severity.INFO: "#5b6b7f", Severity.WARNING: "#e0a100", Severity.ERROR: "#c62828"}
+
+
+@dataclass
+class Row:
+    """One plot of the time figure: a title and lines (name, colour, rows of the recording, field, factor)."""
+
+    title: str
+    lines: list[tuple[str, str, Records, str, float]] = field(default_factory=list)
+    precise: bool = False  # positions keep float64
+    legend: bool = False  # the row has its own legend
+
+
+def time_figure(recorded: Recorded, units: Mapping[str, str]) -> go.Figure:
+    """All quantities over time, one above the other; zooming one of them zooms all. `units`: mm or deg by axis."""
+    rows = [row for row in _rows(recorded, units) if row.lines]
+    count = len(rows) + 1
+    height = count * ROW_HEIGHT + (count - 1) * ROW_GAP
+    figure = make_subplots(
+        rows=count,
+        cols=1,
+        shared_xaxes="all",
+        vertical_spacing=ROW_GAP / height if count > 1 else 0.0,
+        subplot_titles=["States and events", *(row.title for row in rows)],
+    )
+    _add_states(figure, recorded)
+    for number, row in enumerate(rows, start=2):
+        _add_lines(figure, recorded, row, number)
+    _style(figure, height + TOP + BOTTOM)
+    figure.update_layout(
+        margin={"l": 86, "r": 24, "t": TOP, "b": BOTTOM}, hovermode="x", barmode="overlay", bargap=0.25
+    )
+    figure.update_xaxes(
+        showticklabels=True, hoverformat=".3f", showspikes=True, spikemode="across", spikethickness=1, spikecolor=FAINT
+    )
+    figure.update_xaxes(title_text="time in s", row=count, col=1)
+    figure.update_xaxes(range=[0.0, max(float(recorded.last_cycle + 1) * recorded.cycle_time_ns * 1e-9, 1e-3)])
+    figure.update_annotations(x=0.0, xanchor="left", font={"size": 13, "color": INK})
+    legend = {"orientation": "h", "traceorder": "normal", "x": 0.0, "xanchor": "left"}
+    figure.update_layout(legend={**legend, "yref": "container", "y": 1.0 - 34 / figure.layout.height, "yanchor": "top"})
+    for number, row in enumerate(rows, start=2):
+        if row.legend:
+            top = figure.layout[f"yaxis{number}"].domain[1]
+            place = {"x": 1.0, "xanchor": "right", "y": top, "yanchor": "bottom"}
+            figure.update_layout({f"legend{number}": {**legend, **place}})
+    return figure
+
+
+def _rows(recorded: Recorded, units: Mapping[str, str]) -> Iterator[Row]:
+    channels = recorded.of_type(CHANNEL_STATE)
+    axes = recorded.of_type(AXIS_STATE)
+    spindles = recorded.of_type(SPINDLE_STATE)
+    for name, rows in channels.items():
+        feed = [("set", SET, rows, "programmed_feed", 60.0), ("actual", ACTUAL, rows, "path_velocity", 60.0)]
+        yield Row(f"{escape(name)}: feed in mm/min, programmed and path velocity", feed)
+    overrides = {**channels, **axes, **spindles}
+    colours = ["#1f5fa8", "#e07b00", "#3f9b4f", "#6a4fa3", "#2aa198", "#b3261e", "#8c6d31", "#5b6b7f"]
+    yield Row(
+        "Override in %",
+        [
+            (name, colours[number % len(colours)], rows, "override_percent", 1.0)
+            for number, (name, rows) in enumerate(overrides.items())
+        ],
+        legend=True,
+    )
+    for name, rows in channels.items():
+        yield Row(f"{escape(name)}: program line", [("line", OTHER, rows, "line", 1.0)])
+    for name, rows in spindles.items():
+        speed = [("set", SET, rows, "set_speed_rpm", 1.0), ("actual", ACTUAL, rows, "actual_speed_rpm", 1.0)]
+        yield Row(f"{escape(name)}: speed in rpm", speed)
+    for name, rows in axes.items():
+        yield from _axis_rows(name, rows, units.get(name, "mm"))
+
+
+def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
+    label = escape(name.upper() if len(name) == 1 else name)
+    position = [("set", SET, rows, "set_position", 1.0), ("actual", ACTUAL, rows, "actual_position", 1.0)]
+    velocity = [("set", SET, rows, "set_velocity", 1.0), ("actual", ACTUAL, rows, "actual_velocity", 1.0)]
+    yield Row(f"{label}: position in {unit}", position, precise=True)
+    yield Row(f"{label}: velocity in {unit}/s", velocity)
+    yield Row(f"{label}: acceleration in {unit}/s²", [("set", SET, rows, "set_acceleration", 1.0)])
+    yield Row(f"{label}: jerk in {unit}/s³", [("set", SET, rows, "set_jerk", 1.0)])
+    yield Row(
+        f"{label}: following error in {unit}",
+        [("following error", DEVIATION, rows, "following_error", 1.0)],
+        precise=True,
+    )
+
+
+def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int) -> None:
+    shown = {trace.name for trace in figure.data}
+    for name, colour, rows, column, factor in row.lines:
+        cycles, values = line_points(rows["cycle"], rows[column])
+        figure.add_trace(
+            go.Scatter(
+                x=_compact(cycles * (recorded.cycle_time_ns * 1e-9), precise=recorded.last_cycle > 2_000_000),
+                y=_compact(values * factor, precise=row.precise),
+                mode="lines",
+                name=escape(name),
+                legendgroup=name,
+                showlegend=row.legend or (name in ("set", "actual") and name not in shown),
+                legend=f"legend{number}" if row.legend else "legend",
+                line={"color": colour, "width": 2.6 if name == "set" and len(row.lines) > 1 else 1.3},
+                hovertemplate="%{y}",
+                connectgaps=False,
+            ),
+            row=number,
+            col=1,
+        )
+
+
+def _compact(values: npt.NDArray[np.float64], *, precise: bool) -> npt.NDArray[Any]:
+    """Seven digits are enough for what is only looked at."""
+    return values if precise else values.astype(np.float32)
+
+
+def _add_states(figure: go.Figure, recorded: Recorded) -> None:
+    units: list[tuple[str, Records, type[IntEnum]]] = []
+    state_codes: list[tuple[str, type[IntEnum]]] = [
+        (AXIS_STATE, AxisStateCode),
+        (SPINDLE_STATE, AxisStateCode),
+        (CHANNEL_STATE, ChannelStateCode),
+    ]
+    for type_name, codes in state_codes:
+        units += [(name, rows, codes) for name, rows in recorded.of_type(type_name).items()]
+    names = ["events", *(name for name, _, _ in reversed(units))]
+    bands: dict[str, list[tuple[str, float, float]]] = {}
+    for name, rows, codes in units:
+        for state, begin, end in state_bands(rows, codes, recorded.cycle_time_ns * 1e-9):
+            bands.setdefault(state, []).append((name, begin, end))
+    for state in sorted(bands, key=list(STATE_COLOURS).index):
+        _add_bands(figure, state, bands[state])
+    _add_events(figure, recorded)
+    figure.update_yaxes(
+        categoryorder="array", categoryarray=[escape(name) for name in names[::-1]], autorange="reversed", row=1, col=1
+    )
+    figure.update_yaxes(showgrid=False, row=1, col=1)
+
+
+def _add_bands(figure: go.Figure, state: str, bands: list[tuple[str, float, float]]) -> None:
+    label = state.replace("_", " ").lower()
+    figure.add_trace(
+        go.Bar(
+            y=[escape(name) for name, _, _ in bands],
+            base=[begin for _, begin, _ in bands],
+            x=[end - begin for _, begin, end in bands],
+            customdata=[[begin, end] for _, begin, end in bands],
+            orientation="h",
+            name=label,
+            legendgroup=state,
+            marker={"color": STATE_COLOURS[state], "line": {"width": 0}},
+            hovertemplate=f"%{{y}}: {label}<br>%{{customdata[0]:.3f}} s to %{{customdata[1]:.3f}} s<extra></extra>",
+        ),
+        row=1,
+        col=1,
+    )
+
+
+def state_bands(rows: Records, codes: type[IntEnum], cycle_time: float) -> Iterator[tuple[str, float, float]]:
+    """Stretches of one state: name, begin and end in s. Of more than MOST_BANDS the shortest are left out."""
+    if len(rows) == 0:
+        return
+    states = rows["state"]
+    starts = np.concatenate([[0], np.flatnonzero(states[1:] != states[:-1]) + 1])
+    ends = np.concatenate([starts[1:], [len(states)]]) - 1
+    lengths = ends - starts
+    kept = np.sort(np.argsort(lengths)[-MOST_BANDS:])
+    known = {int(code): code.name for code in codes}
+    for start, end in zip(starts[kept], ends[kept], strict=True):
+        name = known.get(int(states[start]), "DISABLED")
+        yield name, float(rows["cycle"][start]) * cycle_time, (float(rows["cycle"][end]) + 1.0) * cycle_time
+
+
+def _add_events(figure: go.Figure, recorded: Recorded) -> None:
+    for severity, colour in SEVERITY_COLOURS.items():
+        events = [event for event in recorded.events if event.severity == severity]
+        if not events:
+            continue
+        figure.add_trace(
+            go.Scatter(
+                x=[event.cycle * recorded.cycle_time_ns * 1e-9 for event in events],
+                y=["events"] * len(events),
+                mode="markers",
+                name=severity.name.lower(),
+                legendgroup=f"event {severity.name}",
+                marker={"color": colour, "size": 11, "symbol": "diamond", "line": {"color": "white", "width": 1}},
+                text=[f"{escape(event.source)}: {escape(event.text)}" for event in events],
+                hovertemplate="%{x:.3f} s %{text}<extra></extra>",
+            ),
+            row=1,
+            col=1,
+        )
+
+
+def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
+    """The axes of the path plot: x, y, z where they exist, otherwise the first three linear axes."""
+    names = [name for name in recorded.of_type(AXIS_STATE) if units.get(name, "mm") == "mm"]
+    spatial = [name for name in names if name in ("x", "y", "z")]
+    spatial.sort()
+    return spatial if len(spatial) >= 2 else names[:3]
+
+
+def path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
+    """The actual path in the plane of the first two axes and, with a third axis, in space; coloured by feed."""
+    axes = path_axes(recorded, units)
+    if len(axes) < 2:
+        return []
+    path = _path(recorded, axes)
+    figures = [_plane_figure(path, axes)]
+    if len(axes) > 2:
+        figures.append(_space_figure(path, axes))
+    return figures
+
+
+@dataclass
+class Path:
+    """Points of the actual path: coordinates (axes, n), feed in mm/min (n,), time in s (n,)."""
+
+    points: npt.NDArray[np.float64]
+    feed: npt.NDArray[np.float64]
+    time: npt.NDArray[np.float64]
+
+
+def _path(recorded: Recorded, axes: list[str]) -> Path:
+    states = [recorded.of_type(AXIS_STATE)[name] for name in axes]
+    length = min(len(rows) for rows in states)
+    columns = [rows["actual_position"][:length] for rows in states]
+    velocity = np.stack([rows["actual_velocity"][:length] for rows in states])
+    chosen = path_points(columns)
+    feed = np.sqrt((velocity[:, chosen] ** 2).sum(axis=0)) * 60.0
+    points = np.stack([column[chosen] for column in columns])
+    return Path(points, feed, recorded.seconds(states[0]["cycle"][chosen]))
+
+
+def _hover(axes: list[str]) -> str:
+    places = "<br>".join(f"{escape(axis.upper())} %{{{place}:.3f}}" for axis, place in zip(axes, "xyz", strict=False))
+    return f"{places}<br>%{{customdata:.3f}} s<br>%{{marker.color:.0f}} mm/min<extra></extra>"
+
+
+def _plane_figure(path: Path, axes: list[str]) -> go.Figure:
+    x, y = (_compact(path.points[index], precise=False) for index in (0, 1))
+    line = go.Scatter(x=x, y=y, mode="lines", line={"color": "#c3cad4", "width": 1}, hoverinfo="skip")
+    marks = go.Scatter(
+        x=x,
+        y=y,
+        mode="markers",
+        customdata=_compact(path.time, precise=False),
+        marker={
+            "color": _compact(path.feed, precise=False),
+            "colorscale": "Turbo",
+            "cmin": 0.0,
+            "size": 4,
+            "colorbar": {"title": {"text": "feed<br>mm/min"}, "thickness": 12, "outlinewidth": 0, "tickformat": ",.0f"},
+        },
+        hovertemplate=_hover(axes[:2]),
+    )
+    figure = go.Figure([line, marks])
+    _style(figure, 520)
+    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
+    figure.update_xaxes(title_text=f"{escape(axes[0].upper())} in mm")
+    figure.update_yaxes(title_text=f"{escape(axes[1].upper())} in mm", scaleanchor="x", scaleratio=1)
+    return figure
+
+
+def _space_figure(path: Path, axes: list[str]) -> go.Figure:
+    x, y, z = (_compact(path.points[index], precise=False) for index in (0, 1, 2))
+    line = go.Scatter3d(
+        x=x,
+        y=y,
+        z=z,
+        mode="lines",
+        customdata=_compact(path.time, precise=False),
+        line={"color": _compact(path.feed, precise=False), "colorscale": "Turbo", "cmin": 0.0, "width": 4},
+        hovertemplate=_hover(axes).replace("marker.color", "line.color"),
+    )
+    figure = go.Figure([line])
+    _style(figure, 520)
+    sides = {
+        f"{place}axis": {
+            "title": {"text": f"{escape(axis.upper())} in mm"},
+            "backgroundcolor": "white",
+            "gridcolor": GRID,
+        }
+        for axis, place in zip(axes, "xyz", strict=False)
+    }
+    camera = {"eye": {"x": -1.1, "y": -1.7, "z": 1.1}}
+    figure.update_layout(
+        margin={"l": 0, "r": 0, "t": 0, "b": 0}, scene={"aspectmode": "data", "camera": camera, **sides}
+    )
+    return figure
+
+
+def _style(figure: go.Figure, height: int) -> None:
+    figure.update_layout(
+        template="plotly_white",
+        height=height,
+        font={"family": "system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif", "size": 12, "color": INK},
+        paper_bgcolor="white",
+        plot_bgcolor="white",
+        hoverlabel={"font": {"size": 12}},
+        separators=".\u202f",
+    )
+    figure.update_xaxes(gridcolor=GRID, zeroline=False, linecolor=GRID, showline=True)
+    figure.update_yaxes(
+        gridcolor=GRID,
+        zerolinecolor="#cfd6df",
+        linecolor=GRID,
+        showline=True,
+        exponentformat="none",
+        separatethousands=True,
+    )

@@ -1,0 +1,126 @@
+"""Figures of a run: program time, cycles, lost blocks, largest following errors, lateness, errors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import ChannelStateCode, Severity
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
+from cnc_ptp.recording.writer import MACHINE_FILE
+
+IN_PROGRAM = (
+    ChannelStateCode.RUNNING,
+    ChannelStateCode.HOLD,
+    ChannelStateCode.WAITING,
+    ChannelStateCode.STOPPED,
+    ChannelStateCode.STOPPING,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Extreme:
+    """The largest magnitude of a quantity and where it was."""
+
+    value: float
+    cycle: int
+    time_s: float
+
+
+def summary(recorded: Recorded) -> dict[str, Any]:
+    """The figures that close a run.
+
+    `program_time_s` (None without a channel): time in which a program was being executed, waiting included;
+    `duration_s`: recorded time; `cycles`, `blocks`; `lost_blocks`: blocks that the nodes reported as lost, or that are
+    missing in the recording, whichever is more; `following_error`: Extreme by axis; `units`: mm or deg by axis, as far
+    as known; `lateness_p50_us`, `lateness_p99_us`: of the node that was latest, None if no node reported; `errors`,
+    `warnings`: events; `commands`, `refused`; `complete`, `missing`: of the file.
+    """
+    nodes = last_diagnostics(recorded)
+    reported = sum(_number(values, "lost_blocks") or 0 for values in nodes.values())
+    return {
+        "program_time_s": program_time(recorded),
+        "duration_s": cycles(recorded) * recorded.cycle_time_ns * 1e-9,
+        "cycles": cycles(recorded),
+        "blocks": math.ceil(cycles(recorded) / recorded.block_cycles),
+        "lost_blocks": max(int(reported), missing_blocks(recorded)),
+        "following_error": largest_following_errors(recorded),
+        "units": axis_units(recorded),
+        "lateness_p50_us": _largest(nodes, "lateness_p50_us"),
+        "lateness_p99_us": _largest(nodes, "lateness_p99_us"),
+        "errors": sum(event.severity == Severity.ERROR for event in recorded.events),
+        "warnings": sum(event.severity == Severity.WARNING for event in recorded.events),
+        "commands": len(recorded.commands),
+        "refused": sum(not command.accepted for command in recorded.commands),
+        "complete": recorded.complete,
+        "missing": recorded.missing,
+    }
+
+
+def cycles(recorded: Recorded) -> int:
+    """Cycles from the first to the last recorded one."""
+    numbers = [rows["cycle"] for rows in recorded.states.values()]
+    if not numbers:
+        return 0
+    return int(max(column.max() for column in numbers)) - int(min(column.min() for column in numbers)) + 1
+
+
+def program_time(recorded: Recorded) -> float | None:
+    """Time in s that a channel spent executing a program; the longest of several, None without a channel."""
+    channels = recorded.of_type(CHANNEL_STATE)
+    active = [int(np.isin(rows["state"], IN_PROGRAM).sum()) for rows in channels.values()]
+    return max(active) * recorded.cycle_time_ns * 1e-9 if active else None
+
+
+def missing_blocks(recorded: Recorded) -> int:
+    """Blocks missing between the first and the last cycle of each unit, all units together."""
+    return sum(_missing_blocks(rows, recorded.block_cycles) for rows in recorded.states.values())
+
+
+def _missing_blocks(rows: Records, block_cycles: int) -> int:
+    numbers = np.unique(rows["cycle"]).astype(np.int64)
+    gaps = np.diff(numbers) - 1
+    return int(np.ceil(gaps / block_cycles).sum())
+
+
+def largest_following_errors(recorded: Recorded) -> dict[str, Extreme]:
+    """The largest following error by axis; mm or deg."""
+    result: dict[str, Extreme] = {}
+    for name, rows in recorded.of_type(AXIS_STATE).items():
+        magnitudes = np.nan_to_num(np.abs(rows["following_error"]), nan=np.inf)
+        place = int(magnitudes.argmax())
+        cycle = int(rows["cycle"][place])
+        result[name] = Extreme(float(rows["following_error"][place]), cycle, cycle * recorded.cycle_time_ns * 1e-9)
+    return result
+
+
+def axis_units(recorded: Recorded) -> dict[str, str]:
+    """`mm` or `deg` by axis as the machine file says; empty when the recording holds none that can be loaded."""
+    try:
+        machine = load_machine(recorded.machine_yaml, MACHINE_FILE)
+    except CncError:
+        return {}
+    return {name: "deg" if axis.rotary else "mm" for name, axis in machine.axes.items()}
+
+
+def last_diagnostics(recorded: Recorded) -> dict[str, dict[str, str]]:
+    """The last reported values of each node, by its name."""
+    return {diagnostic.name: diagnostic.values for diagnostic in recorded.diagnostics}
+
+
+def _largest(nodes: dict[str, dict[str, str]], key: str) -> float | None:
+    numbers = [number for values in nodes.values() if (number := _number(values, key)) is not None]
+    return max(numbers, default=None)
+
+
+def _number(values: dict[str, str], key: str) -> float | None:
+    try:
+        return float(values[key])
+    except (KeyError, ValueError):
+        return None
