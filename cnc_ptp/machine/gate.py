@@ -28,7 +28,10 @@ class BlockGate:
         """Ticks and blocks that came a second time and were not used again."""
 
     def add_tick(self, tick: CycleTick) -> bool:
-        """Takes a tick; False when ticks before it are missing."""
+        """Takes a tick; False when ticks before it are missing. A tick without cycles says that the run is over."""
+        if tick.count == 0:
+            self.closed = True
+            return True
         expected = self._ticks[-1].first_cycle + self._ticks[-1].count if self._ticks else self._next_cycle
         if tick.first_cycle < expected:
             self.duplicates += 1

@@ -92,15 +92,19 @@ class ClockNode(Node):
 
     def _tick(self, scheduled_ns: int) -> None:
         if self._cycles is not None and self._first_cycle >= self._cycles:
+            self._publish_tick(0, 0)
             self._end()
             return
-        tick = msg.CycleTick(first_cycle=self._first_cycle, count=self._count, scheduled_monotonic_ns=scheduled_ns)
-        tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
-        self._publisher.publish(tick)
+        self._publish_tick(self._count, scheduled_ns)
         self._first_cycle += self._count
         if self._free_run:
             self._open = set(self._reporting)
             self._heard = dict.fromkeys(self._open, time.monotonic())
+
+    def _publish_tick(self, count: int, scheduled_ns: int) -> None:
+        tick = msg.CycleTick(first_cycle=self._first_cycle, count=count, scheduled_monotonic_ns=scheduled_ns)
+        tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
+        self._publisher.publish(tick)
 
     def _on_report(self, message: msg.BlockReport) -> None:
         if message.first_cycle < 0:

@@ -5,27 +5,65 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Block, ChannelBlock
+from cnc_ptp import action, msg
+from cnc_ptp.machine.blocks import Block, ChannelBlock, Command
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
 from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 
 class ChannelNode(UnitNode):
-    """UnitNode of a channel; also publishes /<channel>/handshake (HandshakeRequest) for M, S, T and D functions."""
+    """UnitNode of a channel.
+
+    Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T and D functions.
+    Action: /<channel>/run_program (RunProgram); cancel = reset.
+    """
 
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
         arguments.require_unit(machine, name, ["channel"])
         super().__init__(machine, build_unit(machine, name), **options)
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
+        self._program_job = JobServer(
+            self,
+            action.RunProgram,
+            f"/{name}/run_program",
+            start=self._start_program,
+            halt=Command(name, "reset", {}),
+            feedback=program_feedback,
+            result=program_result,
+        )
+
+    def _start_program(self, goal: Any) -> list[Command]:
+        start = Command(self.unit.name, "start", {})
+        return [self.load_command(goal.program), start] if goal.program else [start]
 
     def after_block(self, block: Block) -> None:
         if isinstance(block, ChannelBlock):
+            self._program_job.after_block(block)
             for request in block.requests:
                 self._handshake_publisher.publish(convert.request_to_message(request, self.stamp(request.cycle)))
+
+
+def program_feedback(block: Block, feedback: Any) -> None:
+    if isinstance(block, ChannelBlock):
+        feedback.line, feedback.block_number = block.line[-1], block.block_number[-1]
+        feedback.path_velocity, feedback.distance_to_go = block.path_velocity[-1], block.distance_to_go[-1]
+        feedback.progress = block.blocks_done / max(1, block.blocks_total)
+        feedback.state = block.state[-1]
+
+
+def program_result(block: Block, result: Any) -> bool | None:
+    """The program has ended when the channel is done; in full when all its blocks are through without an error."""
+    if not isinstance(block, ChannelBlock) or not block.done:
+        return None
+    result.error_id = block.error_id[-1]
+    result.cycle = block.first_cycle + block.count - 1
+    done = block.error_id[-1] == 0 and block.blocks_done >= block.blocks_total
+    result.message = "" if done else f"the program was aborted after block {block.blocks_done} of {block.blocks_total}"
+    return done
 
 
 @arguments.unit_command

@@ -89,7 +89,9 @@ def publish_recording(path: str, *, rate: float) -> int:
 
 @click.command()
 @click.argument("recording", type=click.Path(dir_okay=False))
-@click.option("--rate", type=click.FloatRange(min=0.0, min_open=True), default=1.0, show_default=True, help="2 = twice as fast.")
+@click.option(
+    "--rate", type=click.FloatRange(min=0.0, min_open=True), default=1.0, show_default=True, help="2 = twice as fast."
+)
 def command(recording: str, rate: float) -> None:
     """Publishes RECORDING again."""
     sys.exit(publish_recording(recording, rate=rate))

@@ -82,7 +82,7 @@ class PlcBridgeNode(UnitNode):
 
     def stop_all(self) -> None:
         """Controlled stop of everything; the run ends when all stands, with or without a duration."""
-        self._command(Command(PLC, "stop_all", {}))
+        self.command(Command(PLC, "stop_all", {}))
 
     def _on_life_sign(self, message: msg.LifeSign) -> None:
         if message.counter != self._life_sign_counter:

@@ -92,7 +92,9 @@ class RecorderNode(Node):
             for record in self._early:
                 record()
             self._early.clear()
-        self._recording.tick(convert.message_to_tick(message), message.scheduled_monotonic_ns)
+        if message.count:
+            tick = convert.message_to_tick(message)
+            self._recording.tick(tick, message.scheduled_monotonic_ns)
 
     def _on_block(self, unit: str, block_type: Any, data: bytes) -> None:
         message = deserialize_message(data, block_type)

@@ -16,7 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Block, Command, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
@@ -137,6 +137,8 @@ class UnitNode(Node):
         if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):
             self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
         self._compute_ready_blocks()
+        if self._gate.closed:
+            self._publish_diagnostics()
 
     def _on_block(self, source: str, message: Any) -> None:
         self._heard[source] = time.monotonic()
@@ -148,12 +150,12 @@ class UnitNode(Node):
             self._heard[message.source] = time.monotonic()
 
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
-        record = self._command(Command(self.unit.name, command, self._arguments(command, request)))
+        record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
         return response
 
-    def _arguments(self, command: str, request: Any) -> dict[str, Any]:
+    def arguments(self, command: str, request: Any) -> dict[str, Any]:
         """The fields of a service request; optional numbers that are 0 or NaN count as left out."""
         arguments = {}
         for name, argument in COMMANDS[self.unit.kind][command].items():
@@ -162,11 +164,15 @@ class UnitNode(Node):
             value = getattr(request, name)
             if argument.required or (value != 0.0 and not math.isnan(value)):
                 arguments[name] = value
-        if command == "load":
-            arguments["text"] = read_text(arguments["program"])
-        return {name: value for name, value in arguments.items() if value is not None}
+        return self.load_command(arguments["program"]).arguments if command == "load" else arguments
 
-    def _command(self, command: Command) -> Any:
+    def load_command(self, path: str) -> Command:
+        """The command that loads the program file at `path`; without text, which the channel refuses, if it cannot be read."""
+        text = read_text(path)
+        return Command(self.unit.name, "load", {"program": path} if text is None else {"program": path, "text": text})
+
+    def command(self, command: Command) -> CommandRecord:
+        """Carries out a command between two blocks: from a service, an action or the watchdog."""
         with self._working():
             record = self._runner.command(command)
         self._publish_records()
@@ -246,7 +252,7 @@ class UnitNode(Node):
             )
             self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
         self._gate.drop(source)
-        self._command(Command(self.unit.name, "upstream_lost", {"source": source}))
+        self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
         if source == CLOCK:
             self._alone = True
             for other in self._gate.sources:

@@ -1,0 +1,95 @@
+"""Long jobs as ROS actions: progress while they run, cancel = controlled halt, the client's death changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.task import Future
+
+from cnc_ptp.machine.blocks import Block, Command, CommandRecord
+
+FEEDBACK_BLOCKS = 10
+"""Blocks between two feedback messages."""
+
+
+class JobServer:
+    """An action of a unit node: start commands, then block by block until the unit says that the job has ended.
+
+    One job at a time; a second goal runs into the refusal of the start command, which is its result.
+    """
+
+    def __init__(
+        self,
+        node: Any,
+        action_type: Any,
+        name: str,
+        *,
+        start: Callable[[Any], list[Command]],
+        halt: Command,
+        feedback: Callable[[Block, Any], None],
+        result: Callable[[Block, Any], bool | None],
+    ) -> None:
+        """`start(goal)` gives the commands that begin the job, `halt` ends it. `feedback(block, message)` fills in progress.
+        `result(block, message)` fills in the result: None while the job runs, then whether it was done in full."""
+        self._node = node
+        self._type = action_type
+        self._start = start
+        self._halt = halt
+        self._feedback = feedback
+        self._result = result
+        self._goal: ServerGoalHandle | None = None
+        self._ended: Future | None = None
+        self._first_cycle = 0
+        self._blocks = 0
+        self._server = ActionServer(
+            node,
+            action_type,
+            name,
+            self._execute,
+            goal_callback=lambda goal: GoalResponse.ACCEPT,
+            cancel_callback=self._cancel,
+        )
+
+    async def _execute(self, goal: ServerGoalHandle) -> Any:
+        for command in self._start(goal.request):
+            record: CommandRecord = self._node.command(command)
+            if not record.accepted:
+                goal.abort()
+                return self._refused(record)
+        self._goal, self._ended = goal, Future()
+        self._first_cycle = record.cycle
+        message, succeeded = await self._ended
+        self._goal = self._ended = None
+        if goal.is_cancel_requested:
+            goal.canceled()
+        elif succeeded:
+            goal.succeed()
+        else:
+            goal.abort()
+        return message
+
+    def _refused(self, record: CommandRecord) -> Any:
+        return self._type.Result(success=False, error_id=record.error_id, message=record.message)
+
+    def _cancel(self, goal: ServerGoalHandle) -> CancelResponse:
+        self._node.command(self._halt)
+        return CancelResponse.ACCEPT
+
+    def after_block(self, block: Block) -> None:
+        """Called by the node with each block that it has computed."""
+        if self._goal is None or self._ended is None or self._ended.done() or block.first_cycle < self._first_cycle:
+            return
+        message = self._type.Result()
+        succeeded = self._result(block, message)
+        if succeeded is not None:
+            message.success = succeeded and not self._goal.is_cancel_requested
+            self._ended.set_result((message, message.success))
+            return
+        self._blocks += 1
+        if self._blocks % FEEDBACK_BLOCKS == 0:
+            feedback = self._type.Feedback()
+            self._feedback(block, feedback)
+            self._goal.publish_feedback(feedback)
