@@ -45,7 +45,14 @@ def _kept(values: npt.NDArray[Any], points: int) -> Indices:
     column = np.ascontiguousarray(values[kept], dtype=np.float64)
     downsampler = NaNMinMaxDownsampler()  # type: ignore[no-untyped-call]
     chosen = downsampler.downsample(column, n_out=points // 2 * 2).astype(np.int64)
-    return np.asarray(kept[np.unique(np.concatenate([[0], chosen, [len(kept) - 1]]))])
+    return np.unique(np.concatenate([kept[chosen], kept[[0, -1]], _long_flats(values, 2 * len(values) // points)]))
+
+
+def _long_flats(values: npt.NDArray[Any], length: int) -> Indices:
+    """First and last index of each stretch of more than `length` equal values: without them a flat line would slope."""
+    borders = np.concatenate([[0], np.flatnonzero(values[1:] != values[:-1]) + 1, [len(values)]])
+    long = np.diff(borders) > length
+    return np.concatenate([borders[:-1][long], borders[1:][long] - 1])
 
 
 def _joined(parts: list[Floats]) -> Floats:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 
@@ -60,8 +61,9 @@ INDEX_ENTRY = np.dtype([("log_time", "<u8"), ("offset", "<u8")])
 class McapFile:
     """An MCAP file of the ROS 2 profile being written.
 
-    Every written chunk is handed to the operating system at once. All methods raise CncError 26007 once the file could
-    not be written; the chunks before that moment stay readable.
+    A closed chunk is compressed by a thread of its own (outside the interpreter lock) while the next one fills; then it
+    is written and handed to the operating system at once. All methods raise CncError 26007 once the file could not be
+    written; the chunks before that moment stay readable.
     """
 
     def __init__(self, path: Path, level: int = 1) -> None:
@@ -76,6 +78,8 @@ class McapFile:
         self._attachment_indexes: list[AttachmentIndex] = []
         self._metadata_indexes: list[MetadataIndex] = []
         self._chunk = _OpenChunk()
+        self._closed_chunk: tuple[_OpenChunk, Future[tuple[bytes, int]]] | None = None
+        self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="recording")
         self._failure: CncError | None = None
         try:
             self._stream = path.open("wb")
@@ -88,6 +92,7 @@ class McapFile:
         self._flush()
 
     def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
+        self.finish_chunk()
         start = self._offset
         self._record(Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
         self._attachment_indexes.append(
@@ -97,6 +102,7 @@ class McapFile:
         self._flush()
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
+        self.finish_chunk()
         start = self._offset
         self._record(Metadata(name, values))
         self._metadata_indexes.append(MetadataIndex(start, self._offset - start, name))
@@ -140,16 +146,28 @@ class McapFile:
         counts[channel_id] = known + len(rows)
         self._chunk.add_messages(channel_id, rows, times)
 
-    def write_chunk(self) -> None:
-        """Closes the chunk being filled and hands it to the operating system; an empty one is left open."""
+    def close_chunk(self) -> None:
+        """Closes the chunk being filled and writes the one before; an empty chunk is left open."""
+        self.finish_chunk()
         chunk = self._chunk
-        if chunk.message_count == 0:
+        if chunk.message_count:
+            self._chunk = _OpenChunk()
+            self._closed_chunk = chunk, self._worker.submit(self._compress, b"".join(chunk.parts))
+
+    @property
+    def chunk_ready(self) -> bool:
+        """A closed chunk has been compressed and waits to be written."""
+        return self._closed_chunk is not None and self._closed_chunk[1].done()
+
+    def finish_chunk(self) -> None:
+        """Returns when the last closed chunk has been handed to the operating system."""
+        if self._closed_chunk is None:
             return
-        self._chunk = _OpenChunk()
+        (chunk, compression), self._closed_chunk = self._closed_chunk, None
+        compressed, crc = compression.result()
         first, last = chunk.time_range()
-        compressed = self._compress(chunk)
         start = self._offset
-        self._record(Chunk("zstd", compressed, last, first, chunk.crc(), chunk.size))
+        self._record(Chunk("zstd", compressed, last, first, crc, chunk.size))
         end = self._offset
         index_offsets: dict[int, int] = {}
         for channel_id, entries in chunk.indexes.items():
@@ -174,11 +192,13 @@ class McapFile:
     def close(self) -> None:
         """Writes the last chunk and the summary, and closes the file."""
         try:
-            self.write_chunk()
+            self.close_chunk()
+            self.finish_chunk()
             self._record(DataEnd(self._crc))
             self._write_summary()
             self._flush()
         finally:
+            self._worker.shutdown()
             self._close_stream()
 
     def __enter__(self) -> McapFile:
@@ -189,9 +209,8 @@ class McapFile:
     ) -> None:
         self.close()
 
-    def _compress(self, chunk: _OpenChunk) -> bytes:
-        stream = self._compressor.compressobj(size=chunk.size)
-        return b"".join([*map(stream.compress, chunk.parts), stream.flush()])
+    def _compress(self, data: bytes) -> tuple[bytes, int]:
+        return self._compressor.compress(data), zlib.crc32(data)
 
     def _count_chunk(self, messages: int, first: int, last: int) -> None:
         statistics = self.statistics
@@ -292,12 +311,6 @@ class _OpenChunk:
         self.parts.append(rows.reshape(-1).data)
         self.size += rows.size
         self.message_count += count
-
-    def crc(self) -> int:
-        crc = 0
-        for part in self.parts:
-            crc = zlib.crc32(part, crc)
-        return crc
 
     def time_range(self) -> tuple[int, int]:
         times = [entries["log_time"] for runs in self.indexes.values() for entries in runs]

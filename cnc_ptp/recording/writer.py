@@ -175,8 +175,8 @@ class Recording:
 
     Offline, `axis_block`, `spindle_block` and `channel_block` record a unit's block with its per-cycle states. In the
     graph the block itself arrives as bytes and goes to `raw`, and `axis_states` … record the states alone. A chunk is
-    written, and handed to the operating system, every `chunk_seconds` of recorded time and whenever `flush_if_due` sees
-    `flush_seconds` of wall time passed. A killed process loses what came after its last chunk and nothing else.
+    closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees `flush_seconds` of wall time passed;
+    then the operating system gets it. A killed process loses what came after its last chunk and nothing else.
 
     Errors (CncError): 26005 unknown message type, 26006 a block that does not fit its message, 26007 the file cannot be
     written, 26008 a topic with two types, 26009 the recording is closed. What was refused is not in the file; the rest
@@ -300,7 +300,8 @@ class Recording:
     def flush(self) -> None:
         """Writes what has been recorded so far as a chunk and hands it to the operating system."""
         self._require_open("a flush")
-        self._write_chunk()
+        self._close_chunk()
+        self._file.finish_chunk()
 
     def close(self) -> None:
         """Writes the rest and the summary. A second call does nothing."""
@@ -361,6 +362,8 @@ class Recording:
         self._add_packed(topic, type_name, encoder, block)
 
     def _add_packed(self, topic: str, type_name: str, encoder: _Blocks | _States, block: Any) -> None:
+        if self._file.chunk_ready:
+            self._file.finish_chunk()
         row = encoder.packer.pack(block)
         if block.first_cycle >= self._chunk_end:
             self._begin_chunk(block.first_cycle)
@@ -394,15 +397,15 @@ class Recording:
             )
 
     def _begin_chunk(self, first_cycle: int) -> None:
-        """Writes the chunk before the block that would exceed it, so that chunks do not overlap in time."""
+        """Closes the chunk before the block that would exceed it, so that chunks do not overlap in time."""
         self._require_open(f"the block with first cycle {first_cycle}")
         if self._chunk_end != BEFORE_ALL:
-            self._write_chunk()
+            self._close_chunk()
         self._chunk_end = first_cycle + self._chunk_cycles
 
-    def _write_chunk(self) -> None:
+    def _close_chunk(self) -> None:
         self._hand_over()
-        self._file.write_chunk()
+        self._file.close_chunk()
 
     def _hand_over(self) -> None:
         for topic in self._topics.values():

@@ -204,7 +204,10 @@ def test_killed_process_leaves_all_flushed_chunks(path):
         "from recording_support import Blocks, MACHINE\n"
         "from cnc_ptp.recording.writer import Recording\n"
         "recording = Recording(sys.argv[1], MACHINE)\n"
-        "for name, block in Blocks(1).machine(250): recording.block(name, block)\n"
+        "recording.flush_if_due(0.0)\n"
+        "for name, block in Blocks(1).machine(250):\n"
+        "    recording.block(name, block)\n"
+        "    if (name, block.first_cycle) == ('s', 2290): recording.flush_if_due(0.6)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     folders = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
@@ -216,11 +219,21 @@ def test_killed_process_leaves_all_flushed_chunks(path):
     assert not recorded.complete
     assert recorded.missing.endswith("what was recorded after the last whole chunk is missing")
     assert {topic: info.count for topic, info in recorded.topics.items() if topic.endswith("/state")} == {
-        "/channel/state": 2000,
-        "/x/state": 2000,
-        "/y/state": 2000,
-        "/s/state": 2000,
+        "/channel/state": 2300,
+        "/x/state": 2300,
+        "/y/state": 2300,
+        "/s/state": 2300,
     }
+
+
+def test_chunks_are_written_on_the_way_without_a_flush(path, blocks):
+    with Recording(path, MACHINE, chunk_seconds=0.1) as recording:
+        for name, block in blocks.machine(35):
+            recording.block(name, block)
+        recording._file._closed_chunk[1].result()
+        recording.plc_block(PlcBlock(350, 10))
+        assert len(read_recording(path).states["/x/state"]) == 300
+    assert len(read_recording(path).states["/x/state"]) == 350
 
 
 def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, blocks):
