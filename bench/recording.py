@@ -34,16 +34,19 @@ def _blocks(first: int) -> list[tuple[str, Block]]:
         return [value] * COUNT
 
     zero, on, off = [0] * COUNT, [True] * COUNT, [False] * COUNT
-    setpoints = [wave(1.0 + number) for number in range(3 * len(AXES) + 3)]
+
+    def setpoints(factor: float) -> list[float]:
+        return [value for axis in range(len(AXES)) for value in wave(factor + axis)]
+
     channel = ChannelBlock(
         first,
         COUNT,
         path_active=True,
         axes=list(AXES),
-        set_position=sum(setpoints[0:3], []),
-        set_velocity=sum(setpoints[3:6], []),
-        set_acceleration=sum(setpoints[6:9], []),
-        set_jerk=sum(setpoints[9:12], []),
+        set_position=setpoints(1.0),
+        set_velocity=setpoints(2.0),
+        set_acceleration=setpoints(3.0),
+        set_jerk=setpoints(4.0),
         line=[first // 100] * COUNT,
         block_number=[first // 10] * COUNT,
         path_velocity=wave(1.5),
@@ -110,12 +113,10 @@ def main() -> None:
         reporting = best(lambda: write_report(recorded, page), passes)
     units, messages = len(AXES) + 2, COUNT * (len(AXES) + 2)
     block_us, all_us = 1e6 * states / BLOCKS, 1e6 * everything / BLOCKS
+    rates = [seconds / duration for duration in (everything, reading, verifying)]
     print(f"recording: states of {units} units {block_us:.0f} us a block ({block_us / messages:.2f} us a message)")
-    print(
-        f"recording: states, blocks, ticks {all_us:.0f} us a block ({seconds / everything:.0f} times real time), {size:.0f} kB/s"
-    )
-    rates = [seconds / duration for duration in (reading, verifying)]
-    print(f"recording: read {rates[0]:.0f}, compare {rates[1]:.0f} times real time; report {reporting:.2f} s")
+    print(f"recording: states, blocks, ticks {all_us:.0f} us a block ({rates[0]:.0f} times real time), {size:.0f} kB/s")
+    print(f"recording: read {rates[1]:.0f}, compare {rates[2]:.0f} times real time; report {reporting:.2f} s")
 
 
 if __name__ == "__main__":
