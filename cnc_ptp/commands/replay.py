@@ -19,8 +19,11 @@ def replay(recording: str, verify: bool, publish: bool, rate: float) -> int:
     """Verifies unless only publishing is asked for. Status 1 when a setpoint differs."""
     status = 0
     if verify or not publish:
-        result = verify_recording(read_recording(recording), replay_blocks)
+        recorded = read_recording(recording)
+        result = verify_recording(recorded, replay_blocks)
         print(result.text(), file=sys.stdout if result.equal else sys.stderr)
+        if not recorded.complete:
+            print(f"note: {recorded.missing}")
         status = 0 if result.equal else RUN_FAILED
     if publish:
         from cnc_ptp.nodes.player import publish_recording
