@@ -183,8 +183,8 @@ def _events(events: list[Event], cycle_time: float) -> str:
                 _tag(
                     Severity(event.severity).name.lower() if event.severity in list(Severity) else str(event.severity)
                 ),
-                _text(event.source),
-                _text(f"P-ERR-{event.error_id}" if event.error_id else ""),
+                _name(event.source),
+                _name(f"P-ERR-{event.error_id}" if event.error_id else ""),
                 _text(event.text),
                 _number(event.line) if event.line else _text(""),
             ],
@@ -202,8 +202,8 @@ def _commands(commands: list[CommandRecord], cycle_time: float) -> str:
             [
                 _number(command.cycle * cycle_time, 3),
                 _number(command.cycle),
-                _text(command.target),
-                _text(command.command),
+                _name(command.target),
+                _name(command.command),
                 _text(_arguments(command.arguments_json)),
                 _tag("accepted" if command.accepted else "refused"),
                 _text(f"P-ERR-{command.error_id} {command.message}" if command.error_id else command.message),
@@ -216,12 +216,22 @@ def _commands(commands: list[CommandRecord], cycle_time: float) -> str:
 
 
 def _arguments(text: str) -> str:
-    """`{"target": 5.0}` -> `target 5.0`; anything else as it is."""
+    """`{"target": 5.0}` -> `target 5.0`, of long texts the number of lines only; what is no object stays as it is."""
+    values = _object(text)
+    return text if values is None else ", ".join(f"{key} {_shortened(value)}" for key, value in values.items())
+
+
+def _object(text: str) -> dict[str, Any] | None:
     try:
         values = json.loads(text)
     except ValueError:
-        return text
-    return ", ".join(f"{key} {value}" for key, value in values.items()) if isinstance(values, dict) else text
+        return None
+    return values if isinstance(values, dict) else None
+
+
+def _shortened(value: Any) -> str:
+    lines = str(value).splitlines()
+    return f"({len(lines)} lines)" if len(lines) > 1 else str(value)
 
 
 def _nodes(nodes: dict[str, dict[str, str]]) -> str:
@@ -250,8 +260,20 @@ def _topics(recorded: Recorded) -> str:
     return f"<section><details><summary>Topics</summary>{table}</details></section>"
 
 
+def _programs(commands: Iterable[CommandRecord]) -> dict[str, str]:
+    """The texts of the loaded NC programs by file name, their lines numbered."""
+    programs: dict[str, str] = {}
+    for command in commands:
+        values = _object(command.arguments_json) or {}
+        if command.accepted and command.command == "load" and isinstance(values.get("text"), str):
+            lines = values["text"].splitlines()
+            numbered = (f"{number:>5}  {line}" for number, line in enumerate(lines, start=1))
+            programs[f"NC program {values.get('program', '')}"] = "\n".join(numbered)
+    return programs
+
+
 def _files(recorded: Recorded) -> str:
-    files = {"machine.yaml": recorded.machine_yaml, **recorded.attachments}
+    files = {**_programs(recorded.commands), "machine.yaml": recorded.machine_yaml, **recorded.attachments}
     return "".join(
         f"<section><details><summary>{escape(name)}</summary><pre>{escape(text)}</pre></details></section>"
         for name, text in files.items()
@@ -289,6 +311,10 @@ def _number(value: float, digits: int = 0) -> str:
 
 def _text(value: str) -> str:
     return f'<td class="text">{escape(value)}</td>'
+
+
+def _name(value: str) -> str:
+    return f"<td>{escape(value)}</td>"
 
 
 def _tag(value: str) -> str:

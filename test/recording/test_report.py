@@ -1,5 +1,6 @@
 """The figures of a run and the page: what is in it, that it needs no network, that texts cannot become code."""
 
+import json
 import re
 from pathlib import Path
 
@@ -187,6 +188,18 @@ def test_arguments_that_are_no_object_are_shown_as_they_are(recorded):
     page = report_page(recorded)
     assert "{broken" in page
     assert "[1]" in page
+
+
+def test_programs_are_shown_once_with_line_numbers(recorded):
+    arguments = json.dumps({"program": "part.nc", "text": "N10 G1 X<1\nM30\n"})
+    recorded.commands = [
+        CommandRecord(0, "channel", "load", arguments, True, 0, ""),
+        CommandRecord(0, "channel", "load", arguments.replace("part", "other"), False, 1, "busy"),
+    ]
+    page = report_page(recorded)
+    assert '<td class="text">program part.nc, text (2 lines)</td>' in page
+    assert "<summary>NC program part.nc</summary><pre>    1  N10 G1 X&lt;1\n    2  M30</pre>" in page
+    assert "<summary>NC program other.nc</summary>" not in page
 
 
 def test_long_tables_are_cut_and_say_so(recorded):
