@@ -12,9 +12,14 @@ from cnc_ptp.motion import (
     plan_to_velocity,
     reachable_velocity,
 )
+from cnc_ptp.motion.limits import SMALLEST_LIMIT
 
 State = tuple[float, float, float, float]
 """Position mm, velocity mm/s, acceleration mm/s², jerk mm/s³ (deg for rotary axes)."""
+
+
+SMALLEST_OVERRIDE = 1e-6
+"""One step of the override (TX1250 2.2); a smaller one is 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +44,7 @@ class PtpGenerator:
         self._override_type = override_type
         self._origin = 0
         self._profile = standing(position)
-        self._stopping = False
+        self._ramp_limits: Limits | None = None
         self.job: Job | None = None
         self.override = 1.0
 
@@ -52,15 +57,19 @@ class PtpGenerator:
         return (cycle - self._origin) * self._cycle_time >= self._profile.duration
 
     def arrived(self, cycle: int) -> bool:
-        """True when the axis stands at `cycle` and has nothing left to do (a job held by override 0 is something left)."""
-        return self.finished(cycle) and (self.job is None or self.state(cycle)[0] == self.job.target)
+        """True when the table is through and leaves nothing to do (a job held by override 0 is something left)."""
+        return self.finished(cycle) and (self.job is None or self._ends_at(self.job))
 
     def start(self, cycle: int, target: float, limits: Limits) -> None:
-        """Starts from standstill towards `target` (mm or deg); with override 0 the job waits."""
+        """Starts from standstill towards `target` (mm or deg); with override 0 the job waits.
+
+        Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
+        """
         position = self.state(cycle)[0]
-        self.job = Job(target, limits, self._full_velocity(target - position, limits))
-        self._stopping = False
-        self._set(cycle, self._from_rest(position))
+        job = Job(target, limits, self._full_velocity(target - position, limits))
+        profile = self._from_rest(position, job)
+        self.job = job
+        self._set(cycle, profile, limits)
 
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
@@ -68,47 +77,58 @@ class PtpGenerator:
         It acts at once unless a stop runs or the brake phase is reached. Types 1 and 2 keep the old table when the new
         velocity level cannot be reached; types 3 and 4 take the highest level that can.
         """
-        previous, self.override = self.override, ratio
-        if self.job is None or self._stopping or (previous > 0.0 and self.in_brake_phase(cycle)):
+        self.override = ratio if ratio >= SMALLEST_OVERRIDE else 0.0
+        if self.job is None or self._braking(cycle, self.job):
             return False
         profile = self._at_level(cycle, self.job)
         if profile is not None:
-            self._set(cycle, profile)
+            self._set(cycle, profile, self.job.limits)
         return profile is not None
 
-    def in_brake_phase(self, cycle: int) -> bool:
-        """True when nothing but the ramp down to the target is left (also when the axis stands)."""
-        if self.job is None:
-            return True
-        position, velocity, acceleration, _ = self.state(cycle)
-        if velocity == 0.0 and acceleration == 0.0:
-            return bool(position == self.job.target)
-        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, self.job.limits).end[0]
-        tolerance = 1e-9 * max(1.0, abs(self.job.target), abs(position))
-        return abs(ahead - self.job.target) <= tolerance
+    def stop(self, cycle: int, limits: Limits, *, at_least: bool = False) -> None:
+        """Ends the job and ramps down with A- and J of the motion in work, or of `limits` if none is.
 
-    def stop(self, cycle: int, limits: Limits) -> None:
-        """Ends the job and ramps down with A- and J of `limits` (or of the job, if one runs)."""
-        ramp_limits = self.job.limits if self.job else limits
+        `at_least`: the ramp is not weaker than `limits` either. A brake phase runs on otherwise.
+        """
+        ramp = self._ramp_limits or limits
+        if at_least:
+            ramp = Limits(*map(max, ramp, limits))
+        elif self.job is not None and self._braking(cycle, self.job):
+            self.job = None
+            return
         position, velocity, acceleration, _ = self.state(cycle)
+        self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, ramp), ramp)
         self.job = None
-        self._stopping = True
-        self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, ramp_limits))
 
     def finish(self) -> None:
         """The table is through: job and stop are done."""
         self.job = None
-        self._stopping = False
+        self._ramp_limits = None
 
     def take_over(self, cycle: int, position: float, velocity: float, acceleration: float) -> None:
-        """Continues from a state that another setpoint source has at `cycle` (it must be stopped next unless it stands)."""
+        """Continues from a state that another setpoint source has at `cycle`; unless it stands, a stop must follow."""
         self.job = None
-        self._stopping = False
-        self._set(cycle, Profile([(0.0, position, velocity, acceleration, 0.0)]))
+        self._set(cycle, Profile([(0.0, position, velocity, acceleration, 0.0)]), None)
 
-    def _set(self, cycle: int, profile: Profile) -> None:
+    def _set(self, cycle: int, profile: Profile, limits: Limits | None) -> None:
         self._origin = cycle
         self._profile = profile
+        self._ramp_limits = limits
+
+    def _ends_at(self, job: Job) -> bool:
+        """The table in work leads to the target; the one of override 0 does not."""
+        return bool(self._profile.end[0] == job.target)
+
+    def _braking(self, cycle: int, job: Job) -> bool:
+        """True when the table leads to the target and nothing but its last ramp down is left."""
+        if not self._ends_at(job):
+            return False
+        position, velocity, acceleration, _ = self.state(cycle)
+        if velocity == 0.0 and acceleration == 0.0:
+            return bool(position == job.target)
+        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
+        tolerance = 1e-9 * max(1.0, abs(job.target), abs(position))
+        return abs(ahead - job.target) <= tolerance
 
     def _full_velocity(self, distance: float, limits: Limits) -> float:
         if self._override_type in (2, 4):
@@ -117,12 +137,13 @@ class PtpGenerator:
         return min(limits.velocity, reachable_velocity(abs(distance), symmetric, limits.jerk))
 
     def _level(self, job: Job) -> Limits:
-        return job.limits._replace(velocity=job.full_velocity * self.override)
+        """Limits with the velocity of the override; below what tables can be made for, the smallest of these."""
+        return job.limits._replace(velocity=max(job.full_velocity * self.override, SMALLEST_LIMIT))
 
-    def _from_rest(self, position: float) -> Profile:
-        if self.job is None or self.override == 0.0:
+    def _from_rest(self, position: float, job: Job) -> Profile:
+        if self.override == 0.0:
             return standing(position)
-        return plan_rest_to_rest(position, self.job.target, self._level(self.job))
+        return plan_rest_to_rest(position, job.target, self._level(job))
 
     def _at_level(self, cycle: int, job: Job) -> Profile | None:
         """The table for the override as it is now; None when the old one is to be kept."""
@@ -130,10 +151,10 @@ class PtpGenerator:
         if self.override == 0.0:
             return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
         if velocity == 0.0 and acceleration == 0.0:
-            return self._from_rest(position)
+            return self._from_rest(position, job)
         level = self._level(job)
         profile = plan_to_position(position, velocity, acceleration, job.target, level)
-        if self._override_type in (1, 2) and not reaches(profile, level.velocity):
+        if self._override_type in (1, 2) and self._ends_at(job) and not reaches(profile, level.velocity):
             return None
         return profile
 

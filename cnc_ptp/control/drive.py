@@ -25,7 +25,7 @@ class SimulatedDrive:
     v(T) = u + (v0 - u) e^(-T/Ta), x(T) = x0 + u T + (v0 - u) Ta (1 - e^(-T/Ta)). Source: TF5200 feedforward, figure 1.
     """
 
-    __slots__ = ("_decay", "_encoder_increment", "_lag_time", "_true_position", "position", "velocity", "_cycle_time")
+    __slots__ = ("_cycle_time", "_decay", "_encoder_increment", "_lag_time", "_true_position", "position", "velocity")
 
     def __init__(
         self, *, cycle_time: float, time_constant: float, encoder_increment: float, start_position: float = 0.0

@@ -81,7 +81,7 @@ class Command:
 
     @property
     def arguments_json(self) -> str:
-        return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False)
+        return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr)
 
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:

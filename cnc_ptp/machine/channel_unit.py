@@ -104,7 +104,7 @@ class ChannelUnit(Unit):
     # commands
 
     def do_load(self, cycle: int, *, program: str, text: str | None = None) -> None:
-        """Takes over a program (syntax is checked here, everything else at the start). Raises ProgramError, 22004, 22009."""
+        """Takes over a program: its syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'")
@@ -112,7 +112,7 @@ class ChannelUnit(Unit):
         self._sequence.source = NO_SOURCE
 
     def do_start(self, cycle: int) -> None:
-        """Starts the program, or goes on after M00 or in single block. The whole program is interpreted before it starts."""
+        """Starts the program, which is interpreted as a whole first; or goes on after M00 or in single block."""
         if self._sequence.phase is Phase.STOPPED:
             self._sequence.resume()
             return
@@ -176,7 +176,7 @@ class ChannelUnit(Unit):
         self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     def waits_for(self) -> str:
-        """What the program waits for that does not come with time alone, with the line; empty when it goes on by itself."""
+        """What the program waits for that does not come with time alone; empty when it goes on by itself."""
         what = self._sequence.waits_for()
         return f"channel {self.name} waits in line {self._sequence.source.line} for {what}" if what else ""
 
@@ -185,8 +185,8 @@ class ChannelUnit(Unit):
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> ChannelBlock:
         """Computes one block; `inputs` holds the blocks before of the channel's axes and spindles.
 
-        The first row is the state that the block before has led to, so that commands act from exactly there; one row more
-        than the block has leads on to the next one.
+        The first row is the state that the block before has led to, so that commands act from exactly there; one row
+        more than the block has leads on to the next one.
         """
         first_cycle, count = tick
         self._read_feedback(first_cycle, inputs)
@@ -199,18 +199,26 @@ class ChannelUnit(Unit):
         return self._channel_block(tick, rows[:count], outputs, path_active=has_axes)
 
     def _channel_block(self, tick: CycleTick, rows: list[Row], outputs: Outputs, *, path_active: bool) -> ChannelBlock:
-        axes, *columns = zip(*rows, strict=True)
-        by_axis = [state for axis in zip(*axes, strict=True) for state in axis]
+        columns = {name: list(column) for name, column in zip(Row._fields, zip(*rows, strict=True), strict=True)}
+        by_axis = [state for axis in zip(*columns["axes"], strict=True) for state in axis]
         position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
         return ChannelBlock(
-            *tick,
-            path_active,
-            self._axis_nodes,
-            position,
-            velocity,
-            acceleration,
-            jerk,
-            **dict(zip(Row._fields[1:], map(list, columns), strict=True)),
+            first_cycle=tick.first_cycle,
+            count=tick.count,
+            path_active=path_active,
+            axes=self._axis_nodes,
+            set_position=position,
+            set_velocity=velocity,
+            set_acceleration=acceleration,
+            set_jerk=jerk,
+            line=columns["line"],
+            block_number=columns["block_number"],
+            path_velocity=columns["path_velocity"],
+            programmed_feed=columns["programmed_feed"],
+            override_percent=columns["override_percent"],
+            distance_to_go=columns["distance_to_go"],
+            state=columns["state"],
+            error_id=columns["error_id"],
             done=self._sequence.phase is Phase.IDLE and not self._unfinished,
             blocks_done=self._sequence.blocks_done,
             blocks_total=len(self._sequence.blocks),
@@ -263,7 +271,7 @@ class ChannelUnit(Unit):
         ]
 
     def _state_code(self) -> ChannelStateCode:
-        """State of the channel; a path that feed hold or override 0 have brought to rest shows HOLD instead of RUNNING."""
+        """State of the channel; where feed hold or override 0 have brought the path to rest, HOLD replaces RUNNING."""
         if self._error_id:
             return C.ERROR
         phase = self._sequence.phase

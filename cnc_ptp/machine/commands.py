@@ -69,11 +69,12 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "auto_acknowledge": {"on": SWITCH},
         "set_life_sign": {"on": SWITCH},
         "stop_all": {},
+        "abort": {"reason": TEXT},
         "upstream_lost": SOURCE,
     },
 }
-INTERNAL = frozenset({"upstream_lost"})
-"""Commands that only a watchdog gives; a scenario may not."""
+INTERNAL = frozenset({"upstream_lost", "abort"})
+"""Commands that only watchdogs and harnesses give; a scenario may not."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str}
 
@@ -102,8 +103,17 @@ def _check_argument(where: str, name: str, argument: Argument, value: Any) -> No
     is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
     if not is_type or (isinstance(value, bool) and argument.kind != "switch"):
         raise CncError(BAD_ARGUMENT, f"{where}: {name} = {value!r} is not a {argument.kind}; nothing was changed")
-    if argument.kind == "number" and not math.isfinite(value):
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {value} is not finite; nothing was changed")
+    if argument.kind == "number" and not is_finite(value):
+        shown = value if isinstance(value, float) else "an integer that long"
+        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {shown} is not finite; nothing was changed")
     if argument.choices and value not in argument.choices:
         allowed = " or ".join(argument.choices)
         raise CncError(BAD_ARGUMENT, f"{where}: {name} = '{value}' is not {allowed}; nothing was changed")
+
+
+def is_finite(value: float) -> bool:
+    """False for NaN, infinities and integers beyond the range of floating point numbers."""
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False

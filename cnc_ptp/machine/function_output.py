@@ -1,7 +1,7 @@
 """M, S, T and D functions of a block: what goes out to spindles and PLC, when, and what the path waits for.
 
-Synchronisation types: TF5200 spindle 2.5. Before the motion go MOS, MVS_SVS and MVS_SNS, after it MNS_SNS; the path waits
-before the motion for MVS_SVS, at the block's end for MVS_SNS and MNS_SNS, never for MOS. Priority M3/M4/M5 > S.
+Synchronisation types: TF5200 spindle 2.5. Before the motion go MOS, MVS_SVS and MVS_SNS, after it MNS_SNS; the path
+waits before the motion for MVS_SVS, at the block's end for MVS_SNS and MNS_SNS, never for MOS. Priority M3/M4/M5 > S.
 """
 
 from __future__ import annotations

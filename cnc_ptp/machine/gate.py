@@ -1,4 +1,4 @@
-"""The gate of a unit: holds ticks and blocks back until all that one block of cycles needs is there. Knows no transport."""
+"""The gate of a unit: holds ticks and blocks back until all is there that one block of cycles needs, by any transport."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ CLOCK = "clock"
 
 
 class BlockGate:
-    """Collects ticks and blocks in any order of arrival; gives out one computation after the other in the order of cycles.
+    """Collects ticks and blocks in any order of arrival; gives out one computation after the other, in order of cycles.
 
     A source whose needed block was skipped (a later one came) or that its watchdog gave up is dropped for good.
     """
@@ -65,8 +65,8 @@ class BlockGate:
         if not self._ticks:
             return []
         tick = self._ticks[0]
-        needed = {name: tick.first_cycle for name in self._upstream}
-        needed |= {name: tick.first_cycle - tick.count for name in self._feedback}
+        needed = dict.fromkeys(self._upstream, tick.first_cycle)
+        needed |= dict.fromkeys(self._feedback, tick.first_cycle - tick.count)
         return [name for name in self.missing() if any(cycle > needed[name] for cycle in self._blocks[name])]
 
     def take(self) -> tuple[CycleTick, dict[str, Block]] | None:

@@ -37,7 +37,7 @@ def read_job(machine: MachineParameters, *, program: str | None, scenario: str |
 
 
 def check_program(machine: MachineParameters, text: str, file: str) -> None:
-    """Interprets a program for the first channel as if it were started from the start positions. Raises ProgramError, 26112."""
+    """Interprets a program for the first channel as started from the start positions. Raises ProgramError, 26112."""
     check = ProgramCheck.of_first_channel(machine, file)
     check.blocks(parse_program(text, file), check.start)
 

@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock
+from cnc_ptp.machine.channel_unit import ChannelUnit
+from cnc_ptp.machine.plc_unit import at_rest
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
+
+STUCK_TIME = 10.0
+"""Seconds for which nothing may happen at all while a program waits for something that nobody will give."""
 
 
 class Output:
@@ -37,6 +42,8 @@ class OfflineMachine:
         self._runners = {name: UnitRunner(unit, watchdog_cycles=watchdog_cycles) for name, unit in units.items()}
         self._blocks: dict[str, Block] = {}
         self._first_cycle = 0
+        self._stuck_limit = round(STUCK_TIME * 1e6 / machine.cycle_time_us)
+        self._stuck_cycles = 0
 
     def tick(self) -> Outputs:
         """Computes the next block of all units."""
@@ -64,10 +71,36 @@ class OfflineMachine:
         return outputs
 
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
-        """Ticks until the PLC ends the run, or for `cycles` cycles (rounded up to whole blocks)."""
+        """Ticks until the PLC ends the run, or for `cycles` cycles (rounded up to whole blocks).
+
+        Without `cycles`, a run that nothing can bring on any more (the scenario is through, a program waits for a start
+        or an acknowledgement) is aborted: nobody is there to help it.
+        """
         while cycles is None or self._first_cycle < cycles:
             outputs = self.tick()
             yield outputs
             plc = outputs[PLC].block
-            if cycles is None and isinstance(plc, PlcBlock) and plc.run_done:
-                return
+            if cycles is None and isinstance(plc, PlcBlock):
+                if plc.run_done:
+                    return
+                self._watch_progress(plc, outputs)
+
+    def _watch_progress(self, plc: PlcBlock, outputs: Outputs) -> None:
+        reason = self._what_is_waited_for(outputs) if plc.scenario_done and not plc.commands else ""
+        self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
+        if self._stuck_cycles >= self._stuck_limit:
+            self._stuck_cycles = 0
+            text = f"{reason}, but the scenario is through"
+            self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
+
+    def _what_is_waited_for(self, outputs: Outputs) -> str:
+        """Empty while anything moves or goes on by itself."""
+        reasons = []
+        for output in outputs.values():
+            unit = self._runners[output.name].unit
+            reason = unit.waits_for() if isinstance(unit, ChannelUnit) else ""
+            if reason:
+                reasons.append(reason)
+            elif not at_rest(output.block):
+                return ""
+        return "; ".join(reasons)

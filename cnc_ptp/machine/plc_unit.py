@@ -23,7 +23,8 @@ from cnc_ptp.machine.blocks import (
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 
-NOTHING_TO_ACKNOWLEDGE = 22101
+NOTHING_TO_ACKNOWLEDGE = 22013
+CANNOT_GO_ON = 22014
 SETTLING_TIME = 0.2
 """Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
 
@@ -72,7 +73,7 @@ class PlcUnit(Unit):
     # commands
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
-        """Acknowledges a handshake request; refused (22101) when none of that number waits."""
+        """Acknowledges a handshake request; refused (22013) when none of that number waits."""
         request = self._pending.pop(id, None)
         if request is None:
             waiting = ", ".join(map(str, self._pending)) or "none"
@@ -93,7 +94,7 @@ class PlcUnit(Unit):
     def do_stop_all(self, cycle: int) -> None:
         """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps.
 
-        Left out is what stops by itself: axes on the path of a channel, units in error.
+        Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves.
         """
         self._scenario.clear()
         self._end_when_idle = True
@@ -105,13 +106,16 @@ class PlcUnit(Unit):
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` reports no more; the run is a failed one."""
         self._lost.add(source)
+        self._fail(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+
+    def do_abort(self, cycle: int, *, reason: str) -> None:
+        """The harness: the run cannot go on; it is a failed one."""
+        self._fail(cycle, CANNOT_GO_ON, reason)
+
+    def _fail(self, cycle: int, error_id: int, reason: str) -> None:
         self._failed = True
-        self.event(
-            cycle,
-            Severity.ERROR,
-            UPSTREAM_LOST,
-            f"plc {self.name}: no block of '{source}' came within the watchdog time; the run ends",
-        )
+        text = f"plc {self.name}: {reason}; everything is stopped and the run ends"
+        self.event(cycle, Severity.ERROR, error_id, text)
         self.do_stop_all(cycle)
 
     # one block
@@ -149,9 +153,11 @@ class PlcUnit(Unit):
                 self._outgoing.append(command)
 
     def _answer_requests(self, cycle: int, inputs: Mapping[str, Block]) -> None:
-        for block in inputs.values():
+        for name, block in inputs.items():
             if isinstance(block, ChannelBlock):
                 self._pending |= {request.id: request for request in block.requests if request.acknowledge_needed}
+                if block.done:  # a program that is through, or was aborted, waits for nothing
+                    self._pending = {n: r for n, r in self._pending.items() if r.channel != name}
         if self._auto_acknowledge:
             for request_id in list(self._pending):
                 self.do_acknowledge(cycle, id=request_id)
@@ -186,12 +192,10 @@ def at_rest(block: Block) -> bool:
 
 
 def needs_stop(block: Block) -> bool:
-    """True when a unit goes on moving unless it is told to stop."""
+    """False for what stops without a command: axes on the path of a channel, channels in error."""
     if isinstance(block, ChannelBlock):
-        return not block.done and not block.error_id[-1]
-    if isinstance(block, AxisBlock):
-        return block.state[-1] == AxisStateCode.DISCRETE_MOTION
-    return isinstance(block, SpindleBlock) and block.set_speed_rpm[-1] != 0.0
+        return not block.error_id[-1]
+    return not (isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION)
 
 
 def error_of(block: Block) -> int:

@@ -1,4 +1,4 @@
-"""From NC text to the list of blocks that a channel will run: interpreted completely and vetoed before anything moves."""
+"""From NC text to the list of blocks that a channel will run: interpreted as a whole and vetoed before anything moves."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DEG_S_PER_RPM = 6.0
 
 
 class ProgramCheck:
-    """What a machine says to a program: targets within the soft limits, speeds the spindles reach, M functions it knows."""
+    """What a machine says to a program: targets within soft limits, speeds that spindles reach, M functions it knows."""
 
     def __init__(
         self,
@@ -73,7 +73,7 @@ class ProgramCheck:
         return tuple(axis.start_position for axis in self._axes)
 
     def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
-        """All blocks from `start` (mm, in the order of the channel's axes). Raises ProgramError; then `state` is void."""
+        """All blocks from `start` (mm, in the channel's order of axes). Raises ProgramError; then `state` is void."""
         blocks = list(
             interpret(
                 program,
@@ -100,17 +100,20 @@ class ProgramCheck:
         for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
             unit = "deg" if axis.rotary else "mm"
             if position > axis.soft_limit_positive:
-                limit = f"{position:g} {unit} lies beyond the positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
-                raise ProgramError(SOFT_LIMIT_POSITIVE, f"axis {name}: {limit}", source, 1)
+                limit = f"positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
+                text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
+                raise ProgramError(SOFT_LIMIT_POSITIVE, text, source, 1)
             if position < axis.soft_limit_negative:
-                limit = f"{position:g} {unit} lies beyond the negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
-                raise ProgramError(SOFT_LIMIT_NEGATIVE, f"axis {name}: {limit}", source, 1)
+                limit = f"negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
+                text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
+                raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
 
     def _function(self, function: SpindleFunction | AuxiliaryFunction, source: Source) -> None:
         if isinstance(function, SpindleFunction):
             limit = self._speeds[function.spindle]
             if function.speed_rpm is not None and function.speed_rpm > limit:
-                text = f"spindle {function.spindle}: {function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
+                above = f"{function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
+                text = f"spindle {function.spindle}: {above}"
                 raise ProgramError(SPINDLE_TOO_FAST, text, source, 1)
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)

@@ -1,4 +1,4 @@
-"""Runs one unit: applies the commands of a block, watches the PLC's life sign, computes the block. Used by every harness."""
+"""Runs one unit in any harness: applies the commands of a block, watches the PLC's life sign, computes the block."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +10,7 @@ import yaml
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
-from cnc_ptp.machine.commands import COMMANDS, INTERNAL, check_command
+from cnc_ptp.machine.commands import COMMANDS, INTERNAL, check_command, is_finite
 
 BAD_SCENARIO = 25101
 SWITCH_WORDS = {"on": True, "off": False}
@@ -50,8 +49,8 @@ def parse_scenario(
 ) -> list[Entry]:
     """The entries in the order of their time (file order within one time).
 
-    `kinds` maps the names of the machine's units to axis, spindle, channel or plc; `read_program` gives the text of an NC
-    file that a `load` names. Raises ScenarioError (25101) with all faults.
+    `kinds` maps the names of the machine's units to axis, spindle, channel or plc; `read_program` gives the text of an
+    NC file that a `load` names, or raises CncError. Raises ScenarioError (25101) with all faults.
     """
     try:
         root = yaml.compose(text, _Loader)
@@ -67,23 +66,21 @@ def parse_scenario(
     for node in root.value:
         try:
             entries.append(_entry(node, kinds, read_program))
-        except (CncError, OSError) as error:
-            reason = error.message if isinstance(error, CncError) else f"{error.filename}: {error.strerror}"
-            faults.append(f"{file}:{node.start_mark.line + 1}: {reason}")
+        except CncError as error:
+            faults.append(f"{file}:{node.start_mark.line + 1}: {error.message}")
     if faults:
         raise ScenarioError(BAD_SCENARIO, "\n".join([*faults, "nothing was started"]))
     return sorted(entries, key=lambda entry: entry.at)
 
 
 def _entry(node: yaml.Node, kinds: Mapping[str, str], read_program: Callable[[str], str] | None) -> Entry:
-    loader = _Loader("")
-    value = loader.construct_object(node, deep=True) if isinstance(node, yaml.MappingNode) else None
-    if not isinstance(value, dict) or not {"at", "to", "do"} <= value.keys():
+    arguments = _construct(node)
+    if not {"at", "to", "do"} <= arguments.keys():
         raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
-    arguments = {str(name): argument for name, argument in value.items()}
     at, to, do = (arguments.pop(name) for name in ("at", "to", "do"))
-    if isinstance(at, bool) or not isinstance(at, (int, float)) or not math.isfinite(at) or at < 0.0:
+    if isinstance(at, bool) or not isinstance(at, (int, float)) or not is_finite(at) or at < 0.0:
         raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 or later")
+    to, do = str(to), str(do)
     if to not in kinds:
         raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
     if do in INTERNAL:
@@ -95,7 +92,24 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read_program: Callable[[st
     return Entry(float(at), Command(to, do, arguments))
 
 
+def _construct(node: yaml.Node) -> dict[str, Any]:
+    """The keys and values of an entry; empty when it is no mapping. Raises CncError for what YAML cannot construct."""
+    if not isinstance(node, yaml.MappingNode):
+        return {}
+    keys = [key.value for key, _ in node.value]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise CncError(BAD_SCENARIO, f"'{key}' stands twice in the entry")
+    try:
+        value = _Loader("").construct_object(node, deep=True)
+    except (yaml.YAMLError, ValueError, TypeError) as error:
+        reason = error.problem if isinstance(error, yaml.MarkedYAMLError) else error
+        raise CncError(BAD_SCENARIO, f"a value cannot be read: {reason}") from None
+    return {str(name): argument for name, argument in value.items()}
+
+
 def _read_switches(kind: str, command: str, arguments: dict[str, Any]) -> None:
     for name, argument in COMMANDS[kind].get(command, {}).items():
-        if argument.kind == "switch" and arguments.get(name) in SWITCH_WORDS:
-            arguments[name] = SWITCH_WORDS[arguments[name]]
+        word = arguments.get(name)
+        if argument.kind == "switch" and isinstance(word, str):
+            arguments[name] = SWITCH_WORDS.get(word, word)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, NoReturn
 
 from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
@@ -48,13 +48,14 @@ class SpindleUnit(Unit):
             cycle_time=cycle_time,
             time_constant=parameters.drive_time_constant,
             encoder_increment=parameters.encoder_increment,
+            start_position=parameters.start_position,
         )
         self._origin = 0
-        self._profile: Profile = plan_speed(0.0, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
+        self._profile: Profile = plan_speed(parameters.start_position, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
         self._commanded_speed = 0.0
-        self._override_percent = 100.0
+        self._override_percent = min(100.0, parameters.max_override_percent)
         self._mode = SpindleMode.STOP
-        self._state = S.STANDSTILL
+        self._state = S.STANDSTILL if parameters.powered_at_start else S.DISABLED
         self._error_id = 0
 
     # commands
@@ -63,6 +64,8 @@ class SpindleUnit(Unit):
         """M03 (cw) or M04 (ccw) at `speed_rpm`. Refusals 24001–24003; 60254 puts the spindle into ErrorStop."""
         if self._state == S.ERROR_STOP:
             self._refuse("start", NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self._error_id}); reset it first")
+        if self._state == S.DISABLED:
+            self._refuse("start", NOT_READY, "the spindle is in Disabled, the machine starts it without power")
         if speed_rpm < 0.0:
             self._refuse("start", BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
         limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
@@ -79,7 +82,7 @@ class SpindleUnit(Unit):
 
     def do_stop(self, cycle: int) -> None:
         """M05: down to speed 0 with P-AXIS-00002."""
-        if self._state == S.ERROR_STOP:
+        if self._state in (S.ERROR_STOP, S.DISABLED):
             return
         self._mode = SpindleMode.STOP
         self._commanded_speed = 0.0
@@ -87,9 +90,11 @@ class SpindleUnit(Unit):
         self._ramp(cycle)
 
     def do_set_override(self, cycle: int, *, percent: float) -> None:
-        """Spindle override of endless rotation, 0 … 100 %."""
-        if not 0.0 <= percent <= 100.0:
-            self._refuse("set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... 100")
+        """Spindle override of endless rotation, 0 … P-AXIS-00109 %; the speed stays within P-AXIS-00212."""
+        limit = self._parameters.max_override_percent
+        if not 0.0 <= percent <= limit:
+            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
+            self._refuse("set_override", BAD_OVERRIDE, reason)
         self._override_percent = float(percent)
         if self._state == S.CONTINUOUS_MOTION:
             self._ramp(cycle)
@@ -106,7 +111,7 @@ class SpindleUnit(Unit):
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` (channel, PLC or clock) has sent nothing in time; the spindle stops."""
-        if self._state != S.ERROR_STOP:
+        if self._state not in (S.ERROR_STOP, S.DISABLED):
             self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     # one block
@@ -140,23 +145,27 @@ class SpindleUnit(Unit):
             int(self._mode),
             self._parameters.gear,
             self._speed_reached(actual_speed),
-            abs(actual_speed) < self._parameters.zero_speed_deg_s,
-            True,
+            abs(actual_speed) <= self._parameters.zero_speed_deg_s,
+            self._parameters.referenced_at_start,
             int(self._state),
             self._error_id,
         )
-        drive.step(self._controller.command_velocity(following_error))
+        drive.step(self._controller.command_velocity(following_error) if self._state != S.DISABLED else 0.0)
         return row
 
     def _speed_reached(self, actual_speed: float) -> bool:
-        """P-AXIS-00217: within the tolerance band around the commanded speed; at speed 0 the zero limit P-AXIS-00216."""
+        """P-AXIS-00217: within the tolerance band around the commanded speed; for speed 0 the zero limit P-AXIS-00216.
+
+        A spindle that override 0 holds has not reached its speed.
+        """
         wanted = self._wanted_speed()
         if wanted == 0.0:
-            return abs(actual_speed) < self._parameters.zero_speed_deg_s
+            return self._commanded_speed == 0.0 and abs(actual_speed) <= self._parameters.zero_speed_deg_s
         return abs(actual_speed - wanted) <= self._parameters.speed_reached_band * abs(wanted)
 
     def _wanted_speed(self) -> float:
-        return self._commanded_speed * self._override_percent / 100.0
+        limit = self._parameters.max_speed_deg_s
+        return max(-limit, min(limit, self._commanded_speed * self._override_percent / 100.0))
 
     def _setpoint(self, cycle: int) -> tuple[float, float, float, float]:
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
@@ -183,7 +192,7 @@ class SpindleUnit(Unit):
                 f"spindle {self.name}: start refused: {reason}; the spindle is in ErrorStop",
             )
 
-    def _refuse(self, command: str, error_id: int, reason: str) -> None:
+    def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
         raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; nothing was changed")
 
     def _fault(self, cycle: int, error_id: int, reason: str) -> None:

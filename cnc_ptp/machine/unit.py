@@ -1,4 +1,4 @@
-"""The base of all units: commands are checked, carried out or refused as a whole, and recorded; events are collected."""
+"""The base of all units: commands are checked, carried out or refused as a whole, and recorded; events collected."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ UPSTREAM_LOST = 26101
 class Unit(ABC):
     """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
 
-    A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns is
-    a warning that goes into the record. Nothing here knows processes, topics or clocks.
+    A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns
+    is a warning that goes into the record. Nothing here knows processes, topics or clocks.
     """
 
     kind: ClassVar[str]
@@ -36,8 +36,11 @@ class Unit(ABC):
 
     @abstractmethod
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
-        """Computes the cycles of `tick`. `inputs`: blocks of the same cycles from upstream units and of the cycles before
-        from units that only report back, by unit name; a unit that is lost or has not computed yet is missing."""
+        """Computes the cycles of `tick`.
+
+        `inputs`: by unit name, blocks of the same cycles from upstream units and of the cycles before from units that
+        only report back; a unit that is lost or has not computed yet is missing.
+        """
 
     def command(self, command: Command, cycle: int) -> CommandRecord:
         """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
