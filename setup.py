@@ -48,7 +48,7 @@ class GenerateInterfaces(build_ext):
         self.hand_on_prefix_part(stage)
 
     def take_python_part(self, stage: Path) -> None:
-        """Copies the generated modules into the package: the build folder, or the source tree for an editable install."""
+        """Copies the generated modules into the package: in the build folder, or the source tree if editable."""
         generated = next(stage.glob(f"**/{PACKAGE}/msg/__init__.py")).parent.parent
         package = ROOT / PACKAGE if self.inplace or self.editable_mode else Path(self.build_lib) / PACKAGE
         for entry in generated.iterdir():

@@ -1,4 +1,4 @@
-"""The one exception type of the kernel: an error number of the P-ERR list and a text that says who, where, value, limit and effect."""
+"""The one exception type of the kernel: a P-ERR number and a text: who, where, value, limit, effect."""
 
 
 class CncError(Exception):

@@ -3,10 +3,11 @@
 Thin on purpose: the supervisor of `cnc_ptp run` starts one process a node and ends them in order.
 """
 
-from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+from launch import LaunchDescription
 
 OPTIONS = ("program", "scenario", "duration", "record")
 

@@ -55,9 +55,8 @@ def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: lis
         key: sum(int(node[key]) for node in monitor.diagnostics.values())
         for key in ("blocks", "lost_blocks", "duplicates")
     }
-    console.print(
-        f"blocks {total['blocks']} in {len(monitor.diagnostics)} nodes, lost {total['lost_blocks']}, computed twice {total['duplicates']}"
-    )
+    nodes, lost, twice = len(monitor.diagnostics), total["lost_blocks"], total["duplicates"]
+    console.print(f"blocks {total['blocks']} in {nodes} nodes, lost {lost}, computed twice {twice}")
     for name, values in monitor.diagnostics.items():
         if "following_error_max" in values:
             unit = "deg" if machine.axes[name].rotary else "mm"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
+from collections import defaultdict
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 
@@ -26,7 +26,7 @@ class Result:
     cycles: int = 0
     program_cycles: int = 0
     failed: bool = False
-    following_errors: dict[str, float] = field(default_factory=Counter)
+    following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     errors: list[str] = field(default_factory=list)
     refusals: list[str] = field(default_factory=list)
 
@@ -92,7 +92,8 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
     console = Console(highlight=False, soft_wrap=True)
     seconds = result.cycles * cycle_time
     console.print(
-        f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: {seconds / max(wall_seconds, 1e-9):.0f} times real time"
+        f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: "
+        f"{seconds / max(wall_seconds, 1e-9):.0f} times real time"
     )
     console.print(f"program time {result.program_cycles * cycle_time:.3f} s")
     for axis, error in result.following_errors.items():

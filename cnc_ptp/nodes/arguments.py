@@ -1,4 +1,4 @@
-"""Command line of the unit nodes: `axis MACHINE.yaml x`; also under `ros2 run` and `ros2 launch` (ROS arguments pass)."""
+"""Command line of the unit nodes: `axis MACHINE.yaml x`; ROS arguments pass."""
 
 from __future__ import annotations
 

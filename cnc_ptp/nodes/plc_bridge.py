@@ -98,7 +98,8 @@ class PlcBridgeNode(UnitNode):
         self._life_sign_lost = True
         for channel in self._channels:
             self._input(Command(channel, "feed_hold", {"on": True}))
-        text = f"plc: no life sign of the external PLC for {self._life_sign_timeout * 1000.0:.0f} ms; feed hold is set on all channels"
+        silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
+        text = f"plc: no life sign of the external PLC for {silence}; feed hold is set on all channels"
         cycle = self._gate.next_cycle
         event = Event(cycle, PLC, Severity.WARNING, LIFE_SIGN_LOST, text)
         self._event_publisher.publish(convert.event_to_message(event, self.stamp(cycle)))

@@ -184,5 +184,5 @@ def observers_of(job: Job) -> list[str]:
 
 
 def die_with_parent() -> None:
-    """In the child: the kernel sends SIGTERM when the supervisor dies, however it dies (Linux prctl PR_SET_PDEATHSIG)."""
+    """In the child: the kernel sends SIGTERM when the supervisor dies, however it dies (PR_SET_PDEATHSIG)."""
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)

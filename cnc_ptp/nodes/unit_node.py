@@ -57,7 +57,7 @@ class UnitNode(Node):
     """
 
     def __init__(self, machine: MachineParameters, unit: Unit, *, consumers: int, free_run: bool = False) -> None:
-        """`consumers`: nodes that must have found this one's blocks before it reports ready. `free_run`: report each block."""
+        """`consumers`: nodes that must find this one's blocks before it is ready. `free_run`: report each block."""
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
         self._free_run = free_run
@@ -167,7 +167,7 @@ class UnitNode(Node):
         return self.load_command(arguments["program"]).arguments if command == "load" else arguments
 
     def load_command(self, path: str) -> Command:
-        """The command that loads the program file at `path`; without text, which the channel refuses, if it cannot be read."""
+        """The command that loads the file at `path`; without text (refused by the channel) if it cannot be read."""
         text = read_text(path)
         return Command(self.unit.name, "load", {"program": path} if text is None else {"program": path, "text": text})
 
@@ -227,7 +227,7 @@ class UnitNode(Node):
     # watchdog
 
     def _watch(self) -> None:
-        """Says that this node lives while it waits, and gives up sources that have been silent for the watchdog time."""
+        """Says that this node lives while it waits, and gives up sources that were silent for the watchdog time."""
         now = time.monotonic()
         stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
         if stalled or self._gate.closed or not self._running:
