@@ -8,8 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import plotly.graph_objects as go  # type: ignore[import-untyped]
-from plotly.offline import get_plotlyjs  # type: ignore[import-untyped]
+import plotly.graph_objects as go
+from plotly.offline import get_plotlyjs
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import plotly.graph_objects as go  # type: ignore[import-untyped]
-from plotly.subplots import make_subplots  # type: ignore[import-untyped]
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
 
 from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode, Severity
 from cnc_ptp.recording.decimate import line_points, path_points
