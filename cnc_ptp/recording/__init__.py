@@ -1,1 +1,1 @@
-"""Recordings of runs: written and read as MCAP, compared bit for bit with a second computation, shown as an HTML page."""
+"""Recordings of runs: written and read as MCAP, compared bit for bit with a second computation, shown as a page."""
