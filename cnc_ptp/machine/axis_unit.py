@@ -39,7 +39,7 @@ class AxisUnit(Unit):
 
     States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), SynchronizedMotion (channel path), Stopping,
     ErrorStop. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time P-AXIS-00196), or on
-    that of the motion in work where this is stronger. The position loop is closed while the axis is powered or on a ramp.
+    that of the motion in work where this is stronger. The position loop is closed while powered or on a ramp.
     """
 
     kind: ClassVar[str] = "axis"

@@ -104,7 +104,7 @@ class ChannelUnit(Unit):
     # commands
 
     def do_load(self, cycle: int, *, program: str, text: str | None = None) -> None:
-        """Takes over a program: its syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
+        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'")

@@ -1,4 +1,4 @@
-"""The gate of a unit: holds ticks and blocks back until all is there that one block of cycles needs, by any transport."""
+"""The gate of a unit: holds ticks and blocks back until all that one block of cycles needs is there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From NC text to the list of blocks that a channel will run: interpreted as a whole and vetoed before anything moves."""
+"""From NC text to the list of blocks that a channel will run: interpreted and vetoed before anything moves."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DEG_S_PER_RPM = 6.0
 
 
 class ProgramCheck:
-    """What a machine says to a program: targets within soft limits, speeds that spindles reach, M functions it knows."""
+    """What a machine says to a program: soft limits, speeds that the spindles reach, M functions it knows."""
 
     def __init__(
         self,

@@ -36,7 +36,7 @@ def unit_kinds(machine: MachineParameters) -> dict[str, str]:
 
 
 def wiring(machine: MachineParameters) -> dict[str, Inputs]:
-    """Inputs of every unit: PLC -> channel -> axes, spindles; what these report reaches PLC and channel a block later."""
+    """Inputs of every unit: PLC -> channel -> axes, spindles; their reports reach PLC and channel a block later."""
     members = {
         name: [axis.node for axis in channel.axes] + [s.node for s in channel.spindles]
         for name, channel in machine.channels.items()
