@@ -290,7 +290,7 @@ class AxisUnit(Unit):
         if distance < self._parameters.encoder_increment or distance == 0.0:
             self._has_been_stopped = False
             return (
-                f"P-WARN-{BELOW_INCREMENT} axis {self.name}: {command} over {distance} {self._unit} is below one "
+                f"P-WARN-{BELOW_INCREMENT} axis {self.name}: {command} over {distance:g} {self._unit} is below one "
                 f"encoder increment ({self._parameters.encoder_increment} {self._unit}); the axis does not move"
             )
         self._ptp.start(cycle, target, limits)

@@ -45,6 +45,10 @@ class OfflineMachine:
         self._stuck_limit = round(STUCK_TIME * 1e6 / machine.cycle_time_us)
         self._stuck_cycles = 0
 
+    def runner(self, name: str) -> UnitRunner:
+        """The unit `name`, for commands between blocks."""
+        return self._runners[name]
+
     def tick(self) -> Outputs:
         """Computes the next block of all units."""
         return self._compute(UnitRunner.run)
