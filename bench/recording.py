@@ -81,11 +81,11 @@ def record_states(path: Path, run: Run) -> None:
         for blocks in run:
             for name, block in blocks:
                 if isinstance(block, AxisBlock):
-                    recording.axis_states(name, block)
+                    recording.states(name, block)
                 elif isinstance(block, SpindleBlock):
-                    recording.spindle_states(name, block)
+                    recording.states(name, block)
                 elif isinstance(block, ChannelBlock):
-                    recording.channel_states(name, block)
+                    recording.states(name, block)
 
 
 def best(call: Callable[[], object], passes: int) -> float:

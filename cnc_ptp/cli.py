@@ -7,12 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 import click
-from rich.console import Console
 
+from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
-
-RUN_FAILED = 1
-WRONG_INPUT = 2
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
@@ -109,15 +106,6 @@ def params_command(name: str | None) -> None:
     from cnc_ptp.commands.params import params
 
     sys.exit(params(name))
-
-
-def print_error(error: CncError) -> None:
-    """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
-    console = Console(stderr=True, highlight=False, soft_wrap=True)
-    console.print(str(error), style="red", markup=False)
-    caret = getattr(error, "caret", "")
-    if caret:
-        console.print(caret, markup=False)
 
 
 def _entry(command: click.Command) -> Callable[[], Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cnc_ptp.cli import WRONG_INPUT, print_error
+from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.nc.interpreter import check as check_text

@@ -6,7 +6,7 @@ import sys
 from collections import defaultdict
 from collections.abc import Iterator
 
-from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.machine.blocks import Block, Command
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import PLC, build_units

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED, print_faults
 from cnc_ptp.commands.progress import RunProgress
-from cnc_ptp.commands.simulate import print_faults
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from rich.console import Console
 
-from cnc_ptp.cli import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED, print_faults
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, CycleTick, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file, read_job
@@ -99,11 +99,3 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
     for axis, error in result.following_errors.items():
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
     print_faults(console, result.errors, result.refusals)
-
-
-def print_faults(console: Console, errors: list[str], refusals: list[str]) -> None:
-    """Errors and refused commands of a run."""
-    for text in errors:
-        console.print(f"error: {text}", style="red", markup=False)
-    for text in refusals:
-        console.print(f"refused: {text}", style="yellow", markup=False)

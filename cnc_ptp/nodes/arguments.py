@@ -10,8 +10,9 @@ import click
 from rclpy.utilities import remove_ros_args
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.machine.wiring import consumers_of, unit_kinds
+from cnc_ptp.nodes import process
+from cnc_ptp.parameters import MachineParameters, read_machine
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 NAME = click.argument("name")
@@ -23,11 +24,23 @@ RECORDERS = click.option(
 )
 
 
-def unit_command(function: Callable[..., Any]) -> click.Command:
-    """A command with the arguments that every unit node has."""
-    for decorate in (RECORDERS, FREE_RUN, NAME, MACHINE):
-        function = decorate(function)
-    return click.command()(function)
+def unit_main(node_class: Callable[..., Any], what: str) -> Callable[[], None]:
+    """The `main` of the node of one unit: `<executable> MACHINE.yaml NAME`."""
+
+    @click.command(help=f"Runs the {what} NAME of MACHINE as a ROS node.")
+    @MACHINE
+    @NAME
+    @FREE_RUN
+    @RECORDERS
+    def command(machine: str, name: str, free_run: bool, recorders: int) -> None:
+        def make() -> Any:
+            parameters = read_machine(machine)
+            consumers = consumers_of(parameters, name, recorders=recorders)
+            return node_class(parameters, name, consumers=consumers, free_run=free_run)
+
+        sys.exit(process.run_node(make))
+
+    return lambda: call(command)
 
 
 def call(command: click.Command) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from typing import Any
 
 from sensor_msgs.msg import JointState
@@ -11,11 +10,11 @@ from sensor_msgs.msg import JointState
 from cnc_ptp import action
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes import arguments
 from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import JOINT_STATES, PLC_INPUT
-from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.parameters import MachineParameters
 
 JOINT_STATE_HZ = 50.0
 MOVING = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.STOPPING)
@@ -83,22 +82,7 @@ class AxisNode(UnitNode):
         return {"following_error_max": self._following_error}
 
 
-@arguments.unit_command
-def command(machine: str, name: str, free_run: bool, recorders: int) -> None:
-    """Runs the axis NAME of MACHINE as a ROS node."""
-
-    def make() -> AxisNode:
-        parameters = read_machine(machine)
-        return AxisNode(
-            parameters, name, consumers=consumers_of(parameters, name, recorders=recorders), free_run=free_run
-        )
-
-    sys.exit(process.run_node(make))
-
-
-def main() -> None:
-    arguments.call(command)
-
+main = arguments.unit_main(AxisNode, "axis")
 
 if __name__ == "__main__":
     main()

@@ -36,7 +36,7 @@ class ClockNode(Node):
         free_run: bool = False,
         cycles: int | None = None,
     ) -> None:
-        """`wait_for`: nodes besides the units that must be ready first. `cycles`: length, None = the PLC ends the run."""
+        """`wait_for`: nodes besides the units that must be ready first. `cycles`: None = the PLC ends the run."""
         super().__init__("clock", enable_rosout=False)
         self._units = {*unit_kinds(machine)}
         self._expected = {*self._units, *wait_for}

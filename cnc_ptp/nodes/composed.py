@@ -8,7 +8,7 @@ from collections.abc import Callable
 from rclpy.node import Node
 
 from cnc_ptp.machine.job import read_file, read_job
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import PLC, consumers_of, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode, cycles_of
@@ -18,7 +18,6 @@ from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
 from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of
-from cnc_ptp.nodes.unit_node import consumers_of
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}

@@ -32,8 +32,8 @@ class JobServer:
         feedback: Callable[[Block, Any], None],
         result: Callable[[Block, Any], bool | None],
     ) -> None:
-        """`start(goal)` gives the commands that begin the job, `halt` ends it; `feedback(block, message)` fills in progress,
-        `result(block, message)` the result: None while the job runs, then whether it was done in full."""
+        """`start(goal)` gives the commands that begin the job, `halt` ends it; `feedback(block, message)` fills in
+        progress, `result(block, message)` the result: None while the job runs, then whether it was done in full."""
         self._node = node
         self._type = action_type
         self._start = start

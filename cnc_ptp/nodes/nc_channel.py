@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from cnc_ptp import action, msg
 from cnc_ptp.machine.blocks import Block, ChannelBlock, Command
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import arguments, convert
 from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
-from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.parameters import MachineParameters
 
 
 class ChannelNode(UnitNode):
@@ -66,21 +65,7 @@ def program_result(block: Block, result: Any) -> bool | None:
     return done
 
 
-@arguments.unit_command
-def command(machine: str, name: str, free_run: bool, recorders: int) -> None:
-    """Runs the NC channel NAME of MACHINE as a ROS node."""
-
-    def make() -> ChannelNode:
-        parameters = read_machine(machine)
-        consumers = consumers_of(parameters, name, recorders=recorders)
-        return ChannelNode(parameters, name, consumers=consumers, free_run=free_run)
-
-    sys.exit(process.run_node(make))
-
-
-def main() -> None:
-    arguments.call(command)
-
+main = arguments.unit_main(ChannelNode, "NC channel")
 
 if __name__ == "__main__":
     main()

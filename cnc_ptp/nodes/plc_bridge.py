@@ -15,10 +15,10 @@ from cnc_ptp.machine.blocks import Command, Event, Severity
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
-from cnc_ptp.machine.wiring import PLC, build_unit
+from cnc_ptp.machine.wiring import PLC, build_unit, consumers_of
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT
-from cnc_ptp.nodes.unit_node import UnitNode, consumers_of
+from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 LIFE_SIGN_LOST = 26103

@@ -15,7 +15,7 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.machine.blocks import PlcBlock
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
@@ -105,12 +105,8 @@ class RecorderNode(Node):
         stamp_ns = convert.nanoseconds(message.header.stamp)
         recording.raw(block_topic(unit), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
         block = convert.message_to_block(message)
-        if isinstance(block, AxisBlock):
-            recording.axis_states(unit, block)
-        elif isinstance(block, SpindleBlock):
-            recording.spindle_states(unit, block)
-        elif isinstance(block, ChannelBlock):
-            recording.channel_states(unit, block)
+        if not isinstance(block, PlcBlock):
+            recording.states(unit, block)
         self._note_complete(block.first_cycle)
 
     def _note_complete(self, first_cycle: int) -> None:

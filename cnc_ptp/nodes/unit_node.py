@@ -316,9 +316,3 @@ def read_text(path: str) -> str | None:
         return Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return None
-
-
-def consumers_of(machine: MachineParameters, name: str, *, recorders: int) -> int:
-    """How many nodes need the blocks of unit `name`."""
-    units = sum(name in (*inputs.upstream, *inputs.feedback) for inputs in wiring(machine).values())
-    return units + recorders

@@ -174,7 +174,7 @@ class Recording:
     """A recording being written.
 
     Offline, `axis_block`, `spindle_block` and `channel_block` record a unit's block with its per-cycle states. In the
-    graph the block itself arrives as bytes and goes to `raw`, and `axis_states` … record the states alone. A chunk is
+    graph the block itself arrives as bytes and goes to `raw`, and `states` records the states alone. A chunk is
     closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees `flush_seconds` of wall time passed;
     then the operating system gets it. A killed process loses what came after its last chunk and nothing else.
 
@@ -231,23 +231,23 @@ class Recording:
     def channel_block(self, name: str, block: ChannelBlock) -> None:
         if block.commands or block.requests:
             self.channel_block_message(name, block)
-            self.channel_states(name, block)
+            self.states(name, block)
         else:
             self._block_and_states(name, block, _channel_shape(block))
 
-    # per-cycle states alone (graph)
+    # states alone, blocks alone
 
-    def axis_states(self, name: str, block: AxisBlock) -> None:
-        """`/<name>/state`, one message per cycle of the block."""
-        self._states(name, block)
+    def states(self, name: str, block: StateBlock) -> None:
+        """`/<name>/state` alone, a message per cycle of the block (graph)."""
+        kind = kind_of(block)
+        encoder = self._encoders.get((kind, block.count))
+        if encoder is None:
+            encoder = self._encoders[kind, block.count] = _States(kind, block.count, kind.packer(block.count))
+        self._add_packed(topic_of(name, "state"), kind.state.name, encoder, block)
 
-    def spindle_states(self, name: str, block: SpindleBlock) -> None:
-        self._states(name, block)
-
-    def channel_states(self, name: str, block: ChannelBlock) -> None:
-        self._states(name, block)
-
-    # blocks alone
+    def _block_alone(self, name: str, block: StateBlock) -> None:
+        require_shape(kind_of(block), block)
+        self._block(topic_of(name, "block"), kind_of(block).block.name, block, None)
 
     def axis_block_message(self, name: str, block: AxisBlock) -> None:
         """`/<name>/block`."""
@@ -337,17 +337,6 @@ class Recording:
         states = self._topic(topic_of(name, "state"), kind.state.name)
         unit = self._units[name, type(block)] = _Unit(kind, blocks, states)
         return unit
-
-    def _states(self, name: str, block: StateBlock) -> None:
-        kind = kind_of(block)
-        encoder = self._encoders.get((kind, block.count))
-        if encoder is None:
-            encoder = self._encoders[kind, block.count] = _States(kind, block.count, kind.packer(block.count))
-        self._add_packed(topic_of(name, "state"), kind.state.name, encoder, block)
-
-    def _block_alone(self, name: str, block: StateBlock) -> None:
-        require_shape(kind_of(block), block)
-        self._block(topic_of(name, "block"), kind_of(block).block.name, block, None)
 
     def _block(self, topic: str, type_name: str, block: Any, shape: Hashable) -> None:
         """`shape`: None for blocks that hold more than numbers at known places."""

@@ -132,9 +132,9 @@ def test_attachment_comes_first_and_is_there_before_the_first_chunk(path):
 
 def test_states_alone_and_block_messages_alone(path, blocks):
     with Recording(path, MACHINE) as recording:
-        recording.axis_states("x", blocks.axis(0))
-        recording.spindle_states("s", blocks.spindle(0))
-        recording.channel_states("channel", blocks.channel_with_commands(0))
+        recording.states("x", blocks.axis(0))
+        recording.states("s", blocks.spindle(0))
+        recording.states("channel", blocks.channel_with_commands(0))
         recording.axis_block_message("y", blocks.axis(0))
         recording.spindle_block_message("s2", blocks.spindle(0))
         recording.channel_block_message("channel2", blocks.channel_with_commands(0))
@@ -178,7 +178,7 @@ def test_messages_of_ros_are_taken_as_blocks(path, blocks):
     data = encode(schema, block, lambda value: Header(0, 50_000_000))
     with Recording(path, MACHINE) as recording:
         recording.raw("/x/block", "cnc_ptp/msg/AxisBlock", data, 50_000_000)
-        recording.axis_states("x", serialization.deserialize_message(data, ros.AxisBlock))
+        recording.states("x", serialization.deserialize_message(data, ros.AxisBlock))
     recorded = read_recording(path)
     assert recorded.states["/x/state"]["status_bits"].tolist() == block.status_bits
     assert recorded.topics["/x/block"].count == 1
@@ -244,7 +244,7 @@ def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, 
         with pytest.raises(CncError) as error:
             recording.axis_block("x", bad)
         with pytest.raises(CncError):
-            recording.axis_states("x", bad)
+            recording.states("x", bad)
         recording.axis_block("x", blocks.axis(20))
     assert str(error.value) == (
         "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected "
@@ -310,7 +310,7 @@ def test_topic_with_two_types_is_refused(path, blocks):
     ("call", "what"),
     [
         (lambda recording, blocks: recording.axis_block("x", blocks.axis(10)), "the block with first cycle 10"),
-        (lambda recording, blocks: recording.axis_states("x", blocks.axis(10)), "the block with first cycle 10"),
+        (lambda recording, blocks: recording.states("x", blocks.axis(10)), "the block with first cycle 10"),
         (
             lambda recording, blocks: recording.channel_block_message("c", blocks.channel_with_commands(10)),
             "the block with first cycle 10",

@@ -1,0 +1,29 @@
+"""What the commands print in common: refusals, faults; and the exit statuses."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from cnc_ptp.errors import CncError
+
+RUN_FAILED = 1
+"""The run ended in an error, or a recording differs."""
+WRONG_INPUT = 2
+"""Wrong usage or input; nothing was started."""
+
+
+def print_error(error: CncError) -> None:
+    """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console.print(str(error), style="red", markup=False)
+    caret = getattr(error, "caret", "")
+    if caret:
+        console.print(caret, markup=False)
+
+
+def print_faults(console: Console, errors: list[str], refusals: list[str]) -> None:
+    """Errors and refused commands of a run."""
+    for text in errors:
+        console.print(f"error: {text}", style="red", markup=False)
+    for text in refusals:
+        console.print(f"refused: {text}", style="yellow", markup=False)
