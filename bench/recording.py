@@ -80,11 +80,7 @@ def record_states(path: Path, run: Run) -> None:
     with Recording(path, MACHINE) as recording:
         for blocks in run:
             for name, block in blocks:
-                if isinstance(block, AxisBlock):
-                    recording.states(name, block)
-                elif isinstance(block, SpindleBlock):
-                    recording.states(name, block)
-                elif isinstance(block, ChannelBlock):
+                if not isinstance(block, PlcBlock):
                     recording.states(name, block)
 
 
