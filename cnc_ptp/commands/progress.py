@@ -62,5 +62,6 @@ class RunProgress:
             return
         self._next = time.monotonic() + PERIOD
         where = " ".join(f"{axis.upper()}{value:9.3f}" for axis, value in position.items())
-        text = f"block {done}/{total} line {line}  {where}  F{feed_mm_per_min:6.0f}" if position else "the nodes are starting"
+        text = f"block {done}/{total} line {line}  {where}  F{feed_mm_per_min:6.0f}"
+        text = text if position else "the nodes are starting"
         self._progress.update(self._task, completed=done, total=total or None, where=text)
