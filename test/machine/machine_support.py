@@ -55,9 +55,11 @@ class UnitBench:
         return f"P-ERR-{record.error_id} {record.message}"
 
     def run(self, cycles: int, inputs: Mapping[str, Block] | None = None) -> None:
-        assert cycles % self.count == 0
-        for _ in range(cycles // self.count):
-            self.blocks.append(self.runner.replay(CycleTick(self.cycle, self.count), inputs or {}))
+        """Blocks of `count` cycles, the last one shorter where it must be."""
+        end = self.cycle + cycles
+        while self.cycle < end:
+            tick = CycleTick(self.cycle, min(self.count, end - self.cycle))
+            self.blocks.append(self.runner.replay(tick, inputs or {}))
             self.events += self.unit.take_events()
 
     def column(self, name: str) -> list[Any]:
@@ -222,7 +224,7 @@ def position_after(phases: Iterable[tuple[float, float]], t: float) -> tuple[flo
 def assert_smooth(
     p: list[float], v: list[float], a: list[float], *, acceleration: float, jerk: float, cycle_time: float = CYCLE_TIME
 ) -> None:
-    """No step: a changes by at most J·T a cycle, v and p are its integrals as far as a jerk within ±J lets them differ."""
+    """No step: a changes by at most J·T a cycle; v and p are its integrals, as far as a jerk within ±J can bend them."""
     t = cycle_time
     for k in range(len(p) - 1):
         assert abs(a[k]) <= acceleration * (1 + 1e-9) + 1e-6, f"acceleration {a[k]} in cycle {k}"

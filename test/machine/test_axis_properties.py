@@ -1,0 +1,135 @@
+"""Random command sequences on an axis: no step, limits kept, always a standing end."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from machine_support import UnitBench, assert_smooth, axis_bench
+
+from cnc_ptp.machine.blocks import AxisStateCode as S
+
+A, J = 5000.0, 50_000.0
+QUICK = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+
+dynamics = st.fixed_dictionaries(
+    {
+        "velocity": st.floats(1.0, 2000.0),
+        "acceleration": st.floats(100.0, A),
+        "deceleration": st.floats(100.0, A),
+        "jerk": st.floats(1000.0, J),
+    }
+)
+moves = st.tuples(
+    st.just("move_absolute"),
+    st.builds(lambda target, limits: {"target": target, **limits}, st.floats(-200.0, 200.0), dynamics),
+)
+relative = st.tuples(st.just("move_relative"), st.fixed_dictionaries({"distance": st.floats(-50.0, 50.0)}))
+overrides = st.tuples(
+    st.just("set_override"),
+    st.fixed_dictionaries(
+        {"percent": st.one_of(st.sampled_from([0.0, 20.0, 50.0, 75.0, 100.0]), st.floats(0.0, 100.0))}
+    ),
+)
+others = st.sampled_from(
+    [
+        ("stop", {}),
+        ("reset", {}),
+        ("power", {"on": False}),
+        ("power", {"on": True}),
+        ("upstream_lost", {"source": "plc"}),
+    ]
+)
+pauses = st.integers(0, 120)
+Commands = list[tuple[tuple[str, dict[str, Any]], int]]
+
+
+def play(bench: UnitBench, commands: Commands) -> None:
+    for (name, arguments), pause in commands:
+        bench.give(name, **arguments)
+        bench.run(pause)
+
+
+def check(bench: UnitBench) -> None:
+    """Smooth but for the positions where an enable takes over the actual position."""
+    states = bench.column("state")
+    p, v, a = (bench.column(f"set_{name}") for name in ("position", "velocity", "acceleration"))
+    enabled = [k for k in range(1, len(states)) if states[k - 1] == S.DISABLED != states[k]]
+    begin = 0
+    for end in [*enabled, len(p)]:
+        assert_smooth(p[begin:end], v[begin:end], a[begin:end], acceleration=A, jerk=J)
+        begin = end
+    for k in enabled:
+        assert abs(p[k] - p[k - 1]) < 1e-2 and v[k] == v[k - 1] == 0.0
+    assert max(map(abs, v)) <= 2000.0 * (1 + 1e-12) + 0.5 * A * A / J
+
+
+@QUICK
+@given(
+    kind=st.sampled_from([1, 2, 3, 4]),
+    commands=st.lists(st.tuples(st.one_of(moves, relative, overrides, others), pauses), max_size=12),
+)
+def test_random_commands_never_step_and_always_end_standing(kind: int, commands: Commands) -> None:
+    bench = axis_bench(count=1000, override_type=kind, max_velocity=2000.0, reference_velocity=2000.0)
+    play(bench, commands)
+    bench.give("stop")
+    for _ in range(40):
+        bench.run(500)
+        if bench.column("set_velocity")[-1] == 0.0 and bench.column("set_acceleration")[-1] == 0.0:
+            break
+    bench.run(1)
+    assert bench.state in (S.DISABLED, S.STANDSTILL, S.ERROR_STOP)
+    assert not bench.column("status_bits")[-1] & (1 << 8)
+    check(bench)
+
+
+@QUICK
+@given(
+    kind=st.sampled_from([1, 2, 3, 4]),
+    target=st.floats(-200.0, 200.0),
+    limits=dynamics,
+    changes=st.lists(st.tuples(overrides, pauses), max_size=10),
+)
+def test_overrides_never_lose_the_target(kind: int, target: float, limits: dict[str, float], changes: Commands) -> None:
+    """With 100 % at the end every job arrives exactly, without passing its target, in the direction of its start."""
+    bench = axis_bench(count=1000, override_type=kind)
+    bench.give("move_absolute", target=target, **limits)
+    play(bench, changes)
+    bench.give("set_override", percent=100.0)
+    for _ in range(200):
+        bench.run(1000)
+        if bench.state == S.STANDSTILL:
+            break
+    p, v = bench.column("set_position"), bench.column("set_velocity")
+    percents = bench.column("override_percent")
+    slowest = min([percent for percent in percents if percent], default=100.0)
+    if bench.state != S.STANDSTILL:  # types 1 and 2 keep a slow table
+        assert slowest < 100.0 and v[-1] != 0.0
+        return
+    assert p[-1] == target
+    sign = 1.0 if target > 0.0 else -1.0
+    tolerance = 1e-9 * max(1.0, abs(target))
+    assert all(sign * velocity >= -1e-9 for velocity in v)
+    assert all(-tolerance <= sign * position <= sign * target + tolerance for position in p)
+    check(bench)
+
+
+@QUICK
+@given(
+    cycle=st.integers(0, 1200),
+    percents=st.lists(st.floats(0.0, 100.0), min_size=1, max_size=4),
+    pause=st.integers(1, 300),
+)
+def test_types_3_and_4_are_never_slower_than_1_and_2(cycle: int, percents: list[float], pause: int) -> None:
+    times = {}
+    for kind in (1, 2, 3, 4):
+        bench = axis_bench(count=1000, override_type=kind)
+        bench.give("move_absolute", target=1000.0, velocity=2000.0, acceleration=A, deceleration=A, jerk=J)
+        bench.run(cycle)
+        for percent in [*percents, 100.0]:
+            bench.give("set_override", percent=percent)
+            bench.run(pause)
+        bench.run(1000)
+        times[kind] = bench.column("set_position")[-1]
+    assert times[3] >= times[1] - 1e-9 and times[4] >= times[2] - 1e-9

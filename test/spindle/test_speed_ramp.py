@@ -1,0 +1,52 @@
+"""Speed ramps against textbook constant-acceleration motion."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from cnc_ptp.spindle.speed_ramp import plan_speed
+
+UP, DOWN = 900.0, 1600.0
+
+
+def expected(position: float, speed: float, wanted: float, t: float) -> tuple[float, float]:
+    """Position and speed at t: one ramp, or with a reversal one to 0 and one from there."""
+    while True:
+        stage = 0.0 if speed * wanted < 0.0 else wanted
+        rate = UP if abs(stage) > abs(speed) else DOWN
+        duration = abs(stage - speed) / rate
+        a = rate if stage > speed else -rate
+        if t <= duration:
+            return position + speed * t + 0.5 * a * t * t, speed + a * t
+        position += 0.5 * (speed + stage) * duration
+        t -= duration
+        speed = stage
+        if stage == wanted:
+            return position + wanted * t, wanted
+
+
+@pytest.mark.parametrize("speed", [0.0, 500.0, -500.0, 1234.5])
+@pytest.mark.parametrize("wanted", [0.0, 100.0, -100.0, 2000.0, -2000.0])
+def test_ramps_are_textbook_motion(speed: float, wanted: float) -> None:
+    profile = plan_speed(33.0, speed, wanted, acceleration=UP, deceleration=DOWN)
+    for k in range(400):
+        t = k * 0.01
+        p, v, a, j = profile.state_at(t)
+        assert (p, v) == pytest.approx(expected(33.0, speed, wanted, t), abs=1e-8)
+        assert abs(a) in (0.0, UP, DOWN) and j == 0.0
+    assert profile.state_at(10.0)[1] == wanted
+
+
+def test_the_end_speed_is_exact_and_a_speed_that_is_reached_makes_no_ramp() -> None:
+    draw = random.Random(3)
+    for _ in range(200):
+        speed, wanted = draw.uniform(-1e5, 1e5), draw.uniform(-1e5, 1e5)
+        assert plan_speed(0.0, speed, wanted, acceleration=UP, deceleration=DOWN).end[1:] == (wanted, 0.0)
+        assert plan_speed(7.0, wanted, wanted, acceleration=UP, deceleration=DOWN).duration == 0.0
+
+
+def test_a_reversal_slows_down_with_the_deceleration_and_speeds_up_with_the_acceleration() -> None:
+    profile = plan_speed(0.0, 800.0, -450.0, acceleration=UP, deceleration=DOWN)
+    assert [(t, a) for t, _, _, a, _ in profile.rows] == [(0.0, -DOWN), (0.5, -UP), (1.0, 0.0)]
