@@ -1,4 +1,4 @@
-"""Motion arithmetic against Ruckig, side by side. Prints figures, never fails on time: `python bench/motion.py`.
+"""Motion arithmetic against Ruckig, side by side.
 
 Each figure is the median of several rounds over a few hundred seeded problems, in microseconds a call.
 """
@@ -6,18 +6,20 @@ Each figure is the median of several rounds over a few hundred seeded problems, 
 from __future__ import annotations
 
 import random
-import statistics
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import ruckig
 
+from bench.figures import Effort, Figure, Say, medians_of, stopwatch
 from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_rest_to_rest_batch, plan_to_position, plan_to_velocity
 from cnc_ptp.path import Arc, AxisLimits, Line, PathInterpolator
 
-ROUNDS = 15
 Problem = tuple[float, float, float, float, Limits]
+Measure = Callable[[], float]
+RUCKIG = "Ruckig"
+ROUNDS = 3
+"""Rounds for each run of the effort: one is short."""
 
 
 def problems(count: int, *, moving: bool) -> list[Problem]:
@@ -33,15 +35,16 @@ def problems(count: int, *, moving: bool) -> list[Problem]:
     return found
 
 
-def microseconds(call: Callable[..., object], arguments: Sequence[tuple[object, ...]]) -> float:
-    """Median over the rounds of the mean time of one call, µs."""
-    rounds = []
-    for _ in range(ROUNDS):
-        begin = time.perf_counter()
-        for each in arguments:
-            call(*each)
-        rounds.append((time.perf_counter() - begin) / len(arguments))
-    return statistics.median(rounds) * 1e6
+def calls(call: Callable[..., object], arguments: Sequence[tuple[object, ...]]) -> Measure:
+    """Measures the mean time of one call, µs."""
+
+    def measure() -> float:
+        with stopwatch() as watch:
+            for each in arguments:
+                call(*each)
+        return 1e6 * watch.wall / len(arguments)
+
+    return measure
 
 
 class RuckigPeer:
@@ -74,63 +77,79 @@ class RuckigPeer:
         return True
 
 
-def report(name: str, ours: float, peer: float | None, goal: float | None = None) -> None:
-    """One line: our time, the goal, Ruckig's time and the ratio."""
-    aim = f"goal {goal:6.2f}" if goal is not None else " " * 11
-    other = f"Ruckig {peer:8.3f} µs   ratio {ours / peer:7.2f}" if peer is not None else ""
-    print(f"{name:48s} {ours:9.3f} µs   {aim}   {other}")
+def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+    """Plans, evaluation, path."""
+    peer = RuckigPeer()
+    say("plans")
+    yield from plans(effort, peer)
+    say("evaluation")
+    yield from evaluation(effort, peer)
+    say("path")
+    yield from path(effort)
 
 
-def bench_plans(peer: RuckigPeer) -> None:
+def against_ruckig(
+    effort: Effort, name: str, ours: Measure, theirs: Measure, goal: float | None = None
+) -> Iterator[Figure]:
+    """Both in turn."""
+    value, peer_value = medians_of(ROUNDS * effort.runs, [ours, theirs])
+    yield Figure(name, value, "µs", goal=goal, at_most=True, peer=RUCKIG, peer_value=peer_value)
+
+
+def plans(effort: Effort, peer: RuckigPeer) -> Iterator[Figure]:
     """Planning, one by one and in one call."""
-    rest = problems(300, moving=False)
-    moving = [each for each in problems(300, moving=True) if peer.solves(each)]
-    ruckig_rest = microseconds(peer.plan, rest)
-    ours = microseconds(plan_rest_to_rest, [(p, t, x) for p, _, _, t, x in rest])
-    report("plan rest to rest", ours, ruckig_rest, 8.0)
-    report("plan to position, at rest", microseconds(plan_to_position, rest), ruckig_rest)
-    report("plan to position, moving", microseconds(plan_to_position, moving), microseconds(peer.plan, moving), 30.0)
-    to_zero = [(p, v, a, 0.0, x) for p, v, a, _, x in moving]
-    report("plan to velocity 0", microseconds(plan_to_velocity, to_zero), None)
-    many = problems(10_000, moving=False)
-    columns = np.array([(p, t, *x) for p, _, _, t, x in many]).T.copy()
-    batch = microseconds(plan_rest_to_rest_batch, [tuple(columns)]) / len(many)
-    report("plan rest to rest, 10,000 in one call", batch, ruckig_rest, ruckig_rest / 3.0)
+    rest = problems(effort.scaled(300), moving=False)
+    moving = [each for each in problems(effort.scaled(300), moving=True) if peer.solves(each)]
+    theirs = calls(peer.plan, rest)
+    closed_form = calls(plan_rest_to_rest, [(p, target, limits) for p, _, _, target, limits in rest])
+    yield from against_ruckig(effort, "plan rest to rest", closed_form, theirs, goal=8.0)
+    yield from against_ruckig(effort, "plan to position, at rest", calls(plan_to_position, rest), theirs)
+    to_position, moving_peer = calls(plan_to_position, moving), calls(peer.plan, moving)
+    yield from against_ruckig(effort, "plan to position, moving", to_position, moving_peer, goal=30.0)
+    ramps = calls(plan_to_velocity, [(p, v, a, 0.0, limits) for p, v, a, _, limits in moving])
+    yield Figure("plan to velocity 0", medians_of(ROUNDS * effort.runs, [ramps])[0], "µs")
+    many = problems(effort.scaled(10_000), moving=False)
+    columns = np.array([(p, target, *limits) for p, _, _, target, limits in many]).T.copy()
+    batch = calls(plan_rest_to_rest_batch, [tuple(columns)])
+    name = f"plan rest to rest, {len(many):,} in one call"
+    yield from against_ruckig(effort, name, lambda: batch() / len(many), theirs)
 
 
-def bench_evaluation(peer: RuckigPeer) -> None:
+def evaluation(effort: Effort, peer: RuckigPeer) -> Iterator[Figure]:
     """One cycle and a thousand cycles of one profile."""
     limits = Limits(2000.0, 5000.0, 5000.0, 50000.0)
     profile = plan_rest_to_rest(0.0, 1000.0, limits)
     peer.plan(0.0, 0.0, 0.0, 1000.0, limits)
     moments = [(0.001 * cycle,) for cycle in range(1000)]
-    at_time = microseconds(peer.trajectory.at_time, moments)
-    report("state_at, one cycle", microseconds(profile.state_at, moments), at_time, 1.0)
-    times = np.arange(1000) * 0.001
-    report("sample, 1,000 cycles", microseconds(profile.sample, [(times,)] * 50), 1000.0 * at_time, 30.0)
+    at_time = calls(peer.trajectory.at_time, moments)
+    yield from against_ruckig(effort, "state_at, one cycle", calls(profile.state_at, moments), at_time, goal=1.0)
+    sample = calls(profile.sample, [(np.arange(1000) * 0.001,)] * 50)
+    yield from against_ruckig(effort, "sample, 1,000 cycles", sample, lambda: 1000.0 * at_time(), goal=30.0)
 
 
-def bench_path() -> None:
+def path(effort: Effort) -> Iterator[Figure]:
     """Geometry and path interpolation."""
     line = Line((0.0, 0.0, 0.0), (10.0, 20.0, 30.0))
     arc = Arc((10.0, 0.0, 0.0), (0.0, 10.0, 1.0), (0.0, 0.0), (0, 1), 10.0, 90.0)
     states = [(0.01 * n, 100.0, 5.0, 7.0) for n in range(1000)]
-    report("line, 3 axes, one cycle", microseconds(line.evaluate, states), None, 1.0)
-    report("arc, 3 axes, one cycle", microseconds(arc.evaluate, states), None, 2.5)
     axes = [AxisLimits(500.0, 3000.0, 3000.0, 30000.0)] * 3
-    report("limits of an arc", microseconds(arc.limits, [(50.0, axes)] * 300), None)
+    of_line = line.limits(50.0, axes)
 
     def run() -> None:
         interpolator = PathInterpolator()
-        interpolator.start(line, line.limits(50.0, axes))
+        interpolator.start(line, of_line)
         while not interpolator.done:
             interpolator.step(10, 0.001)
 
     cycles = line.length / 50.0 / 0.001
-    report("path interpolator, one cycle of blocks of 10", microseconds(run, [()] * 5) / cycles, None)
-
-
-if __name__ == "__main__":
-    bench_plans(RuckigPeer())
-    bench_evaluation(RuckigPeer())
-    bench_path()
+    whole = calls(run, [()])
+    measures = {
+        "line of 3 axes, one cycle": calls(line.evaluate, states),
+        "arc of 3 axes, one cycle": calls(arc.evaluate, states),
+        "limits of an arc": calls(arc.limits, [(50.0, axes)] * 300),
+        "path interpolator, one cycle in blocks of 10": lambda: whole() / cycles,
+    }
+    goals = (1.0, 2.5, None, None)
+    values = medians_of(ROUNDS * effort.runs, list(measures.values()))
+    for name, value, goal in zip(measures, values, goals, strict=True):
+        yield Figure(name, value, "µs", goal=goal, at_most=True)

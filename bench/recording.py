@@ -1,15 +1,19 @@
-"""What recording costs: 3 axes, spindle and channel in blocks of 10 cycles; prints figures, the best of n passes."""
+"""What recording costs: 3 axes, spindle and channel in blocks of 10 cycles, beside mcap.Writer."""
+
+from __future__ import annotations
 
 import math
-import sys
 import tempfile
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from mcap.writer import CompressionType, Writer
+
+from bench.figures import Effort, Figure, Say, median_of, medians_of, stopwatch
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock, CycleTick, PlcBlock, SpindleBlock
-from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.reader import iter_messages, read_recording
 from cnc_ptp.recording.report import write_report
+from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.verify import verify
 from cnc_ptp.recording.writer import Recording
 
@@ -17,16 +21,19 @@ BLOCKS = 2000
 COUNT = 10
 AXES = ("x", "y", "z")
 MACHINE = "/machine: {}\n"
+CYCLE_TIME = 1e-3
 
 Run = list[list[tuple[str, Block]]]
 
 
-def run_of_blocks() -> Run:
+def run_of_blocks(blocks: int) -> Run:
     """Sinusoidal motion, every number different: the worst case for compression."""
-    return [_blocks(COUNT * index) for index in range(BLOCKS)]
+    return [unit_blocks(COUNT * index) for index in range(blocks)]
 
 
-def _blocks(first: int) -> list[tuple[str, Block]]:
+def unit_blocks(first: int) -> list[tuple[str, Block]]:
+    """The blocks of all units from cycle `first` on."""
+
     def wave(factor: float) -> list[float]:
         return [100.0 * math.sin(1e-3 * factor * (first + i)) for i in range(COUNT)]
 
@@ -57,8 +64,8 @@ def _blocks(first: int) -> list[tuple[str, Block]]:
         error_id=zero,
     )
     blocks: list[tuple[str, Block]] = [("plc", PlcBlock(first, COUNT, first)), ("channel", channel)]
-    for number, axis in enumerate(AXES):
-        moving = [wave(1.0 + number + 0.1 * index) for index in range(8)]
+    for index, axis in enumerate(AXES):
+        moving = [wave(1.0 + index + 0.1 * column) for column in range(8)]
         rest = [flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(100.0)]
         blocks.append((axis, AxisBlock(first, COUNT, *moving, *rest, [5] * COUNT, [256] * COUNT, zero)))
     turning = [wave(7.0), wave(7.1), flat(0.0), wave(8.0), wave(8.1), wave(9.0), flat(100.0)]
@@ -84,36 +91,80 @@ def record_states(path: Path, run: Run) -> None:
                     recording.states(name, block)
 
 
-def best(call: Callable[[], object], passes: int) -> float:
-    times = []
-    for _ in range(passes):
-        begin = time.perf_counter()
-        call()
-        times.append(time.perf_counter() - begin)
-    return min(times)
+class McapPeer:
+    """mcap.Writer with the messages of a recording ready as bytes: it encodes none of them."""
+
+    def __init__(self, recorded: Path) -> None:
+        self.messages = list(iter_messages(recorded))
+
+    def write(self, path: Path) -> None:
+        with path.open("wb") as stream:
+            writer = Writer(stream, compression=CompressionType.ZSTD)
+            writer.start("ros2")
+            types = {topic: type_name for topic, type_name, _, _ in self.messages}
+            channels = {topic: self.channel(writer, topic, type_name) for topic, type_name in types.items()}
+            for topic, _, time_ns, cdr in self.messages:
+                writer.add_message(channels[topic], time_ns, cdr, time_ns)
+            writer.finish()
+
+    def channel(self, writer: Writer, topic: str, type_name: str) -> int:
+        schema = load_schema(type_name)
+        schema_id = writer.register_schema(type_name, "ros2msg", schema.text.encode())
+        return int(writer.register_channel(topic, "cdr", schema_id))
 
 
-def main() -> None:
-    """Measures and prints."""
-    passes = int(sys.argv[1]) if len(sys.argv) > 1 else 3
-    run = run_of_blocks()
-    seconds = BLOCKS * COUNT * 1e-3
+def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+    """Writing, then reading, comparing and the report."""
+    run = run_of_blocks(effort.scaled(BLOCKS, least=4))
     with tempfile.TemporaryDirectory() as folder:
-        path, page = Path(folder) / "run.mcap", Path(folder) / "run.html"
-        states = best(lambda: record_states(path, run), passes)
-        everything = best(lambda: record_all(path, run), passes)
-        size = path.stat().st_size / seconds / 1e3
-        reading = best(lambda: read_recording(path), passes)
-        recorded = read_recording(path)
-        verifying = best(lambda: verify(recorded, lambda _: (pair for blocks in run for pair in blocks)), passes)
-        reporting = best(lambda: write_report(recorded, page), passes)
-    units, messages = len(AXES) + 2, COUNT * (len(AXES) + 2)
-    block_us, all_us = 1e6 * states / BLOCKS, 1e6 * everything / BLOCKS
-    rates = [seconds / duration for duration in (everything, reading, verifying)]
-    print(f"recording: states of {units} units {block_us:.0f} us a block ({block_us / messages:.2f} us a message)")
-    print(f"recording: states, blocks, ticks {all_us:.0f} us a block ({rates[0]:.0f} times real time), {size:.0f} kB/s")
-    print(f"recording: read {rates[1]:.0f}, compare {rates[2]:.0f} times real time; report {reporting:.2f} s")
+        path = Path(folder) / "run.mcap"
+        record_all(path, run)
+        say("writing")
+        yield from writing(effort, run, path)
+        say("reading")
+        yield from reading(effort, run, path)
 
 
-if __name__ == "__main__":
-    main()
+def seconds(call: Callable[[], object]) -> Callable[[], float]:
+    def measure() -> float:
+        with stopwatch() as watch:
+            call()
+        return watch.wall
+
+    return measure
+
+
+def writing(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
+    """Messages a second beside mcap.Writer; what a block costs."""
+    peer = McapPeer(path)
+    beside = path.with_name("peer.mcap")
+    measures = [lambda: record_all(path, run), lambda: peer.write(beside), lambda: record_states(beside, run)]
+    everything, theirs, states = medians_of(effort.runs, [seconds(measure) for measure in measures])
+    count, blocks = len(peer.messages), len(run)
+    yield Figure(
+        "unit blocks to states, blocks, ticks in the file",
+        count / everything,
+        "messages/s",
+        peer="mcap.Writer, ready bytes",
+        peer_value=count / theirs,
+    )
+    yield Figure(f"all of {count / blocks:.0f} messages a block", 1e6 * everything / blocks, "µs/block")
+    yield Figure("states of 5 units alone", 1e6 * states / blocks, "µs/block")
+    size = path.stat().st_size / (blocks * COUNT * CYCLE_TIME)
+    yield Figure("size of the file, every number different", size / 1e3, "kB/s")
+
+
+def reading(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
+    """Times real time of reading and comparing; seconds for the report."""
+    length = len(run) * COUNT * CYCLE_TIME
+    recorded = read_recording(path)
+    measures = [
+        lambda: read_recording(path),
+        lambda: verify(recorded, lambda _: (pair for blocks in run for pair in blocks)),
+    ]
+    read, compare = medians_of(effort.runs, [seconds(measure) for measure in measures])
+    yield Figure("read a recording", length / read, "× real time")
+    yield Figure("compare with a second run", length / compare, "× real time")
+    page = path.with_suffix(".html")
+    report = median_of(effort.runs, seconds(lambda: write_report(recorded, page)))
+    yield Figure(f"report of {length:.0f} s", report, "s")

@@ -1,0 +1,137 @@
+"""One run of the ROS graph with its processes watched; runs in a process of its own, because it starts and ends ROS."""
+
+from __future__ import annotations
+
+import os
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+
+import psutil
+
+SETTLED_CYCLES = 1000
+"""The figures begin here, when all nodes run evenly."""
+SAMPLE_PERIOD = 1.0
+SUPERVISOR = "supervisor and monitor"
+COMPOSED = "all nodes"
+
+
+@dataclass(slots=True)
+class GraphRun:
+    """What was seen of a run between its first and its last sample."""
+
+    startup: float = 0.0
+    """Seconds until the first cycle was reported."""
+    wall: float = 0.0
+    cycles: int = 0
+    cpu: dict[str, float] = field(default_factory=dict)
+    """Processor seconds by node."""
+    pss_mb: dict[str, float] = field(default_factory=dict)
+    """Memory by node, shared pages split over those who use them."""
+    blocks: int = 0
+    lost_blocks: int = 0
+    duplicates: int = 0
+    lateness_p50_ms: float = 0.0
+    lateness_p99_ms: float = 0.0
+    lateness_max_ms: float = 0.0
+    failures: list[str] = field(default_factory=list)
+
+
+def run_graph(machine: str, program: str, *, seconds: float, record: str, free_run: bool, composed: bool) -> GraphRun:
+    """Runs `seconds` of machine time in a new process, in a ROS domain that others do not use."""
+    os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(_run, machine, program, seconds, record, free_run, composed).result()
+
+
+def _run(machine: str, program: str, seconds: float, record: str, free_run: bool, composed: bool) -> GraphRun:
+    from cnc_ptp.nodes.composed import run_composed
+    from cnc_ptp.nodes.supervisor import Job, Supervisor
+    from cnc_ptp.parameters import read_machine
+
+    parameters = read_machine(machine)
+    job = Job(machine, program, None, seconds, record, free_run)
+    watch = Watch(memory_at=0.8 * seconds * 1e6 / parameters.cycle_time_us, own=COMPOSED if composed else SUPERVISOR)
+
+    def show(monitor: object) -> None:
+        watch.look(monitor.progress.cycle)  # type: ignore[attr-defined]
+
+    if composed:
+        monitor, failures = run_composed(parameters, job, show=show), []
+    else:
+        supervisor = Supervisor(parameters, job, show=show)
+        monitor, failures = supervisor.run(), supervisor.failures
+    run = watch.finish()
+    run.failures = failures + monitor.errors
+    nodes = monitor.diagnostics.values()
+    run.blocks, run.lost_blocks, run.duplicates = (
+        sum(int(node[key]) for node in nodes) for key in ("blocks", "lost_blocks", "duplicates")
+    )
+    lateness = monitor.lateness()
+    run.lateness_p50_ms = lateness.percentile_us(50.0) / 1000.0
+    run.lateness_p99_ms = lateness.percentile_us(99.0) / 1000.0
+    run.lateness_max_ms = lateness.largest_us / 1000.0
+    return run
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A moment of a run."""
+
+    time: float
+    cycle: int
+    cpu: dict[str, float]
+
+
+class Watch:
+    """Looks at the processes of the run once a second: this one and its children."""
+
+    def __init__(self, *, memory_at: float, own: str) -> None:
+        """`memory_at`: cycle at which the memory is read. `own`: name for this process."""
+        self._started = time.monotonic()
+        self._memory_at = memory_at
+        self._own = own
+        self._samples: list[Sample] = []
+        self._processes: dict[str, psutil.Process] = {}
+        self.run = GraphRun()
+
+    def look(self, cycle: int) -> None:
+        """Called many times a second with the last cycle that was reported."""
+        now = time.monotonic()
+        if cycle and not self.run.startup:
+            self.run.startup = now - self._started
+            self._processes = self._find_processes()
+        if cycle < SETTLED_CYCLES or (self._samples and now - self._samples[-1].time < SAMPLE_PERIOD):
+            return
+        try:
+            cpu = {name: process_seconds(process) for name, process in self._processes.items()}
+            if cycle >= self._memory_at and not self.run.pss_mb:
+                self.run.pss_mb = {name: each.memory_full_info().pss / 1e6 for name, each in self._processes.items()}
+        except (psutil.NoSuchProcess, psutil.AccessDenied):  # the run is ending
+            return
+        self._samples.append(Sample(now, cycle, cpu))
+
+    def finish(self) -> GraphRun:
+        """The differences between the first and the last sample."""
+        if len(self._samples) > 1:
+            first, last = self._samples[0], self._samples[-1]
+            self.run.wall, self.run.cycles = last.time - first.time, last.cycle - first.cycle
+            self.run.cpu = {name: last.cpu[name] - first.cpu[name] for name in last.cpu}
+        return self.run
+
+    def _find_processes(self) -> dict[str, psutil.Process]:
+        own = psutil.Process()
+        nodes = [child for child in own.children() if "cnc_ptp.nodes" in " ".join(child.cmdline())]
+        return {node_name(child.cmdline()): child for child in nodes} | {self._own: own}
+
+
+def process_seconds(process: psutil.Process) -> float:
+    times = process.cpu_times()
+    return float(times.user + times.system)
+
+
+def node_name(command_line: list[str]) -> str:
+    """python -m cnc_ptp.nodes.axis MACHINE x -> axis x."""
+    kind = command_line[2].rpartition(".")[2]
+    return f"{kind} {command_line[4]}" if kind in ("axis", "spindle", "nc_channel") else kind

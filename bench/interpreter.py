@@ -1,0 +1,47 @@
+"""NC blocks a second: `G1 X Y Z F` lines parsed and modally resolved."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from bench.figures import Effort, Figure, Say, medians_of, stopwatch
+from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.parser import parse_program
+
+BLOCKS = 100_000
+
+
+def program_text(blocks: int) -> str:
+    """A program of random straight moves, three axes and a feed in every block."""
+    draw = random.Random(1)
+    lines = []
+    for n in range(1, blocks + 1):
+        x, y, z = (draw.uniform(-99, 99) for _ in range(3))
+        lines.append(f"N{10 * n} G1 X{x:.3f} Y{y:.3f} Z{z:.3f} F{draw.randint(100, 9000)}")
+    return "\n".join([*lines, "M30"])
+
+
+def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+    """Parsing and interpretation together, then apart."""
+    blocks = effort.scaled(BLOCKS)
+    text = program_text(blocks)
+
+    def parse() -> float:
+        with stopwatch() as watch:
+            parse_program(text, "bench.nc")
+        return watch.wall / blocks
+
+    program = parse_program(text, "bench.nc")
+
+    def resolve() -> float:
+        with stopwatch() as watch:
+            for _ in interpret(program, (0.0, 0.0, 0.0), ("X", "Y", "Z")):
+                pass
+        return watch.wall / blocks
+
+    say(f"{blocks:,} blocks")
+    parsing, resolving = medians_of(effort.runs, [parse, resolve])
+    yield Figure("`G1 X Y Z F` blocks", 1.0 / (parsing + resolving), "blocks/s", goal=60_000.0)
+    yield Figure("text to words", 1e6 * parsing, "µs/block")
+    yield Figure("modal states, end points", 1e6 * resolving, "µs/block")

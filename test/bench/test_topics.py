@@ -1,0 +1,82 @@
+"""Every topic runs in its shortest form; what it measures is not judged."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from bench import graph, interpreter, motion, offline, recording
+from bench.figures import Effort
+from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
+from bench.jobs import MACHINE, long_program
+from cnc_ptp.machine.job import check_program
+from cnc_ptp.parameters import read_machine
+
+SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
+
+
+@pytest.mark.parametrize("topic", [interpreter, motion, recording, offline])
+def test_topic_yields_figures(topic) -> None:
+    said: list[str] = []
+    figures = list(topic.figures(SMALLEST, said.append))
+    assert said
+    assert len({figure.name for figure in figures}) == len(figures) >= 3
+    assert all(math.isfinite(figure.value) and figure.unit for figure in figures)
+
+
+def test_long_program_suits_the_machine() -> None:
+    check_program(read_machine(MACHINE), long_program(600.0), "long.nc")
+
+
+def test_long_program_is_long_enough(tmp_path: Path) -> None:
+    program = tmp_path / "long.nc"
+    program.write_text(long_program(10.0))
+    assert offline.run_offline(MACHINE, program=str(program)).machine_seconds > 10.0
+
+
+def test_graph_composed_in_one_process(tmp_path: Path) -> None:
+    program, record = tmp_path / "long.nc", str(tmp_path / "run.mcap")
+    program.write_text(long_program(10.0))
+    run = run_graph(MACHINE, str(program), seconds=1.0, record=record, free_run=True, composed=True)
+    assert run.failures == []
+    assert run.startup > 0.0
+    assert graph.missing_samples(record) == 0
+
+
+def test_figures_of_a_watched_run() -> None:
+    run = GraphRun(
+        startup=2.0,
+        wall=10.0,
+        cycles=10_000,
+        cpu={"axis x": 1.0, "clock": 0.5, SUPERVISOR: 4.0},
+        pss_mb={"axis x": 50.0, "clock": 40.0, SUPERVISOR: 60.0},
+        blocks=3000,
+        lateness_p99_ms=12.0,
+    )
+    figures = {(figure.name, figure.unit): figure for figure in [*graph.real_time(run), *graph.resources(run)]}
+    assert figures["2 nodes together", "cores"].value == pytest.approx(0.15)
+    assert figures["memory of 2 nodes (PSS)", "MB"].value == 90.0
+    assert figures["block lateness p99", "ms"].met is False
+    assert [figure.value for figure in graph.rate("free run", run)] == [1000.0, pytest.approx(0.55)]
+
+
+def test_a_run_too_short_to_be_watched_has_no_cores() -> None:
+    run = Watch(memory_at=1e9, own=SUPERVISOR).finish()
+    assert [figure.name for figure in graph.resources(run)] == ["start-up, from the call to the first cycle"]
+    assert list(graph.rate("free run", run)) == []
+
+
+def test_watch_takes_samples_when_the_run_has_settled(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter(range(100))
+    monkeypatch.setattr("bench.graph_run.time.monotonic", lambda: float(next(clock)))
+    watch = Watch(memory_at=3000, own=SUPERVISOR)
+    for cycle in (0, 10, 2000, 3000, 4000):
+        watch.look(cycle)
+    run = watch.finish()
+    assert (run.startup, run.wall, run.cycles) == (2.0, 2.0, 2000)
+    assert run.pss_mb[SUPERVISOR] > 1.0
+
+
+def test_names_of_node_processes() -> None:
+    assert node_name(["python", "-m", "cnc_ptp.nodes.axis", "mill.yaml", "x"]) == "axis x"
+    assert node_name(["python", "-m", "cnc_ptp.nodes.clock", "mill.yaml"]) == "clock"
