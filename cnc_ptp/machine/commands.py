@@ -103,7 +103,9 @@ def _check_argument(where: str, name: str, argument: Argument, value: Any) -> No
     is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
     article = "an" if argument.kind == "integer" else "a"
     if not is_type or (isinstance(value, bool) and argument.kind != "switch"):
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {value!r} is not {article} {argument.kind}; nothing was changed")
+        raise CncError(
+            BAD_ARGUMENT, f"{where}: {name} = {value!r} is not {article} {argument.kind}; nothing was changed"
+        )
     if argument.kind == "number" and not is_finite(value):
         shown = value if isinstance(value, float) else "an integer that long"
         raise CncError(BAD_ARGUMENT, f"{where}: {name} = {shown} is not finite; nothing was changed")

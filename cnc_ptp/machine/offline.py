@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock
+from cnc_ptp.machine.blocks import (
+    AxisBlock,
+    AxisStateCode,
+    Block,
+    Command,
+    CommandRecord,
+    CycleTick,
+    Event,
+    PlcBlock,
+)
 from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.plc_unit import at_rest
 from cnc_ptp.machine.runner import UnitRunner
@@ -98,13 +107,17 @@ class OfflineMachine:
             self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
 
     def _what_is_waited_for(self, outputs: Outputs) -> str:
-        """Empty while anything moves or goes on by itself."""
+        """Empty while anything moves or goes on by itself; for axes on a path their channel speaks."""
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit
             reason = unit.waits_for() if isinstance(unit, ChannelUnit) else ""
             if reason:
                 reasons.append(reason)
-            elif not at_rest(output.block):
+            elif not at_rest(output.block) and not on_path(output.block):
                 return ""
         return "; ".join(reasons)
+
+
+def on_path(block: Block) -> bool:
+    return isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION

@@ -224,7 +224,7 @@ def position_after(phases: Iterable[tuple[float, float]], t: float) -> tuple[flo
 def assert_smooth(
     p: list[float], v: list[float], a: list[float], *, acceleration: float, jerk: float, cycle_time: float = CYCLE_TIME
 ) -> None:
-    """No step: a changes by at most J·T a cycle; v and p are its integrals, as far as a jerk within ±J can bend them."""
+    """No step: a changes by at most J·T a cycle; v and p are its integrals, as far as jerks within ±J can bend them."""
     t = cycle_time
     for k in range(len(p) - 1):
         assert abs(a[k]) <= acceleration * (1 + 1e-9) + 1e-6, f"acceleration {a[k]} in cycle {k}"

@@ -315,7 +315,7 @@ def test_override_in_the_brake_phase_counts_for_the_next_start_only(kind: int, p
 
 @pytest.mark.parametrize(("kind", "level"), [(1, 0.5 * 1765.56), (2, 1000.0), (3, 0.5 * 1765.56), (4, 1000.0)])
 def test_override_refers_to_the_reduced_or_to_the_users_velocity(kind: int, level: float) -> None:
-    """800 mm reach 1765.56 mm/s at most: v² /A + v·A/J = 800; types 1 and 3 halve this, 2 and 4 the 2000 of the user."""
+    """800 mm reach 1765.56 mm/s: v²/A + v·A/J = 800; types 1 and 3 halve this, 2 and 4 the 2000 of the user."""
     reduced = A * (-A / J + ((A / J) ** 2 + 4.0 * 800.0 / A) ** 0.5) / 2.0
     assert reduced == pytest.approx(1765.56, abs=0.01)
     bench = axis_bench(override_type=kind)

@@ -289,7 +289,8 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
         (
             "move_absolute",
             {"target": 1.0, "speed": 5.0},
-            "22001 axis x: move_absolute refused: unknown argument 'speed'; nothing was changed. Known: target, velocity, "
+            "22001 axis x: move_absolute refused: unknown argument 'speed'; nothing was changed. Known: target, "
+            "velocity, "
             "acceleration, deceleration, jerk",
         ),
         ("stop", {"now": True}, "22001 axis x: stop refused: unknown argument 'now'; nothing was changed. Known: none"),
@@ -298,7 +299,8 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
         (
             "jump",
             {},
-            "22002 axis x: unknown command 'jump'; nothing was changed. Known: move_absolute, move_relative, power, reset, "
+            "22002 axis x: unknown command 'jump'; nothing was changed. Known: move_absolute, move_relative, "
+            "power, reset, "
             "set_override, stop",
         ),
     ],
@@ -531,7 +533,8 @@ def test_a_path_that_begins_elsewhere_is_a_fault() -> None:
     bench = axis_bench(start_position=1.0)
     follow_path(bench, begin=1.5)
     assert bench.event_texts() == [
-        "P-ERR-23009 axis x: the path of the channel begins at 1.5 mm, the axis stands at 1.0 mm; the axis stops on its "
+        "P-ERR-23009 axis x: the path of the channel begins at 1.5 mm, the axis stands at 1.0 mm; the axis "
+        "stops on its "
         "own ramp (ErrorStop)"
     ]
     assert set(bench.column("set_position")) == {1.0}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from dataclasses import replace
 from typing import Any
 
@@ -296,7 +297,8 @@ def test_without_a_program() -> None:
         "P-ERR-22009 channel channel: load refused: no text came with program 'a.nc'; nothing was changed"
     )
     assert bench.refused("channel", "warm_up") == (
-        "P-ERR-22002 channel channel: unknown command 'warm_up'; nothing was changed. Known: acknowledge, feed_hold, load, "
+        "P-ERR-22002 channel channel: unknown command 'warm_up'; nothing was changed. Known: acknowledge, "
+        "feed_hold, load, "
         "mdi, optional_stop, reset, set_override, single_block, start"
     )
     assert bench.refused("channel", "acknowledge", id=1.5) == (
@@ -323,7 +325,8 @@ def test_a_broken_program_keeps_the_old_one() -> None:
         ("N10 G00 Y-201", "120003 {}: axis Y: -201 mm lies beyond the negative soft limit -200 mm (P-AXIS-00177)"),
         (
             "N10 M33",
-            "22011 {}: M33 does not exist on this machine (P-CHAN-00041). Known: M0, M1, M2, M3, M4, M5, M6, M7, M8, M9, "
+            "22011 {}: M33 does not exist on this machine (P-CHAN-00041). Known: M0, M1, M2, M3, M4, M5, M6, "
+            "M7, M8, M9, "
             "M17, M19, M29, M30",
         ),
         ("N10 M03 S12001", "22010 {}: spindle S: 12001 rpm is above the maximum 12000 rpm (P-AXIS-00212)"),
@@ -342,7 +345,8 @@ def test_an_arc_beyond_a_soft_limit_between_its_end_points() -> None:
     assert near.refusals() == [] and max(near.column("x", "set_position")) == pytest.approx(300.0, abs=1e-3)
     far = MachineBench("%P\nG00 X290\nG02 X290 Y-40 I0 J-20 F3000\nM30").run()
     assert far.refusals()[0] == (
-        "P-ERR-120002 test.nc line 3 column 1 'G02 X290 Y-40 I0 J-20 F3000': axis X: 310 mm lies beyond the positive soft "
+        "P-ERR-120002 test.nc line 3 column 1 'G02 X290 Y-40 I0 J-20 F3000': axis X: 310 mm lies beyond the "
+        "positive soft "
         "limit 300 mm (P-AXIS-00178)"
     )
 
@@ -368,7 +372,8 @@ def test_a_start_while_an_axis_is_not_ready(prepare: str, state: str) -> None:
 def test_a_machine_whose_axis_has_no_power_refuses_the_start_at_cycle_0() -> None:
     bench = MachineBench(LINE, machine=machine(z={"powered_at_start": False})).run()
     assert bench.refusals() == [
-        "P-ERR-22005 channel channel: start refused: axis z is in Disabled, it must be in Standstill; nothing was changed"
+        "P-ERR-22005 channel channel: start refused: axis z is in Disabled, it must be in Standstill; nothing "
+        "was changed"
     ]
 
 
@@ -397,7 +402,8 @@ def test_a_start_right_after_a_move_that_the_channel_has_not_heard_of() -> None:
     bench.give("channel", "start")
     bench.run(0.5)
     assert bench.errors() == [
-        "P-ERR-22005 channel channel: axis y moved or was switched off while the program was started; the path stops on "
+        "P-ERR-22005 channel channel: axis y moved or was switched off while the program was started; the path "
+        "stops on "
         "its ramp and the program is aborted"
     ]
     assert bench.position("x") == 0.0 and bench.position("y") == 5.0
@@ -465,7 +471,7 @@ def test_reset_is_refused_on_the_error_ramp() -> None:
 
 
 def test_an_axis_that_is_reset_while_the_channel_ramps_down_does_not_jump_onto_the_path() -> None:
-    """z stands: its fault is over at once. Its reset during the channel's ramp brings it back onto the path, x must not."""
+    """z stands, its fault is over at once: its reset brings it back onto the path while x still ramps down there."""
     bench = running("%P\nG01 X100 F30000\nM30", 0.5)
     bench.give("z", "power", on=False)
     bench.give("z", "power", on=True)
@@ -491,7 +497,8 @@ def test_the_watchdog_of_the_channel(source: str) -> None:
     bench.give("channel", "upstream_lost", source=source)
     bench.run(0.5)
     assert bench.errors() == [
-        f"P-ERR-26101 channel channel: no block of '{source}' came within the watchdog time; the path stops on its ramp "
+        f"P-ERR-26101 channel channel: no block of '{source}' came within the watchdog time; the path stops on "
+        f"its ramp "
         "and the program is aborted"
     ]
     assert_all_smooth(bench)
@@ -533,7 +540,8 @@ def test_a_fault_while_the_program_is_stopped_or_waits() -> None:
 def test_a_motion_that_cannot_be_planned_is_a_fault_with_its_line() -> None:
     bench = MachineBench("%P\nG01 X10 F3000\nN20 G01 X20 F0.00000001\nM30").run()
     assert bench.errors() == [
-        "P-ERR-23001 channel channel: motion limit velocity = 2.4999999999999996e-10 must be between 1e-09 and 1e+12; the "
+        "P-ERR-23001 channel channel: motion limit velocity = 2.4999999999999996e-10 must be between 1e-09 and "
+        "1e+12; the "
         "motion is refused in line 3 'N20 G01 X20 F0.00000001'; the path stops on its ramp and the program is aborted"
     ]
     assert bench.failed and bench.position("x") == 10.0 and bench.events[-1].line == 3
@@ -552,8 +560,6 @@ def test_a_channel_without_spindles_and_one_without_axes() -> None:
 
 def test_commands_at_random_cycles_never_step_the_axes() -> None:
     """Seeded: feed hold, override, reset, start and axis faults on a program of lines and arcs."""
-    import random
-
     program = "%P\nG01 X30 F6000\nG03 X30 Y20 I0 J10\nG01 X0 Y0 Z5\nG02 X10 Y10 I10 J0\nG00 X0 Y0 Z0\nM30"
     for seed in range(12):
         draw = random.Random(seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -30,7 +31,7 @@ def assert_speeds(bench: UnitBench, begin: int, end: int, speed: float, wanted: 
 
 
 def integral(values: list[float]) -> float:
-    return sum(0.5 * (a + b) for a, b in zip(values, values[1:], strict=False)) * CYCLE_TIME
+    return sum(0.5 * (a + b) for a, b in pairwise(values)) * CYCLE_TIME
 
 
 @pytest.mark.parametrize(("direction", "sign", "mode"), [("cw", 1.0, SpindleMode.CW), ("ccw", -1.0, SpindleMode.CCW)])

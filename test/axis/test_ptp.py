@@ -1,0 +1,86 @@
+"""The PTP generator by itself: what it refuses, hands over and keeps."""
+
+from __future__ import annotations
+
+import pytest
+
+from cnc_ptp.axis.ptp import PtpGenerator, reaches, standing
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion import Limits, Profile
+
+LIMITS = Limits(100.0, 1000.0, 1000.0, 10_000.0)
+
+
+def generator(kind: int = 1, position: float = 0.0) -> PtpGenerator:
+    return PtpGenerator(position=position, cycle_time=0.001, override_type=kind)
+
+
+def test_it_stands_where_it_was_put() -> None:
+    ptp = generator(position=12.5)
+    assert ptp.state(0) == ptp.state(10**9) == (12.5, 0.0, 0.0, 0.0)
+    assert ptp.finished(0) and ptp.arrived(0) and ptp.job is None
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("override", [0.5, 1.0])
+@pytest.mark.parametrize("limits", [LIMITS._replace(jerk=0.0), LIMITS._replace(acceleration=1e-300)])
+def test_a_start_that_cannot_be_planned_changes_nothing(kind: int, override: float, limits: Limits) -> None:
+    ptp = generator(kind, 3.0)
+    ptp.set_override(0, override)
+    with pytest.raises(CncError) as caught:
+        ptp.start(5, 10.0, limits)
+    assert caught.value.error_id == 23001
+    assert ptp.job is None and ptp.state(100) == (3.0, 0.0, 0.0, 0.0)
+
+
+def test_a_target_out_of_all_range() -> None:
+    ptp = generator()
+    with pytest.raises(CncError) as caught:
+        ptp.start(0, 1e13, LIMITS)
+    assert str(caught.value) == (
+        "P-ERR-23002 motion value distance = 10000000000000.0 must be between -1e+12 and 1e+12; the motion is refused"
+    )
+    assert ptp.job is None
+
+
+def test_a_table_of_cycle_c_gives_its_start_at_c() -> None:
+    ptp = generator(position=7.0)
+    ptp.start(1000, 50.0, LIMITS)
+    assert ptp.state(1000)[:3] == (7.0, 0.0, 0.0) and ptp.state(1001)[0] > 7.0
+    assert ptp.state(0)[0] == 7.0
+
+
+def test_take_over_goes_on_from_any_state_until_a_stop_follows() -> None:
+    ptp = generator()
+    ptp.take_over(10, 5.0, 40.0, 100.0)
+    p, v, a, j = ptp.state(11)
+    assert (p, v, a, j) == pytest.approx((5.0 + 0.04 + 0.5 * 100.0 * 1e-6, 40.1, 100.0, 0.0))
+    ptp.stop(11, LIMITS)
+    assert ptp.state(11)[:3] == (p, v, a)
+    assert ptp.state(1000)[1:3] == (0.0, 0.0) and ptp.finished(1000) and ptp.arrived(1000)
+    ptp.finish()
+    assert ptp.job is None
+
+
+def test_override_without_a_job_counts_for_the_next_start() -> None:
+    ptp = generator(2)
+    assert not ptp.set_override(0, 0.5) and ptp.override == 0.5
+    ptp.start(0, 1000.0, LIMITS)
+    assert ptp.state(2000)[1] == pytest.approx(50.0)
+    assert ptp.set_override(2000, 0.25) and ptp.state(3000)[1] == pytest.approx(25.0)
+    ptp.stop(3000, LIMITS)
+    assert not ptp.set_override(3000, 1.0) and ptp.override == 1.0
+
+
+def test_an_override_below_one_step_is_0() -> None:
+    ptp = generator()
+    ptp.set_override(0, 0.99e-6)
+    assert ptp.override == 0.0
+    ptp.set_override(0, 1e-6)
+    assert ptp.override == 1e-6
+
+
+def test_reaches_looks_for_a_stretch_at_the_velocity() -> None:
+    rows = [(0.0, 0.0, 0.0, 10.0, 0.0), (1.0, 5.0, -10.0, 0.0, 0.0), (2.0, 15.0, 10.0, -1.0, 0.0)]
+    assert reaches(Profile(rows), 10.0) and not reaches(Profile(rows[:1]), 10.0)
+    assert not reaches(Profile(rows[2:]), 10.0) and not reaches(standing(1.0), 10.0)
