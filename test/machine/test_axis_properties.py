@@ -11,7 +11,7 @@ from machine_support import UnitBench, assert_smooth, axis_bench
 from cnc_ptp.machine.blocks import AxisStateCode as S
 
 A, J = 5000.0, 50_000.0
-QUICK = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 dynamics = st.fixed_dictionaries(
     {
@@ -97,7 +97,7 @@ def test_overrides_never_lose_the_target(kind: int, target: float, limits: dict[
     bench.give("move_absolute", target=target, **limits)
     play(bench, changes)
     bench.give("set_override", percent=100.0)
-    for _ in range(200):
+    for _ in range(100):
         bench.run(1000)
         if bench.state == S.STANDSTILL:
             break
