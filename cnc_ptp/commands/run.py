@@ -36,7 +36,7 @@ def run(
             progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
 
         if composed:
-            monitor, failures = run_composed(parameters, job, show=show), []
+            monitor, failures = run_composed(parameters, job, show=show)
         else:
             supervisor = Supervisor(parameters, job, show=show)
             monitor, failures = supervisor.run(), supervisor.failures

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
-from contextlib import ExitStack
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 from rich.console import Console
 
-from cnc_ptp.commands.console import RUN_FAILED, print_faults
+from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults
 from cnc_ptp.commands.progress import RunProgress
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, CycleTick, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
@@ -59,18 +60,20 @@ def simulate(
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
     started = time.monotonic()
-    with ExitStack() as stack:
-        progress = stack.enter_context(RunProgress())
-        recording = None
-        if record is not None:
-            recording = stack.enter_context(
-                Recording(record, read_file("machine file", machine), 0, parameters.cycle_time_us * 1000)
-            )
-        for outputs in offline.run(cycles=cycles):
-            result.add(outputs)
-            progress.show_block(outputs)
-            if recording is not None:
-                write(recording, outputs)
+    recording = None
+    if record is not None:
+        cycle_time_ns = parameters.cycle_time_us * 1000
+        recording = Recording(record, read_file("machine file", machine), 0, cycle_time_ns)
+    try:
+        with RunProgress() as progress, recording or nullcontext():
+            for outputs in offline.run(cycles=cycles):
+                result.add(outputs)
+                progress.show_block(outputs)
+                if recording is not None:
+                    write(recording, outputs)
+    except CncError as error:  # of the recording: it cannot be written any more
+        print_error(error)
+        result.failed = True
     print_summary(parameters, result, time.monotonic() - started)
     return RUN_FAILED if result.failed else 0
 

@@ -22,29 +22,34 @@ class BlockGate:
         self._blocks: dict[str, dict[int, Block]] = {name: {} for name in (*inputs.upstream, *inputs.feedback)}
         self._ticks: deque[CycleTick] = deque()
         self._next_cycle = 0
-        self.closed = False
-        """True: no more block is computed (the run is over)."""
+        self._closed = False
+        self._last_tick_came = False
         self.duplicates = 0
         """Ticks and blocks that came a second time and were not used again."""
 
     def add_tick(self, tick: CycleTick) -> bool:
-        """Takes a tick; False when ticks before it are missing. A tick without cycles says that the run is over."""
-        if tick.count == 0:
-            self.closed = True
-            return True
+        """Takes a tick; False when ticks before it are missing: then it is not used.
+
+        A tick without cycles says that the run is over once the ticks before it are computed.
+        """
         expected = self._ticks[-1].first_cycle + self._ticks[-1].count if self._ticks else self._next_cycle
-        if tick.first_cycle < expected:
+        if tick.first_cycle > expected:
+            return False
+        if tick.count == 0:
+            self._last_tick_came = True
+        elif tick.first_cycle < expected:
             self.duplicates += 1
-            return True
-        self._ticks.append(tick)
-        return tick.first_cycle == expected
+        else:
+            self._ticks.append(tick)
+        return True
 
     def add_block(self, source: str, block: Block) -> None:
         """Takes a block of an upstream or feedback unit; blocks of dropped sources are ignored."""
         waiting = self._blocks.get(source)
         if waiting is None:
             return
-        if block.first_cycle in waiting or block.first_cycle + block.count < self._next_cycle:
+        oldest = self._next_cycle - (block.count if source in self._feedback else 0)
+        if block.first_cycle in waiting or block.first_cycle < oldest:
             self.duplicates += 1
             return
         waiting[block.first_cycle] = block
@@ -85,6 +90,15 @@ class BlockGate:
         self._upstream = [name for name in self._upstream if name != source]
         self._feedback = [name for name in self._feedback if name != source]
         self._blocks.pop(source, None)
+
+    def close(self) -> None:
+        """The run is over: no more block is computed."""
+        self._closed = True
+
+    @property
+    def closed(self) -> bool:
+        """True when the run is over and all that belongs to it is computed."""
+        return self._closed or (self._last_tick_came and not self._ticks)
 
     @property
     def next_cycle(self) -> int:

@@ -10,12 +10,17 @@ import click
 from rclpy.node import Node
 
 from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, TICK, block_topic
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 POLL = 0.02
+OBSERVER_PATIENCE = 2.0
+"""Seconds for which a free run waits for a recorder; units have the watchdog time."""
+SECOND_CLOCK = 26109
 FAREWELL = 0.3
 """Seconds between the last tick and the end of the clock, so that the last messages arrive."""
 
@@ -25,7 +30,8 @@ class ClockNode(Node):
 
     Publishes /clock/tick (CycleTick). Subscriptions: /heartbeat (BlockReport), /plc/block (PlcBlock, for the end).
     Starts when every expected node has said that it is ready; ends when the PLC ends the run or after `duration`.
-    A node that is silent for the watchdog time no longer holds up a free run.
+    A node that is silent for the watchdog time no longer holds up a free run. While a free run waits, /heartbeat says
+    that the clock lives.
     """
 
     def __init__(
@@ -37,7 +43,7 @@ class ClockNode(Node):
         cycles: int | None = None,
     ) -> None:
         """`wait_for`: nodes besides the units that must be ready first. `cycles`: None = the PLC ends the run."""
-        super().__init__("clock", enable_rosout=False)
+        super().__init__(CLOCK, enable_rosout=False)
         self._units = {*unit_kinds(machine)}
         self._expected = {*self._units, *wait_for}
         self._reporting = self._expected - {MONITOR}
@@ -54,7 +60,9 @@ class ClockNode(Node):
         self._started_at: float | None = None
         self._start_ns = 0
         self._ended_at: float | None = None
+        self._said = 0.0
         self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
+        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_report, BLOCKS)
         self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
 
@@ -78,6 +86,8 @@ class ClockNode(Node):
             self._drop_silent_nodes()
             if not self._open:
                 self._tick(0)
+            elif time.monotonic() - self._said > self._watchdog / 4.0:
+                self._say()
         else:
             while self._ended_at is None and time.monotonic() >= self._due_at():
                 self._tick(int(self._due_at() * 1e9))
@@ -86,7 +96,11 @@ class ClockNode(Node):
         return (self._started_at or 0.0) + self._first_cycle // self._count * self._block_time
 
     def _start_when_ready(self) -> None:
-        if self._expected <= self._ready and self._publisher.get_subscription_count() >= len(self._units):
+        if not self._expected <= self._ready:
+            return
+        if self.count_publishers(TICK) > 1:
+            raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
+        if self._publisher.get_subscription_count() >= len(self._expected - {MONITOR}):
             self._start_ns = time.time_ns()
             self._started_at = time.monotonic() + self._block_time
 
@@ -99,27 +113,36 @@ class ClockNode(Node):
         self._first_cycle += self._count
         if self._free_run:
             self._open = set(self._reporting)
-            self._heard = dict.fromkeys(self._open, time.monotonic())
+            self._heard = dict.fromkeys(self._expected - {MONITOR}, time.monotonic())
 
     def _publish_tick(self, count: int, scheduled_ns: int) -> None:
         tick = msg.CycleTick(first_cycle=self._first_cycle, count=count, scheduled_monotonic_ns=scheduled_ns)
         tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
         self._publisher.publish(tick)
+        self._said = time.monotonic()
+
+    def _say(self) -> None:
+        self._heartbeat_publisher.publish(msg.BlockReport(source=CLOCK, first_cycle=self._first_cycle))
+        self._said = time.monotonic()
 
     def _on_report(self, message: msg.BlockReport) -> None:
         if message.first_cycle < 0:
             self._ready.add(message.source)
         elif message.source in self._heard:
             self._heard[message.source] = time.monotonic()
+            self._reporting.add(message.source)
             if message.first_cycle == self._first_cycle - self._count:
                 self._open.discard(message.source)
                 self.advance()
 
     def _drop_silent_nodes(self) -> None:
         now = time.monotonic()
-        silent = {name for name in self._open if now - self._heard[name] > self._watchdog}
+        silent = {name for name in self._open if now - self._heard[name] > self._patience(name)}
         self._reporting -= silent
         self._open -= silent
+
+    def _patience(self, name: str) -> float:
+        return self._watchdog if name in self._units else max(self._watchdog, OBSERVER_PATIENCE)
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         if message.run_done:

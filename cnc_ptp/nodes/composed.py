@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from collections.abc import Callable
 
 from rclpy.node import Node
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.wiring import PLC, consumers_of, unit_kinds
 from cnc_ptp.nodes import process
@@ -17,24 +19,29 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of
+from cnc_ptp.nodes.supervisor import INTERRUPTED, STOP_TIMEOUT, Job, observers_of
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 
 
-def run_composed(machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]) -> RunMonitor:
-    """Runs the job in this process; `show` is called about 20 times a second."""
+def run_composed(
+    machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]
+) -> tuple[RunMonitor, list[str]]:
+    """Runs the job in this process; `show` is called about 20 times a second. Returns what went wrong besides."""
     process.initialise()
+    claim = process.claim_domain()
     monitor = RunMonitor(machine)
     recorders = 1 if job.record else 0
     clock = ClockNode(
         machine, wait_for=observers_of(job), free_run=job.free_run, cycles=cycles_of(machine, job.duration)
     )
     nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders), clock]
+    recorder = None
     if job.record:
         machine_yaml = read_file("machine file", job.machine)
-        nodes.append(RecorderNode(machine, job.record, machine_yaml, free_run=job.free_run))
+        recorder = RecorderNode(machine, job.record, machine_yaml, free_run=job.free_run)
+        nodes.append(recorder)
     next_show = 0.0
 
     def after() -> None:
@@ -44,9 +51,20 @@ def run_composed(machine: MachineParameters, job: Job, *, show: Callable[[RunMon
             next_show = time.monotonic() + 0.05
             show(monitor)
 
+    def done() -> bool:
+        return clock.done and (recorder is None or recorder.settled)
+
     end = process.EndRequest()
-    process.spin(nodes, done=lambda: clock.done or stopped(end, nodes), wait=clock.wait_time, after=after)
-    return monitor
+    failures = []
+    try:
+        process.spin(nodes, done=lambda: done() or stopped(end, nodes), wait=clock.wait_time, after=after)
+    except CncError as error:
+        failures.append(f"{error}; the run ends")
+    claim.close()
+    if end.given:
+        name = signal.Signals(end.number).name
+        failures.append(f"P-ERR-{INTERRUPTED} the run was interrupted ({name}); everything was stopped on its ramps")
+    return monitor, failures
 
 
 def stopped(end: process.EndRequest, nodes: list[Node]) -> bool:
@@ -54,11 +72,10 @@ def stopped(end: process.EndRequest, nodes: list[Node]) -> bool:
     if not end.given:
         return False
     if end.deadline == 0.0:
-        end.deadline = time.monotonic() + STOP_TIMEOUT
         for node in nodes:
             if isinstance(node, PlcBridgeNode):
                 node.stop_all()
-    return time.monotonic() > end.deadline
+    return end.over(STOP_TIMEOUT)
 
 
 def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[Node]:

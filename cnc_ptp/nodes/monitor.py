@@ -94,8 +94,7 @@ class RunMonitor(Node):
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)
-        if message.run_done:
-            self.run_done, self.run_failed = True, message.run_failed
+        self.run_done, self.run_failed = message.run_done, message.run_failed
 
     def _on_event(self, message: msg.Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:

@@ -39,7 +39,7 @@ class PlcBridgeNode(UnitNode):
     ) -> None:
         super().__init__(machine, build_unit(machine, PLC, scenario=scenario, end_when_idle=end_when_idle), **options)
         self._sequence: dict[str, int] = {}
-        self._last: dict[str, Any] = {}
+        self._last: dict[str, str] = {}
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
         self._life_sign_counter: int | None = None
         self._life_sign_seen = 0.0
@@ -58,12 +58,12 @@ class PlcBridgeNode(UnitNode):
         topic = f"/{unit}/{name}"
 
         def received(message: Any) -> None:
-            if message.sequence and message.sequence <= self._sequence.get(topic, 0):
+            if not is_newer(message.sequence, self._sequence.get(topic, 0)):
                 return
             self._sequence[topic] = message.sequence
             command = convert_message(unit, message)
-            if self._last.get(topic) != command.arguments:
-                self._last[topic] = command.arguments
+            if self._last.get(topic) != command.arguments_json:
+                self._last[topic] = command.arguments_json
                 self._input(command)
 
         self.create_subscription(message_type, topic, received, PLC_INPUT)
@@ -97,12 +97,19 @@ class PlcBridgeNode(UnitNode):
             return
         self._life_sign_lost = True
         for channel in self._channels:
-            self._input(Command(channel, "feed_hold", {"on": True}))
+            hold = Command(channel, "feed_hold", {"on": True})
+            self._last[f"/{channel}/feed_hold"] = hold.arguments_json  # so that the PLC's next `off` counts as a change
+            self._input(hold)
         silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
         text = f"plc: no life sign of the external PLC for {silence}; feed hold is set on all channels"
         cycle = self._gate.next_cycle
         event = Event(cycle, PLC, Severity.WARNING, LIFE_SIGN_LOST, text)
         self._event_publisher.publish(convert.event_to_message(event, self.stamp(cycle)))
+
+
+def is_newer(sequence: int, last: int) -> bool:
+    """False for repeated and older numbers. 0 is not looked at; 1 begins a new count; the count may run over."""
+    return sequence == 0 or (sequence == 1 and last != 1) or 0 < (sequence - last) % 2**32 < 2**31
 
 
 @click.command()

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from functools import partial
+from collections.abc import Callable
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import PlcBlock
+from cnc_ptp.machine.blocks import Event, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
@@ -36,6 +37,9 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
 
 NOT_WRITABLE = 26113
+BLOCKS_MISSING = 26114
+QUIET = 0.2
+"""Seconds without a message after which a recorder that was told to end has seen everything."""
 READY_PERIOD = 0.05
 FLUSH_PERIOD = 0.25
 
@@ -44,7 +48,8 @@ class RecorderNode(Node):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics.
-    Publishes /heartbeat: ready, and in free run every tick that is recorded completely.
+    Publishes /heartbeat: ready, and in free run every tick that is recorded completely; /events: blocks that did not
+    arrive. A block that comes twice is recorded once.
     """
 
     def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
@@ -58,23 +63,44 @@ class RecorderNode(Node):
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
         self._received: dict[int, int] = {}
-        self._last_complete = -1
+        self._next_cycle = dict.fromkeys(self._units, 0)
+        self._heard = time.monotonic()
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
-        self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)
+        self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
+        self.failure: CncError | None = None
+        """Why nothing more can be written."""
+        self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)
         for unit, kind in self._units.items():
             block_type = BLOCK_TYPES[kind]
-            received = partial(self._on_block, unit, block_type)
+            received = self._guarded(partial(self._on_block, unit, block_type))
             self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True)
-        self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
-        self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
-        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT, raw=True)
+        self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
+        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._guarded(self._on_diagnostics), PLC_INPUT, raw=True)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
-        self.create_timer(FLUSH_PERIOD, self._flush)
+        self.create_timer(FLUSH_PERIOD, self._guarded(self._flush))
+
+    def _guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
+        """The callback, whose CncError ends the node."""
+
+        @wraps(callback)
+        def call(*arguments: Any) -> None:
+            try:
+                callback(*arguments)
+            except CncError as error:
+                self.failure = self.failure or error
+
+        return call
 
     def destroy_node(self) -> None:
         if self._recording is not None:
             self._recording.close()
         super().destroy_node()
+
+    @property
+    def settled(self) -> bool:
+        """Nothing has arrived for a while."""
+        return time.monotonic() - self._heard > QUIET
 
     def _report_ready(self) -> None:
         if self._recording is not None:
@@ -86,6 +112,7 @@ class RecorderNode(Node):
         self._heartbeat_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
     def _on_tick(self, message: msg.CycleTick) -> None:
+        self._heard = time.monotonic()
         if self._recording is None:
             start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
             self._recording = Recording(self._path, self._machine_yaml, start_ns, self._cycle_ns)
@@ -97,10 +124,13 @@ class RecorderNode(Node):
             self._recording.tick(tick, message.scheduled_monotonic_ns)
 
     def _on_block(self, unit: str, block_type: Any, data: bytes) -> None:
+        self._heard = time.monotonic()
         message = deserialize_message(data, block_type)
         recording = self._recording
         if recording is None:
             self._early.append(lambda: self._on_block(unit, block_type, data))
+            return
+        if not self._is_new(unit, message):
             return
         stamp_ns = convert.nanoseconds(message.header.stamp)
         recording.raw(block_topic(unit), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
@@ -108,6 +138,16 @@ class RecorderNode(Node):
         if not isinstance(block, PlcBlock):
             recording.states(unit, block)
         self._note_complete(block.first_cycle)
+
+    def _is_new(self, unit: str, message: Any) -> bool:
+        """False for a block that is recorded already; tells when blocks before it have not come."""
+        cycle, expected = message.first_cycle, self._next_cycle[unit]
+        if cycle > expected:
+            text = f"recorder: blocks of '{unit}' from cycle {expected} to {cycle - 1} are missing in the recording"
+            event = Event(cycle, RECORDER, Severity.ERROR, BLOCKS_MISSING, text)
+            self._event_publisher.publish(convert.event_to_message(event, message.header.stamp))
+        self._next_cycle[unit] = max(expected, cycle + message.count)
+        return bool(cycle >= expected)
 
     def _note_complete(self, first_cycle: int) -> None:
         if not self._free_run:
@@ -129,6 +169,7 @@ class RecorderNode(Node):
         self._single(lambda: self._recorded.raw(DIAGNOSTICS, "diagnostic_msgs/msg/DiagnosticArray", data, stamp_ns))
 
     def _single(self, record: Any) -> None:
+        self._heard = time.monotonic()
         if self._recording is None:
             self._early.append(record)
         else:
@@ -165,7 +206,7 @@ def command(machine: str, output: str, free_run: bool) -> None:
     def make() -> RecorderNode:
         return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
 
-    sys.exit(process.run_node(make))
+    sys.exit(process.run_node(make, settled=lambda node: node.settled))
 
 
 def main() -> None:

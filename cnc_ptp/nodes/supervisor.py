@@ -26,6 +26,8 @@ START_TIMEOUT = 60.0
 STOP_TIMEOUT = 15.0
 """Seconds for all ramps after a fault or an interrupt."""
 END_TIMEOUT = 5.0
+LIBC = ctypes.CDLL(None)
+"""Loaded here: between fork and exec, while other threads may hold the loader's lock, nothing may be loaded."""
 MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc": "plc_bridge"}
 
 
@@ -53,16 +55,18 @@ class Supervisor:
         self._stop_deadline: float | None = None
         self._settled_at = 0.0
         self._dead: set[str] = set()
-        self._interrupts = 0
+        self._interrupted = False
+        self._signals: list[int] = []
         self.failures: list[str] = []
 
     def run(self) -> RunMonitor:
         """Runs the job to its end; `failures` then says what went wrong with processes."""
         process.initialise()
+        claim = process.claim_domain()
         monitor = RunMonitor(self._machine)
         self._event_publisher = monitor.create_publisher(msg.Event, EVENT, EVENTS)
         self._stop_all = monitor.create_client(srv.Execute, f"/{PLC}/stop_all")
-        previous = {number: signal.signal(number, self._interrupted) for number in (signal.SIGINT, signal.SIGTERM)}
+        previous = {number: signal.signal(number, self._note_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         self._monitor = monitor
         self._started_at = time.monotonic()
         try:
@@ -72,6 +76,7 @@ class Supervisor:
             self._end_all()
             for number, handler in previous.items():
                 signal.signal(number, handler)
+            claim.close()
         return monitor
 
     # processes
@@ -104,9 +109,9 @@ class Supervisor:
 
     def _over(self) -> bool:
         """True when the run has come to its end, in order or after a fault."""
-        clock = self._processes["clock"]
-        if clock.poll() == 0:
+        if self._processes["clock"].poll() == 0:
             return True
+        self._note_interrupt()
         self._note_deaths()
         if self._stop_deadline is None:
             return self._not_started_in_time()
@@ -131,12 +136,8 @@ class Supervisor:
             if status is None or name in self._dead:
                 continue
             self._dead.add(name)
-            reason = (
-                f"was ended by {signal.Signals(-status).name}" if status < 0 else f"ended with exit status {status}"
-            )
-            self._fail(
-                NODE_DIED, f"node '{name}' (process {child.pid}) {reason} during the run; everything stops on its ramps"
-            )
+            text = f"node '{name}' (process {child.pid}) {how_ended(status)} during the run; {self._what_follows()}"
+            self._fail(NODE_DIED, text)
 
     def _fail(self, error_id: int, text: str) -> None:
         """Notes a failure, tells it to the graph, and has everything that still lives stopped."""
@@ -151,24 +152,30 @@ class Supervisor:
             self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5
             self._monitor.watch_standstill([name for name in self._machine.axes if name not in self._dead])
 
-    def _interrupted(self, number: int, frame: object) -> None:
+    def _what_follows(self) -> str:
+        return "everything stops on its ramps" if self._monitor.progress.cycle else "nothing has moved yet"
+
+    def _note_signal(self, number: int, frame: object) -> None:
+        """Only notes it: a handler runs in the midst of whatever the process does."""
+        self._signals.append(number)
+
+    def _note_interrupt(self) -> None:
         """First interrupt: controlled stop; second: at once."""
-        self._interrupts += 1
-        if self._interrupts == 1:
-            self._fail(
-                INTERRUPTED, f"the run was interrupted ({signal.Signals(number).name}); everything stops on its ramps"
-            )
-        else:
+        if self._signals and not self._interrupted:
+            self._interrupted = True
+            name = signal.Signals(self._signals[0]).name
+            self._fail(INTERRUPTED, f"the run was interrupted ({name}); {self._what_follows()}")
+        if len(self._signals) > 1:
             self._stop_deadline = 0.0
 
     def _end_all(self) -> None:
-        """Ends the nodes, the recorder after all others, so that it has seen everything."""
+        """Ends the nodes: the recorder after all others, so that it has seen everything."""
         others = [child for name, child in self._processes.items() if name != RECORDER]
         recorder = [child for name, child in self._processes.items() if name == RECORDER]
         for group in (others, recorder):
             for child in group:
                 if child.poll() is None:
-                    child.send_signal(signal.SIGINT)
+                    child.terminate()  # SIGINT would be a KeyboardInterrupt while Python still starts
             deadline = time.monotonic() + END_TIMEOUT
             for child in group:
                 try:
@@ -185,4 +192,11 @@ def observers_of(job: Job) -> list[str]:
 
 def die_with_parent() -> None:
     """In the child: the kernel sends SIGTERM when the supervisor dies, however it dies (PR_SET_PDEATHSIG)."""
-    ctypes.CDLL(None).prctl(1, signal.SIGTERM)
+    LIBC.prctl(1, signal.SIGTERM)
+
+
+def how_ended(status: int) -> str:
+    """What the return code of a process says; SIGNALLED + n is how our nodes report signal n."""
+    if status < 0 or status > process.SIGNALLED:
+        return f"was ended by {signal.Signals(-status if status < 0 else status - process.SIGNALLED).name}"
+    return f"ended with exit status {status}"

@@ -16,6 +16,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from cnc_ptp import msg
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.gate import CLOCK, BlockGate
@@ -43,6 +44,8 @@ from cnc_ptp.parameters import MachineParameters
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
 BLOCK_SKIPPED = 26102
+RUN_OVER = 26115
+TOO_LATE = 26116
 READY_PERIOD = 0.05
 DIAGNOSTICS_PERIOD = 1.0
 
@@ -76,6 +79,8 @@ class UnitNode(Node):
         self._running = False
         self._alone = False
         self._busy = False
+        self.failure: CncError | None = None
+        """Why the node cannot go on."""
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
         self._said = self._checked = now
@@ -129,6 +134,13 @@ class UnitNode(Node):
     def _on_tick(self, message: msg.CycleTick) -> None:
         if self._alone:
             return
+        if not self._running and message.first_cycle:
+            self.failure = CncError(
+                TOO_LATE,
+                f"{self.unit.name}: the run is at cycle {message.first_cycle}; the node takes no part and ends: "
+                "nodes must be there before the clock starts",
+            )
+            return
         self._running = True
         self._heard[CLOCK] = time.monotonic()
         self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
@@ -150,7 +162,12 @@ class UnitNode(Node):
             self._heard[message.source] = time.monotonic()
 
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
-        record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
+        if self._gate.closed:
+            cycle = self._gate.next_cycle
+            reason = f"{self.unit.kind} {self.unit.name}: {command} refused: the run is over; nothing was changed"
+            record = CommandRecord(cycle, self.unit.name, command, "{}", False, RUN_OVER, reason)
+        else:
+            record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
         return response
@@ -199,7 +216,7 @@ class UnitNode(Node):
             self._say(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
         if isinstance(plc, PlcBlock) and plc.run_done:
-            self._gate.closed = True
+            self._gate.close()
         self.after_block(block)
         if self._gate.closed:
             self._publish_diagnostics()
