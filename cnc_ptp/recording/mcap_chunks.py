@@ -73,6 +73,7 @@ class McapRecords:
             raise CncError(
                 26001, f"recording {path}: cannot be opened: {error.strerror}; nothing was read, check the path"
             ) from error
+        self._data_ended = False
         self._require_magic()
         self._cut_off = bytes(self._data[-len(MCAP0_MAGIC) :]) != MCAP0_MAGIC or len(self._data) == len(MCAP0_MAGIC)
 
@@ -168,11 +169,14 @@ class McapRecords:
             raise self.corrupt(offset, f"a record of the unknown type {opcode} begins there")
 
     def _check_data_crc(self, record: RawRecord) -> None:
+        self._data_ended = True
         expected = self.parse(DataEnd.read, record).data_section_crc
         if expected not in (0, zlib.crc32(self._data[: record.offset])):
             raise self.corrupt(record.offset, "the CRC of the data section does not match its content")
 
     def _finish(self, record: RawRecord, end: int) -> None:
+        if not self._data_ended:
+            raise self.corrupt(record.offset, "the footer comes without an end of the data section before it")
         footer = self.parse(Footer.read, record)
         summary = self._data[footer.summary_start or record.offset : record.offset + RECORD_PREFIX.size + 16]
         if footer.summary_crc not in (0, zlib.crc32(summary)):

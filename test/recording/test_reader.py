@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 from recording_support import MACHINE, Blocks, record
 
@@ -152,6 +153,19 @@ def test_any_altered_byte_is_noticed(path, scratch, place, flip):
     else:
         assert not recorded.complete
         assert position >= len(data) - 8  # the closing magic: nothing but the mark of completeness
+
+
+def test_footer_without_the_end_of_the_data_section(path, tmp_path):
+    """One altered bit makes DataEnd a record of another type, and no CRC of the data would be checked."""
+    data = bytearray(path.read_bytes())
+    place = data.rindex(bytes([Opcode.DATA_END]) + (4).to_bytes(8, "little"))
+    data[place] ^= 1
+    altered = tmp_path / "altered.mcap"
+    altered.write_bytes(data)
+    with pytest.raises(CncError) as error:
+        read_recording(altered)
+    assert error.value.error_id == 26003
+    assert "the footer comes without an end of the data section before it; nothing was read" in error.value.message
 
 
 def test_missing_file(tmp_path):
