@@ -38,6 +38,7 @@ NOTHING_TO_ACKNOWLEDGE = 22007
 STILL_MOVING = 22008
 NO_TEXT = 22009
 MEMBER_IN_ERROR = 22012
+AXIS_NOT_FOLLOWING = 22015
 
 C = ChannelStateCode
 
@@ -306,11 +307,19 @@ class ChannelUnit(Unit):
         if not self._had_axes:
             self._take_axes(first_cycle, inputs)
         self._just_started = False
-        if self._sequence.phase is Phase.IDLE:
+        if self._had_axes or self._sequence.phase is not Phase.IDLE:
+            for node, block in inputs.items():
+                self._check_member(first_cycle, node, block)
+
+    def _check_member(self, first_cycle: int, node: str, block: Block) -> None:
+        """Axes and spindles must be without error, and axes on the path that the block before gave them."""
+        if not isinstance(block, (AxisBlock, SpindleBlock)):
             return
-        for node, block in inputs.items():
-            if isinstance(block, (AxisBlock, SpindleBlock)) and block.error_id[-1]:
-                self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
+        if block.error_id[-1]:
+            self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
+        elif self._had_axes and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
+            state = state_name(AxisStateCode(block.state[-1]))
+            self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
 
     def _take_axes(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""

@@ -65,13 +65,13 @@ class ProgramSequence:
 
     def ramp_down(self, *, keep: Container[str] = ()) -> None:
         """Aborts the program: the path comes to rest on its ramp, then the channel's spindles stop, except `keep`."""
+        self._keep = keep
         if self.phase in (Phase.IDLE, Phase.RAMP_DOWN):
             return
         moving = self.phase is Phase.MOTION and self._motion.on_path
         self.phase = Phase.RAMP_DOWN
-        self._outputs = Outputs()
+        self._outputs = Outputs(commands=[command for command in self._outputs.commands if command.command == "stop"])
         self._unsent = []
-        self._keep = keep
         if moving:
             self._motion.stop()
         else:
@@ -160,10 +160,13 @@ class ProgramSequence:
         self.blocks_done += 1
         if stop == "end":
             self._end_program()
-        elif self.single_block or stop == "M00" or (stop == "M01" and self.optional_stop):
+        elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED
         else:
             self.phase = Phase.NEXT
+
+    def _stops_between_blocks(self) -> bool:
+        return self.single_block and self.blocks_done < len(self.blocks)
 
     def _end_program(self) -> None:
         self._motion.feed = 0.0

@@ -231,6 +231,28 @@ def test_reset_between_queueing_a_function_and_sending_it_withdraws_the_function
     assert "start" not in commands and set(bench.column("s", "set_speed_rpm")) == {0.0}
 
 
+def test_reset_between_m05_and_its_output_still_stops_the_spindle() -> None:
+    """The blocks' functions go out with the next block; a stop must not get lost with the program."""
+    program = "%P\nM03 S600\nG04 0.5\nM05\nG01 X10 F3000\nM30"
+    probe = running(program, 2.0)
+    stop = next(r.cycle for r in probe.records if r.target == "s" and r.command == "stop")
+    bench = running(program, stop / 1000.0)
+    assert [r.command for r in bench.records if r.target == "s"] == ["start"]
+    bench.give("channel", "reset")
+    bench.run(0.5)
+    assert bench.last("s").set_speed_rpm[-1] == 0.0
+
+
+def test_a_fault_on_the_ramp_of_a_reset_stops_the_spindle_in_spite_of_p_axis_00455() -> None:
+    bench = running("%P\nM03 S1200\nG01 X100 F6000\nM30", 0.8, machine=machine(s={"stops_at_reset": False}))
+    bench.give("channel", "reset")
+    bench.run(0.02)
+    bench.give("channel", "upstream_lost", source="plc")
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 0.0
+    assert_all_smooth(bench)
+
+
 def test_reset_stops_the_spindle_after_the_path() -> None:
     bench = running("%P\nM03 S1200\nG01 X100 F6000\nM30", 0.8)
     assert bench.last("channel").path_velocity[-1] > 0.0
@@ -479,6 +501,30 @@ def test_an_axis_that_is_reset_while_the_channel_ramps_down_does_not_jump_onto_t
     bench.run(1.0)
     assert_all_smooth(bench)
     assert bench.last("channel").done
+
+
+def test_an_axis_that_does_not_follow_stops_the_path() -> None:
+    """It has given the channel up for a stall; without this check the others would cut a wrong part."""
+    bench = MachineBench(LINE, "- {at: 0.1, to: channel, do: start}", start=False, end_when_idle=False).run(0.05)
+    bench.give("y", "upstream_lost", source="channel")
+    bench.run(1.0)
+    assert bench.errors() == [
+        "P-ERR-22015 channel channel: y does not follow the path, it is in Standstill; the path stops on its "
+        "ramp and the "
+        "program is aborted"
+    ]
+    assert bench.last("channel").done and 0.0 < bench.position("x") < 0.1
+    assert_all_smooth(bench)
+
+
+def test_a_fault_in_the_last_block_of_a_program_is_noticed() -> None:
+    """The path has ended when the channel hears of it; an axis that did not reach its target is an error."""
+    program = "%P\nG01 X1 F6000\nM30"
+    last = next(block.first_cycle for block in running(program, 1.0).blocks["channel"] if block.done)
+    bench = running(program, last / 1000.0)
+    bench.give("x", "upstream_lost", source="plc")
+    bench.run(0.05)
+    assert bench.errors()[-1] == "P-ERR-22012 channel channel: x is in error P-ERR-26101; nothing moves"
 
 
 def test_a_spindle_fault_stops_the_path() -> None:

@@ -320,6 +320,17 @@ def test_single_block_stops_after_each_block() -> None:
     assert bench.refusals() == []
 
 
+def test_single_block_does_not_stop_behind_the_last_block() -> None:
+    """Manual blocks have no M30: what comes after them is not waited for."""
+    bench = MachineBench(None, "- {at: 0, to: channel, do: single_block, on: true}", end_when_idle=False).run(0.02)
+    bench.give("channel", "mdi", text="G01 X5 F3000\nX6")
+    bench.run(1.0)
+    assert bench.last("channel").state[-1] == C.STOPPED and bench.position("x") == 5.0
+    bench.give("channel", "start")
+    bench.run(1.0)
+    assert bench.last("channel").done and bench.position("x") == 6.0
+
+
 def test_single_block_off_runs_on_at_the_next_start() -> None:
     bench = MachineBench(
         "%P\nG01 X5 F3000\nG01 X10\nG01 X15\nM30",
