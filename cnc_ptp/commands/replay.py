@@ -40,6 +40,15 @@ def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, Block]]:
     for record in recorded.commands:
         if record.target != PLC:
             commands[record.cycle][record.target].append(Command.from_record(record))
-    for first_cycle in range(0, recorded.last_cycle + 1, machine.block_cycles):
+    for first_cycle in range(0, end_of(recorded), machine.block_cycles):
         outputs = offline.replay_tick(commands.get(first_cycle, {}))
         yield from ((name, output.block) for name, output in outputs.items())
+
+
+def end_of(recorded: Recorded) -> int:
+    """The cycle after the last one, by states and by ticks: one altered cycle number must not make it endless."""
+    end = recorded.last_cycle + 1
+    if recorded.ticks is None or not len(recorded.ticks):
+        return end
+    ticks = recorded.ticks
+    return min(end, int((ticks["first_cycle"] + ticks["count"]).max()))

@@ -1,0 +1,111 @@
+"""Graph, free run, composed and offline run give the same numbers to the bit; each recording can be verified."""
+
+import struct
+
+import numpy as np
+import pytest
+from graph_support import MILL, PTP, SHORT_PROGRAM, SHORT_SCENARIO, run, states_equal
+from mcap.reader import make_reader
+from mcap.writer import Writer
+
+from cnc_ptp.recording.reader import read_recording
+
+PTP_SCENARIO = """
+- {at: 0.0, to: x, do: move_absolute, target: 1000.0, velocity: 2000.0, acceleration: 5000.0, jerk: 50000.0}
+- {at: 0.0, to: "y", do: move_relative, distance: -300.0, velocity: 800.0}
+- {at: 0.25, to: x, do: set_override, percent: 75.0}
+- {at: 0.4, to: "y", do: stop}
+- {at: 0.5, to: z, do: move_absolute, target: 1.0e9}
+- {at: 0.6, to: c, do: move_absolute, target: 90}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("equality")
+    (folder / "short.nc").write_text(SHORT_PROGRAM)
+    (folder / "short.yaml").write_text(SHORT_SCENARIO)
+    (folder / "ptp.yaml").write_text(PTP_SCENARIO)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def offline(folder):
+    job = (MILL, "--program", folder / "short.nc", "--scenario", folder / "short.yaml")
+    run("simulate", *job, "--record", folder / "offline.mcap")
+    return folder / "offline.mcap"
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"], ["--composed", "--free-run"]], ids=str)
+def test_graph_equals_the_offline_run(folder, offline, options):
+    recording = folder / "graph.mcap"
+    job = (MILL, "--program", folder / "short.nc", "--scenario", folder / "short.yaml", "--record", recording)
+    output = run("run", *job, *options).stdout
+    assert "lost 0, computed twice 0" in output
+    assert states_equal(offline, recording) == []
+    verified = run("replay", recording, "--verify").stdout
+    assert "5 topics are equal to the bit" in verified
+
+
+def test_ptp_graph_equals_the_offline_run(folder):
+    job = (PTP, "--scenario", folder / "ptp.yaml")
+    run("simulate", *job, "--record", folder / "a.mcap")
+    output = run("run", *job, "--free-run", "--record", folder / "b.mcap").stdout
+    assert "axis z: move_absolute refused: target 1000000000.0 mm lies beyond the positive soft limit" in output
+    assert states_equal(folder / "a.mcap", folder / "b.mcap") == []
+    assert "4 topics are equal to the bit" in run("replay", folder / "b.mcap").stdout
+
+
+def test_offline_run_is_verified_and_a_refused_move_is_recorded(offline):
+    assert "equal to the bit" in run("replay", offline).stdout
+    refused = [record for record in read_recording(offline).commands if not record.accepted]
+    assert [(record.target, record.command, record.cycle) for record in refused] == [("x", "move_absolute", 2100)]
+
+
+def test_one_altered_sample_is_found(folder, offline, tmp_path):
+    """A recording in which one bit of one setpoint differs: topic, cycle and field are named."""
+    rows = read_recording(offline).states["/y/state"]
+    cycle = int(np.flatnonzero(np.abs(rows["set_velocity"]) > 1.0)[50])
+    exact = struct.pack("<d", rows["set_velocity"][cycle])
+    altered = alter(offline, tmp_path, "/y/state", cycle, lambda data: flip_bit(data, data.index(exact)))
+    output = run("replay", altered, expect=1).stderr
+    assert "1 differences" in output
+    assert f"/y/state cycle {cycle} set_velocity: recorded" in output
+
+
+def test_an_absurd_cycle_number_neither_hangs_nor_passes(offline, tmp_path):
+    altered = alter(
+        offline, tmp_path, "/y/state", 700, lambda data: flip_bit(data, data.index(struct.pack("<Q", 700)) + 5)
+    )
+    output = run("replay", altered, expect=1).stderr
+    assert "/y/state: 1 cycles missing: 700" in output
+    assert f"/y/state: 1 cycles not computed: {700 + 2**40}" in output
+
+
+def flip_bit(data, place):
+    return data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :]
+
+
+def alter(source_path, folder, topic, number, change):
+    """A copy of a recording, written by the library alone, in which message `number` of a topic is changed."""
+    path = folder / "altered.mcap"
+    with source_path.open("rb") as source, path.open("wb") as target:
+        reader, writer = make_reader(source), Writer(target)
+        writer.start("ros2", "test")
+        for attachment in reader.iter_attachments():
+            writer.add_attachment(0, 0, attachment.name, attachment.media_type, attachment.data)
+        for metadata in reader.iter_metadata():
+            writer.add_metadata(metadata.name, metadata.metadata)
+        channels = {}
+        seen = 0
+        for schema, channel, message in reader.iter_messages():
+            if channel.id not in channels:
+                known = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, channel.message_encoding, known)
+            data = message.data
+            if channel.topic == topic:
+                data = change(data) if seen == number else data
+                seen += 1
+            writer.add_message(channels[channel.id], message.log_time, data, message.publish_time)
+        writer.finish()
+    return path

@@ -1,0 +1,116 @@
+"""`kill -9` of any node in mid-program: a clear error, a stop on ramps, a readable recording, no orphan, no hang."""
+
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+from graph_support import LONG_PROGRAM, MILL, Running, alive, kill, small_machine, verified, wait_until_gone
+
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.recording.reader import read_recording
+
+NODES = ["x", "s", "channel", "plc", "clock", "recorder"]
+UNDER_WAY = 150_000  # bytes of recording: about a second
+
+
+@pytest.fixture
+def running(tmp_path):
+    (tmp_path / "long.nc").write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
+    recording = tmp_path / "run.mcap"
+    graph = Running(small_machine(tmp_path), "--program", tmp_path / "long.nc", "--record", recording)
+    nodes = graph.wait_for_nodes(7)
+    graph.wait_until_recorded(recording, UNDER_WAY)
+    yield graph, dict(nodes), recording
+    graph.end()
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_killed_node(running, node):
+    graph, nodes, recording = running
+    kill(nodes[node])
+    output = graph.finish(expect=1)
+    process = f"node '{node}' (process {nodes[node]})"
+    assert f"P-ERR-26104 {process} was ended by SIGKILL during the run; everything stops on its ramps" in output
+    assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording, whole=False)
+    assert recorded.complete == (node != "recorder")
+    assert recorded.last_cycle > 500
+    check_ramps(recorded, skip=node, ended=node != "recorder")
+    lost = {event.source for event in recorded.events if event.error_id == 26101}
+    if node != "recorder":
+        assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
+
+
+def check_ramps(recorded, *, skip, ended):
+    """No axis goes beyond its acceleration and jerk, and each that lives stands at the end."""
+    machine = read_machine(str(MILL))
+    for name in ("x", "y"):
+        axis, rows = machine.axes[name], recorded.states[f"/{name}/state"]
+        assert np.all(np.diff(rows["cycle"].astype(int)) == 1), f"{name}: cycles are missing"
+        limit = max(axis.acceleration, axis.deceleration)
+        steps = np.abs(np.diff(rows["set_velocity"])) / 1e-3
+        assert steps.max() <= limit * (1.0 + 1e-6), f"{name} accelerates with {steps.max()} mm/s²"
+        moves = np.abs(np.diff(rows["set_position"])) / 1e-3
+        assert moves.max() <= axis.max_velocity * (1.0 + 1e-6), f"{name} moves with {moves.max()} mm/s"
+        bends = np.abs(np.diff(rows["set_acceleration"])) / 1e-3
+        assert bends.max() <= axis.jerk * (1.0 + 1e-6), f"{name} jerks with {bends.max()} mm/s³"
+        if ended and name != skip:
+            assert rows["set_velocity"][-1] == 0.0, f"{name} still moves at the end"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_supervisor(running, number):
+    graph, nodes, recording = running
+    os.kill(graph.process.pid, number)
+    output = graph.finish(expect=1)
+    assert f"P-ERR-26106 the run was interrupted ({number.name}); everything stops on its ramps" in output
+    assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording)
+    assert recorded.complete
+    check_ramps(recorded, skip="", ended=True)
+
+
+def test_a_clock_that_is_told_to_end_is_a_failure(running):
+    """A clock ends by itself in every good run: its exit status tells the two apart."""
+    graph, nodes, _ = running
+    os.kill(nodes["clock"], signal.SIGTERM)
+    process = f"node 'clock' (process {nodes['clock']})"
+    assert f"P-ERR-26104 {process} was ended by SIGTERM during the run" in graph.finish(expect=1)
+
+
+def test_killed_supervisor_leaves_no_orphan(running):
+    graph, nodes, recording = running
+    assert all(alive(pid) for pid in nodes.values())
+    kill(graph.process.pid)
+    graph.process.wait()
+    assert wait_until_gone(nodes.values()) == []
+    assert verified(recording, whole=False).last_cycle > 500
+
+
+def test_interrupt_while_the_nodes_start(tmp_path):
+    graph = Running(MILL, "--record", tmp_path / "run.mcap")
+    nodes = graph.wait_for_nodes(8)
+    time.sleep(0.2)
+    graph.process.send_signal(signal.SIGINT)
+    output = graph.finish(expect=1)
+    assert "P-ERR-26106 the run was interrupted (SIGINT); nothing has moved yet" in output
+    assert "KeyboardInterrupt" not in output
+    assert wait_until_gone(nodes.values()) == []
+
+
+def test_killed_node_while_the_nodes_start(tmp_path):
+    graph = Running(MILL, "--record", tmp_path / "run.mcap")
+    nodes = dict(graph.wait_for_nodes(8))
+    kill(nodes["y"])
+    output = graph.finish(expect=1)
+    text = f"P-ERR-26104 node 'y' (process {nodes['y']}) was ended by SIGKILL during the run; nothing has moved yet"
+    assert text in output
+    assert wait_until_gone(nodes.values()) == []
+    assert not read_recording_exists(tmp_path / "run.mcap")
+
+
+def read_recording_exists(path):
+    """Nothing was recorded before the first tick: the file is there, and empty."""
+    return path.stat().st_size > 0 and read_recording(path).last_cycle >= 0
