@@ -58,7 +58,7 @@ def _run(machine: str, program: str, seconds: float, record: str, free_run: bool
         watch.look(monitor.progress.cycle)  # type: ignore[attr-defined]
 
     if composed:
-        monitor, failures = run_composed(parameters, job, show=show), []
+        monitor, failures = run_composed(parameters, job, show=show)
     else:
         supervisor = Supervisor(parameters, job, show=show)
         monitor, failures = supervisor.run(), supervisor.failures
