@@ -46,9 +46,11 @@ def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, Block]]:
 
 
 def end_of(recorded: Recorded) -> int:
-    """The cycle after the last one, by states and by ticks: one altered cycle number must not make it endless."""
-    end = recorded.last_cycle + 1
-    if recorded.ticks is None or not len(recorded.ticks):
-        return end
-    ticks = recorded.ticks
-    return min(end, int((ticks["first_cycle"] + ticks["count"]).max()))
+    """The cycle after the last one. One altered cycle number must not make it endless, so others have to confirm it:
+
+    the ticks, or (units go on to their standstill when the clock is lost) the number of cycles that a unit recorded.
+    """
+    confirmed = max((len(rows) for rows in recorded.states.values()), default=0)
+    if recorded.ticks is not None and len(recorded.ticks):
+        confirmed = max(confirmed, int((recorded.ticks["first_cycle"] + recorded.ticks["count"]).max()))
+    return min(recorded.last_cycle + 1, confirmed)

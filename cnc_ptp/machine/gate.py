@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import deque
 
 from cnc_ptp.machine.blocks import Block, CycleTick
+from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import Inputs
-
-CLOCK = "clock"
 
 
 class BlockGate:

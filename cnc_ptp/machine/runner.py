@@ -8,6 +8,7 @@ from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord, 
 from cnc_ptp.machine.unit import Unit
 
 LIFE_SIGN = "plc"
+CLOCK = "clock"
 
 
 class UnitRunner:
@@ -35,9 +36,13 @@ class UnitRunner:
         return self.replay(tick, inputs)
 
     def replay(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
-        """Computes the block without looking for commands: these come from the recording. Lost sources stay lost."""
+        """Computes the block without looking for commands: these come from the recording.
+
+        Lost sources stay lost; a unit without a clock is alone.
+        """
         if self.unit.lost:
-            inputs = {name: block for name, block in inputs.items() if name not in self.unit.lost}
+            alone = CLOCK in self.unit.lost
+            inputs = {name: block for name, block in inputs.items() if not alone and name not in self.unit.lost}
         block = self.unit.step(tick, inputs)
         self.next_cycle = tick.first_cycle + tick.count
         return block

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from cnc_ptp import action, msg
-from cnc_ptp.machine.blocks import Block, ChannelBlock, Command
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord
+from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
 from cnc_ptp.nodes.jobs import JobServer
@@ -37,7 +39,18 @@ class ChannelNode(UnitNode):
 
     def _start_program(self, goal: Any) -> list[Command]:
         start = Command(self.unit.name, "start", {})
-        return [self.load_command(goal.program), start] if goal.program else [start]
+        return [Command(self.unit.name, "load", {"program": goal.program}), start] if goal.program else [start]
+
+    def command(self, command: Command) -> CommandRecord:
+        """As UnitNode; a program is read here, so that the unit and each replay get its text."""
+        if command.command == "load" and "text" not in command.arguments:
+            path = command.arguments["program"]
+            try:
+                text = read_file("NC program", path)
+            except CncError as error:
+                return self.refuse(command, error.error_id, error.message.rpartition("; ")[0])
+            command = Command(self.unit.name, "load", {"program": path, "text": text})
+        return super().command(command)
 
     def after_block(self, block: Block) -> None:
         if isinstance(block, ChannelBlock):

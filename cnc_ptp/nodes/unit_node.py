@@ -8,7 +8,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -162,12 +161,7 @@ class UnitNode(Node):
             self._heard[message.source] = time.monotonic()
 
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
-        if self._gate.closed:
-            cycle = self._gate.next_cycle
-            reason = f"{self.unit.kind} {self.unit.name}: {command} refused: the run is over; nothing was changed"
-            record = CommandRecord(cycle, self.unit.name, command, "{}", False, RUN_OVER, reason)
-        else:
-            record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
+        record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
         return response
@@ -181,17 +175,24 @@ class UnitNode(Node):
             value = getattr(request, name)
             if argument.required or (value != 0.0 and not math.isnan(value)):
                 arguments[name] = value
-        return self.load_command(arguments["program"]).arguments if command == "load" else arguments
-
-    def load_command(self, path: str) -> Command:
-        """The command that loads the file at `path`; without text (refused by the channel) if it cannot be read."""
-        text = read_text(path)
-        return Command(self.unit.name, "load", {"program": path} if text is None else {"program": path, "text": text})
+        return arguments
 
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
+        if self._gate.closed:
+            return self.refuse(command, RUN_OVER, "the run is over")
         with self._working():
             record = self._runner.command(command)
+        self._publish_records()
+        return record
+
+    def refuse(self, command: Command, error_id: int, reason: str) -> CommandRecord:
+        """The record of a command that does not come as far as the unit; it is published like all others."""
+        text = f"{self.unit.kind} {self.unit.name}: {command.command} refused: {reason}; nothing was changed"
+        cycle = self._runner.next_cycle
+        record = CommandRecord(cycle, self.unit.name, command.command, command.arguments_json, False, error_id, text)
+        self.unit.records.append(record)
+        self.unit.event(cycle, Severity.WARNING, error_id, text)
         self._publish_records()
         return record
 
@@ -206,8 +207,8 @@ class UnitNode(Node):
     def _compute(self, tick: CycleTick, inputs: dict[str, Block]) -> None:
         with self._working():
             block = self._runner.run(tick, inputs)
+        self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publish_block(block)
-        self._publish_records()
         self._blocks_done += 1
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
@@ -325,11 +326,3 @@ class UnitNode(Node):
         message = DiagnosticArray(status=[status])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
-
-
-def read_text(path: str) -> str | None:
-    """Text of a program file, None when it cannot be read (the unit refuses then)."""
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return None

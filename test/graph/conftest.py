@@ -13,7 +13,7 @@ FROM_OUTSIDE = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTDDS_DEFAULT_PROFILES_FILE"
 
 @pytest.fixture(scope="module", autouse=True)
 def ros_domain(request):
-    """One of 90 domains by module and process, so that runs beside each other do not meet; nothing leaves the machine."""
+    """One of 90 domains by module and process, so that runs beside each other do not meet."""
     before = dict(os.environ)
     for name in FROM_OUTSIDE:
         os.environ.pop(name, None)

@@ -1,6 +1,5 @@
 """`kill -9` of any node in mid-program: a clear error, a stop on ramps, a readable recording, no orphan, no hang."""
 
-import os
 import signal
 import time
 
@@ -60,24 +59,15 @@ def check_ramps(recorded, *, skip, ended):
             assert rows["set_velocity"][-1] == 0.0, f"{name} still moves at the end"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_interrupted_supervisor(running, number):
+def test_interrupted_supervisor(running):
     graph, nodes, recording = running
-    os.kill(graph.process.pid, number)
+    graph.process.send_signal(signal.SIGINT)
     output = graph.finish(expect=1)
-    assert f"P-ERR-26106 the run was interrupted ({number.name}); everything stops on its ramps" in output
+    assert "P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in output
     assert wait_until_gone(nodes.values()) == []
     recorded = verified(recording)
     assert recorded.complete
     check_ramps(recorded, skip="", ended=True)
-
-
-def test_a_clock_that_is_told_to_end_is_a_failure(running):
-    """A clock ends by itself in every good run: its exit status tells the two apart."""
-    graph, nodes, _ = running
-    os.kill(nodes["clock"], signal.SIGTERM)
-    process = f"node 'clock' (process {nodes['clock']})"
-    assert f"P-ERR-26104 {process} was ended by SIGTERM during the run" in graph.finish(expect=1)
 
 
 def test_killed_supervisor_leaves_no_orphan(running):
@@ -93,9 +83,9 @@ def test_interrupt_while_the_nodes_start(tmp_path):
     graph = Running(MILL, "--record", tmp_path / "run.mcap")
     nodes = graph.wait_for_nodes(8)
     time.sleep(0.2)
-    graph.process.send_signal(signal.SIGINT)
+    graph.process.send_signal(signal.SIGTERM)
     output = graph.finish(expect=1)
-    assert "P-ERR-26106 the run was interrupted (SIGINT); nothing has moved yet" in output
+    assert "P-ERR-26106 the run was interrupted (SIGTERM); nothing has moved yet" in output
     assert "KeyboardInterrupt" not in output
     assert wait_until_gone(nodes.values()) == []
 
