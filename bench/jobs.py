@@ -10,7 +10,7 @@ MACHINE = str(ROOT / "config" / "mill.yaml")
 BRACKET = str(ROOT / "examples" / "bracket.nc")
 OVERRIDES = str(ROOT / "examples" / "bracket_overrides.yaml")
 
-SHORTEST_ROUND = 2.0
+SHORTEST_ROUND = 4.0
 """Seconds that one round of the long program takes at least."""
 
 

@@ -18,6 +18,9 @@ State = tuple[float, float, float, float]
 """Position mm, velocity mm/s, acceleration mm/s², jerk mm/s³ (deg for rotary axes)."""
 
 
+STANDING = (0.0, 0.0, 0.0)
+"""Velocity, acceleration and jerk of an axis at rest."""
+
 SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
 
@@ -51,6 +54,14 @@ class PtpGenerator:
     def state(self, cycle: int) -> State:
         """Setpoint at `cycle`: position, velocity, acceleration, jerk."""
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
+
+    def states(self, first_cycle: int, count: int) -> list[State]:
+        """Setpoints of `count` cycles."""
+        state = self.state(first_cycle)
+        if state[1:] == STANDING and self.finished(first_cycle):
+            return [state] * count
+        state_at, origin, cycle_time = self._profile.state_at, self._origin, self._cycle_time
+        return [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
 
     def finished(self, cycle: int) -> bool:
         """True when the table in work has come to its end at `cycle`."""

@@ -37,14 +37,11 @@ class SimulatedDrive:
         self._encoder_increment = encoder_increment
         self._true_position = start_position
         self.velocity = 0.0
-        self.position = self._encoder_value(start_position)
+        self.step(0.0)  # stands; shows the position as the encoder does
 
     def step(self, command_velocity: float) -> None:
         surplus = self.velocity - command_velocity
         self._true_position += command_velocity * self._cycle_time + surplus * self._lag_time
         self.velocity = command_velocity + surplus * self._decay
-        self.position = self._encoder_value(self._true_position)
-
-    def _encoder_value(self, position: float) -> float:
         increment = self._encoder_increment
-        return round(position / increment) * increment if increment else position
+        self.position = round(self._true_position / increment) * increment if increment else self._true_position

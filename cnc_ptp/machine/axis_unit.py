@@ -33,6 +33,12 @@ PATH_TOLERANCE = 1e-9
 
 S = AxisStateCode
 
+MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING)
+"""States that end by themselves."""
+
+Row = tuple[float | int, ...]
+"""One cycle: the fields of AxisBlock after `count`."""
+
 
 class AxisUnit(Unit):
     """One axis with PTP functions, position controller and drive.
@@ -161,19 +167,27 @@ class AxisUnit(Unit):
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
         """Computes one block; follows the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
-        path = self._path_setpoints(first_cycle, self._owning_channel(inputs))
-        rows = [
-            self._cycle(first_cycle + index, path[index] if path and self._state == S.SYNCHRONIZED_MOTION else None)
-            for index in range(count)
-        ]
+        rows = self._follow(first_cycle, self._path_setpoints(first_cycle, self._owning_channel(inputs)))
+        while len(rows) < count:
+            cycle, missing = first_cycle + len(rows), count - len(rows)
+            rows += self._follow(cycle, self._ptp.states(cycle, missing))
         return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
 
-    def _cycle(self, cycle: int, path: State | None) -> tuple[float | int, ...]:
-        setpoint = path or self._ptp.state(cycle)
-        drive = self._drive
+    def _follow(self, first_cycle: int, setpoints: list[State]) -> list[Row]:
+        """The cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
+        rows: list[Row] = []
+        error_id = self._error_id
+        for cycle, setpoint in enumerate(setpoints, first_cycle):
+            rows.append(self._cycle(cycle, setpoint))
+            if self._error_id != error_id:
+                break
+        return rows
+
+    def _cycle(self, cycle: int, setpoint: State) -> Row:
         position, velocity, acceleration, jerk = setpoint
+        drive = self._drive
         following_error = position - drive.position
-        if path is None:
+        if self._state in MOVING_ALONE:
             self._advance_state(cycle)
         command = 0.0
         if self._loop_closed(cycle):
@@ -194,7 +208,7 @@ class AxisUnit(Unit):
             0.0,
             0.0,
             self._override_percent,
-            int(self._state),
+            self._state,
             self._status_bits(velocity, acceleration),
             self._error_id,
         )
@@ -224,7 +238,7 @@ class AxisUnit(Unit):
             bits |= StatusBit.CONSTANT_VELOCITY
         if self._error_id:
             bits |= StatusBit.ERROR
-        return int(bits)
+        return bits
 
     # path of the channel
 
@@ -234,11 +248,11 @@ class AxisUnit(Unit):
                 return block
         return None
 
-    def _path_setpoints(self, first_cycle: int, channel: ChannelBlock | None) -> list[State] | None:
-        """The setpoints of the channel that owns the axis, if one does; switches the setpoint source."""
+    def _path_setpoints(self, first_cycle: int, channel: ChannelBlock | None) -> list[State]:
+        """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
         if channel is None:
             self._leave_path(first_cycle)
-            return None
+            return []
         start = channel.axes.index(self.name) * channel.count
         part = slice(start, start + channel.count)
         setpoints = list(
@@ -251,8 +265,9 @@ class AxisUnit(Unit):
             )
         )
         self._enter_path(first_cycle, setpoints[0][0])
-        if self._state == S.SYNCHRONIZED_MOTION:
-            self._ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
+        if self._state != S.SYNCHRONIZED_MOTION:
+            return []
+        self._ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
         return setpoints
 
     def _enter_path(self, cycle: int, begin: float) -> None:

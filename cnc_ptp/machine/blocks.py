@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from enum import IntEnum, IntFlag
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 
@@ -25,7 +25,7 @@ class AxisStateCode(IntEnum):
     ERROR_STOP = 7
 
 
-class StatusBit(IntFlag):
+class StatusBit(IntEnum):
     """Bits of AxisState.status_bits that TwinCAT's axis status word names."""
 
     PROTECTED = 1 << 5

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
-from typing import ClassVar, NamedTuple, NoReturn
+from typing import ClassVar, NoReturn
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import (
@@ -43,18 +43,22 @@ AXIS_NOT_FOLLOWING = 22015
 C = ChannelStateCode
 
 
-class Row(NamedTuple):
-    """One cycle of the channel: the state of each axis, then the fields of ChannelState."""
+class Rows:
+    """The cycles of a block as they are made: the state of each axis, and the columns of ChannelState."""
 
-    axes: AxisStates
-    line: int
-    block_number: int
-    path_velocity: float
-    programmed_feed: float
-    override_percent: float
-    distance_to_go: float
-    state: int
-    error_id: int
+    def __init__(self) -> None:
+        self.axes: list[AxisStates] = []
+        self.line: list[int] = []
+        self.block_number: list[int] = []
+        self.path_velocity: list[float] = []
+        self.programmed_feed: list[float] = []
+        self.override_percent: list[float] = []
+        self.distance_to_go: list[float] = []
+        self.state: list[int] = []
+        self.error_id: list[int] = []
+
+    def __len__(self) -> int:
+        return len(self.axes)
 
 
 class ChannelUnit(Unit):
@@ -193,33 +197,34 @@ class ChannelUnit(Unit):
         self._read_feedback(first_cycle, inputs)
         outputs = self._sequence.take_outputs(first_cycle)
         has_axes = self._unfinished or self._sequence.phase is not Phase.IDLE
-        rows = self._rows([self._motion.point])
+        rows = Rows()
+        self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
         self._had_axes = has_axes
-        self._unfinished = self._sequence.phase is Phase.IDLE and rows[count - 1].axes != self._motion.states
-        return self._channel_block(tick, rows[:count], outputs, path_active=has_axes)
+        self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
+        return self._channel_block(tick, rows, outputs, path_active=has_axes)
 
-    def _channel_block(self, tick: CycleTick, rows: list[Row], outputs: Outputs, *, path_active: bool) -> ChannelBlock:
-        columns = {name: list(column) for name, column in zip(Row._fields, zip(*rows, strict=True), strict=True)}
-        by_axis = [state for axis in zip(*columns["axes"], strict=True) for state in axis]
+    def _channel_block(self, tick: CycleTick, rows: Rows, outputs: Outputs, *, path_active: bool) -> ChannelBlock:
+        count = tick.count
+        by_axis = [state for axis in zip(*rows.axes[:count], strict=True) for state in axis]
         position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
         return ChannelBlock(
             first_cycle=tick.first_cycle,
-            count=tick.count,
+            count=count,
             path_active=path_active,
             axes=self._axis_nodes,
             set_position=position,
             set_velocity=velocity,
             set_acceleration=acceleration,
             set_jerk=jerk,
-            line=columns["line"],
-            block_number=columns["block_number"],
-            path_velocity=columns["path_velocity"],
-            programmed_feed=columns["programmed_feed"],
-            override_percent=columns["override_percent"],
-            distance_to_go=columns["distance_to_go"],
-            state=columns["state"],
-            error_id=columns["error_id"],
+            line=rows.line[:count],
+            block_number=rows.block_number[:count],
+            path_velocity=rows.path_velocity[:count],
+            programmed_feed=rows.programmed_feed[:count],
+            override_percent=rows.override_percent[:count],
+            distance_to_go=rows.distance_to_go[:count],
+            state=rows.state[:count],
+            error_id=rows.error_id[:count],
             done=self._sequence.phase is Phase.IDLE and not self._unfinished,
             blocks_done=self._sequence.blocks_done,
             blocks_total=len(self._sequence.blocks),
@@ -227,19 +232,19 @@ class ChannelUnit(Unit):
             requests=outputs.requests,
         )
 
-    def _fill(self, rows: list[Row], first_cycle: int, wanted: int) -> None:
+    def _fill(self, rows: Rows, first_cycle: int, wanted: int) -> None:
         """Adds rows up to `wanted`: the path's while a motion runs, standing ones while nothing can go on."""
         while len(rows) < wanted:
             if self._sequence.phase in (Phase.MOTION, Phase.RAMP_DOWN):
                 self._follow_path(rows, wanted - len(rows))
             elif not self._go_on(first_cycle, first_cycle + len(rows)):
                 self._motion.stand()
-                rows += self._rows([self._motion.point])
+                self._add(rows, [self._motion.point])
 
-    def _follow_path(self, rows: list[Row], missing: int) -> None:
+    def _follow_path(self, rows: Rows, missing: int) -> None:
         """Rows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
-        rows += self._rows(points)
+        self._add(rows, points)
         if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
             self._sequence.motion_ended()
 
@@ -251,25 +256,21 @@ class ChannelUnit(Unit):
             self._fault(cycle, error.error_id, f"{error.message} in line {source.line} '{source.text}'")
             return True
 
-    def _rows(self, points: Sequence[PathPoint]) -> list[Row]:
-        _, line, block_number, _ = self._sequence.source
-        feed, override, error_id = self._motion.feed, self._override_percent, self._error_id
+    def _add(self, rows: Rows, points: Sequence[PathPoint]) -> None:
+        """Adds the cycles of `points`, all of the same phase and program line."""
+        count = len(points)
         state = self._state_code()
         held = state == C.RUNNING and self._motion.held
-        return [
-            Row(
-                axes,
-                line,
-                block_number,
-                velocity,
-                feed,
-                override,
-                distance_to_go,
-                int(C.HOLD if held and velocity == 0.0 else state),
-                error_id,
-            )
-            for axes, velocity, distance_to_go in points
-        ]
+        for axes, velocity, distance_to_go in points:
+            rows.axes.append(axes)
+            rows.path_velocity.append(velocity)
+            rows.distance_to_go.append(distance_to_go)
+            rows.state.append(C.HOLD if held and velocity == 0.0 else state)
+        rows.line += [self._sequence.source.line] * count
+        rows.block_number += [self._sequence.source.block_number] * count
+        rows.programmed_feed += [self._motion.feed] * count
+        rows.override_percent += [self._override_percent] * count
+        rows.error_id += [self._error_id] * count
 
     def _state_code(self) -> ChannelStateCode:
         """State of the channel; where feed hold or override 0 have brought the path to rest, HOLD replaces RUNNING."""

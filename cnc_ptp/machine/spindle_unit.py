@@ -53,6 +53,8 @@ class SpindleUnit(Unit):
         self._origin = 0
         self._profile: Profile = plan_speed(parameters.start_position, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
         self._commanded_speed = 0.0
+        self._wanted_speed = 0.0
+        """Where the ramp in work leads to: the commanded speed under the override, deg/s."""
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._mode = SpindleMode.STOP
         self._state = S.STANDSTILL if parameters.powered_at_start else S.DISABLED
@@ -125,7 +127,7 @@ class SpindleUnit(Unit):
     def _cycle(self, cycle: int) -> tuple[float | int | bool, ...]:
         drive = self._drive
         position, speed, acceleration, _ = self._setpoint(cycle)
-        if self._state == S.STOPPING and speed == 0.0:
+        if speed == 0.0 and self._state == S.STOPPING:
             self._state = S.STANDSTILL
         following_error = position - drive.position
         if self._error_id == 0 and self._controller.exceeds_limit(following_error):
@@ -142,12 +144,12 @@ class SpindleUnit(Unit):
             drive.position,
             following_error,
             self._override_percent,
-            int(self._mode),
+            self._mode,
             self._parameters.gear,
             self._speed_reached(actual_speed),
             abs(actual_speed) <= self._parameters.zero_speed_deg_s,
             self._parameters.referenced_at_start,
-            int(self._state),
+            self._state,
             self._error_id,
         )
         drive.step(self._controller.command_velocity(following_error) if self._state != S.DISABLED else 0.0)
@@ -158,25 +160,23 @@ class SpindleUnit(Unit):
 
         A spindle that override 0 holds has not reached its speed.
         """
-        wanted = self._wanted_speed()
+        wanted = self._wanted_speed
         if wanted == 0.0:
             return self._commanded_speed == 0.0 and abs(actual_speed) <= self._parameters.zero_speed_deg_s
         return abs(actual_speed - wanted) <= self._parameters.speed_reached_band * abs(wanted)
-
-    def _wanted_speed(self) -> float:
-        limit = self._parameters.max_speed_deg_s
-        return max(-limit, min(limit, self._commanded_speed * self._override_percent / 100.0))
 
     def _setpoint(self, cycle: int) -> tuple[float, float, float, float]:
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
 
     def _ramp(self, cycle: int) -> None:
         position, speed, _, _ = self._setpoint(cycle)
+        limit = self._parameters.max_speed_deg_s
+        self._wanted_speed = max(-limit, min(limit, self._commanded_speed * self._override_percent / 100.0))
         self._origin = cycle
         self._profile = plan_speed(
             position,
             speed,
-            self._wanted_speed(),
+            self._wanted_speed,
             acceleration=self._parameters.acceleration,
             deceleration=self._parameters.deceleration,
         )
