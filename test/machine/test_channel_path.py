@@ -326,3 +326,19 @@ def test_machines_of_other_axes(name: str) -> None:
     bench = MachineBench(f"%P\nG01 {name}30 B40 F3000\nM30", machine=changed).run()
     assert bench.errors() == [] and (bench.position("x"), bench.position("y")) == (30.0, 40.0)
     assert max(bench.column("channel", "path_velocity")) == pytest.approx(50.0)
+
+
+def test_the_feed_is_that_of_x_y_z_and_other_axes_travel_along() -> None:
+    channel = replace(
+        MILL.channels["channel"], axes=(ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("A", "z"))
+    )
+    bench = MachineBench(
+        "%P\nG01 X30 Y40 A20 F3000\nA0\nM30", machine=replace(MILL, channels={"channel": channel})
+    ).run()
+    assert bench.errors() == []
+    line, velocity = bench.column("channel", "line"), bench.column("channel", "path_velocity")
+    to_go, z = bench.column("channel", "distance_to_go"), bench.column("z", "set_velocity")
+    assert to_go[1] == pytest.approx(50.0, abs=1e-3)
+    assert max(v for v, n in zip(velocity, line, strict=True) if n == 2) == pytest.approx(50.0)
+    assert max(z) == pytest.approx(50.0 * 20.0 / 50.0)
+    assert min(z) == pytest.approx(-50.0)  # alone it has the feed
