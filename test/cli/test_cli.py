@@ -1,0 +1,250 @@
+"""The command line as users and scripts meet it: help, exit statuses, refusals word for word."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cnc_ptp import cli
+from cnc_ptp.recording.reader import read_recording
+
+ROOT = Path(__file__).parents[2]
+MILL = ROOT / "config" / "mill.yaml"
+PTP = ROOT / "config" / "ptp.yaml"
+BRACKET = ROOT / "examples" / "bracket.nc"
+PROGRAM = "%p\nN10 G1 X5 F1000\nM30\n"
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "p.nc"
+    path.write_text(PROGRAM)
+    return path
+
+
+@pytest.mark.parametrize(
+    "command", [[], *([name] for name in ("simulate", "run", "check", "replay", "report", "params"))]
+)
+def test_help_everywhere(command):
+    for option in ("--help", "-h"):
+        result = call(*command, option)
+        assert result.exit_code == 0
+        assert "Usage:" in result.output
+
+
+@pytest.mark.parametrize("node", ["nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player"])
+def test_nodes_have_help(node):
+    done = subprocess.run(
+        [sys.executable, "-m", f"cnc_ptp.nodes.{node}", "--help"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert "Usage:" in done.stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["simulate"],
+        ["fly"],
+        ["simulate", MILL, "--speed", "3"],
+        ["simulate", MILL, "--duration", "-1"],
+        ["report", "a.mcap"],
+    ],
+)
+def test_wrong_usage_is_status_2(arguments):
+    result = call(*arguments)
+    assert result.exit_code == 2
+    assert "Usage:" in result.output
+
+
+def test_simulate_tells_a_summary(program, tmp_path):
+    result = call("simulate", MILL, "--program", program, "--record", tmp_path / "a.mcap")
+    assert result.exit_code == 0
+    assert "program time" in result.output
+    assert "largest following error x:" in result.output
+    assert read_recording(tmp_path / "a.mcap").complete
+
+
+@pytest.mark.parametrize("command", ["simulate", "run"])
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        (
+            "%p\nN10 G1 X5\nM30\n",
+            "P-ERR-20008 {file} line 2 column 5 'N10 G1 X5': G01 without a feed: no F greater than 0 was programmed",
+        ),
+        (
+            "%p\nN10 G0 A5\nM30\n",
+            "P-ERR-20797 {file} line 2 column 8 'N10 G0 A5': axis A is not in the machine; axes of this channel: X, Y, Z",
+        ),
+        (
+            "%p\nN10 G0 Z-151\nM30\n",
+            "P-ERR-120003 {file} line 2 column 1 'N10 G0 Z-151': axis Z: -151 mm lies beyond the negative soft limit "
+            "-150 mm (P-AXIS-00177)",
+        ),
+        (
+            "%p\nN10 M3 S99999\nM30\n",
+            "P-ERR-22010 {file} line 2 column 1 'N10 M3 S99999': spindle S: 99999 rpm is above the maximum 12000 rpm "
+            "(P-AXIS-00212)",
+        ),
+        (
+            "%p\nN10 G77\nM30\n",
+            "P-ERR-20131 {file} line 2 column 5 'N10 G77': unknown G function G77",
+        ),
+    ],
+)
+def test_bad_programs_are_refused_before_anything_starts(command, text, error, tmp_path):
+    path = tmp_path / "bad.nc"
+    path.write_text(text)
+    result = call(command, MILL, "--program", path)
+    assert result.exit_code == 2
+    assert result.stderr.splitlines()[0] == error.format(file=path)
+    assert result.stderr.splitlines()[1] == text.splitlines()[1]
+    assert result.stderr.splitlines()[2].strip() == "^"
+
+
+def test_check_counts_lines_or_shows_every_bad_line(tmp_path):
+    assert call("check", BRACKET).output == f"bracket.nc: no errors in {len(BRACKET.read_text().splitlines())} lines\n"
+    assert call("check", BRACKET, "--machine", MILL).exit_code == 0
+    path = tmp_path / "bad.nc"
+    path.write_text("%p\nN10 G77\nN20 Q\nN30 G1 X5 F100\nM30\n")
+    result = call("check", path, "--machine", MILL)
+    assert result.exit_code == 2
+    assert "line 2 column 5" in result.stderr
+    assert "line 3 column 5" in result.stderr
+
+
+def test_check_knows_the_limits_of_a_machine_only(tmp_path):
+    path = tmp_path / "far.nc"
+    path.write_text("%p\nG0 X1000\nM30\n")
+    assert call("check", path).exit_code == 0
+    assert "soft limit 300 mm" in call("check", path, "--machine", MILL).stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (
+            ["simulate", MILL, "--program", "nowhere.nc"],
+            "P-ERR-26110 NC program nowhere.nc cannot be read: No such file or directory; nothing was started",
+        ),
+        (
+            ["simulate", MILL, "--scenario", "nowhere.yaml"],
+            "P-ERR-26110 scenario nowhere.yaml cannot be read: No such file or directory; nothing was started",
+        ),
+        (
+            ["simulate", PTP, "--program", BRACKET],
+            f"P-ERR-26112 the machine has no channel to run {BRACKET}; nothing was started",
+        ),
+        (
+            ["simulate", MILL, "--record", "/nowhere/a.mcap"],
+            "P-ERR-26007 recording /nowhere/a.mcap: cannot be created: No such file or directory; nothing is recorded",
+        ),
+        (
+            ["run", MILL, "--record", "/nowhere/a.mcap"],
+            "P-ERR-26113 recording /nowhere/a.mcap cannot be written: No such file or directory; nothing was started",
+        ),
+        (
+            ["replay", "nowhere.mcap"],
+            "P-ERR-26001 recording nowhere.mcap: cannot be opened: No such file or directory; nothing was read, check the "
+            "path",
+        ),
+        (["params", "kvv"], "P-ERR-25018 no parameter is called 'kvv', did you mean P-AXIS-00099 getriebe[i].kv?"),
+    ],
+)
+def test_unusable_input_is_status_2(arguments, error):
+    result = call(*arguments)
+    assert result.exit_code == 2
+    assert result.stderr.strip() == error
+
+
+@pytest.mark.parametrize("command", ["simulate", "run"])
+def test_a_typo_in_the_machine_file_starts_nothing(command, tmp_path):
+    path = tmp_path / "typo.yaml"
+    path.write_text(MILL.read_text().replace("slep_max: 150000", "slepp_max: 150000", 1))
+    result = call(command, path)
+    assert result.exit_code == 2
+    assert (
+        "axis /x has no parameter 'getriebe.0.slepp_max', did you mean getriebe[i].slep_max (P-AXIS-00168)?"
+        in result.stderr
+    )
+    assert result.stderr.strip().endswith("the node does not start")
+
+
+def test_a_bad_scenario_lists_every_fault(tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text("- {at: 0, to: q, do: stop}\n- {at: 0, to: x, do: jump}\n- {at: -1, to: x, do: stop}\n")
+    result = call("simulate", MILL, "--scenario", path)
+    assert result.exit_code == 2
+    for line in (1, 2, 3):
+        assert f"{path}:{line}: " in result.stderr
+
+
+def test_a_refused_command_is_no_failed_run(tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text("- {at: 0, to: x, do: move_absolute, target: 400}\n")
+    result = call("simulate", MILL, "--scenario", path)
+    assert result.exit_code == 0
+    assert "refused: P-ERR-120002 axis x: move_absolute refused: target 400.0 mm lies beyond" in result.output
+
+
+def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text("- {at: 0.1, to: x, do: power, on: off}\n")
+    result = call("simulate", MILL, "--program", program, "--scenario", path)
+    assert result.exit_code == 1
+    assert "error: P-ERR-23010 axis x: the enable was removed during path motion" in result.output
+
+
+def test_duration_ends_the_run(program, tmp_path):
+    result = call("simulate", MILL, "--program", program, "--duration", "0.255", "--record", tmp_path / "a.mcap")
+    assert result.exit_code == 0
+    assert read_recording(tmp_path / "a.mcap").last_cycle == 259
+
+
+def test_report_and_replay_of_a_cut_off_recording(program, tmp_path):
+    call("simulate", MILL, "--program", program, "--record", tmp_path / "a.mcap")
+    whole = (tmp_path / "a.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) * 2 // 3])
+    report = call("report", tmp_path / "cut.mcap", "-o", tmp_path / "cut.html")
+    assert report.exit_code == 0
+    assert "note: the file ends at offset" in report.output
+    assert (tmp_path / "cut.html").read_text().startswith("<!DOCTYPE html>")
+    replay = call("replay", tmp_path / "cut.mcap")
+    assert "note: the file ends at offset" in replay.output
+
+
+def test_params_shows_one_or_all():
+    assert "P-AXIS-00099  getriebe[i].kv" in call("params", "P-AXIS-00099").output
+    assert "P-CHAN-00056" in call("params").output
+
+
+@pytest.mark.parametrize("name", ["simulate", "run", "check", "replay", "report", "params"])
+def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
+    """`ros2 run cnc_ptp simulate ...`"""
+    monkeypatch.setattr(sys, "argv", [name, "--help"])
+    with pytest.raises(SystemExit) as ended:
+        getattr(cli, name)()
+    assert ended.value.code == 0
+    assert f"cnc_ptp {name}" in capsys.readouterr().out
+
+
+def test_no_progress_and_no_escape_codes_without_a_terminal(program):
+    done = subprocess.run(
+        [sys.executable, "-m", "cnc_ptp.cli", "simulate", MILL, "--program", program],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stderr == ""
+    assert "\x1b" not in done.stdout
