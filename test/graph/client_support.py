@@ -1,0 +1,112 @@
+"""A ROS client beside a running graph: calls services, writes PLC topics, waits for what blocks and events show."""
+
+import time
+
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, COMMAND, EVENT, EVENTS, PLC_INPUT, SERVICES, block_topic
+
+TIMEOUT = 30.0
+
+
+class Client(Node):
+    """`blocks[unit]`: the blocks that came so far; `events`, `commands`: likewise."""
+
+    def __init__(self, machine):
+        super().__init__("test_client", enable_rosout=False)
+        self.kinds = unit_kinds(machine)
+        self.blocks = {unit: [] for unit in self.kinds}
+        self.events, self.records = [], []
+        for unit, kind in self.kinds.items():
+            self.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self.blocks[unit].append, BLOCKS)
+        self.create_subscription(msg.Event, EVENT, self.events.append, EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self.records.append, EVENTS)
+        self._writers = {}
+        self._since = dict.fromkeys(self.kinds, 0)
+
+    def start(self):
+        self.executor_of_test = process.EventsExecutor()
+        self.executor_of_test.add_node(self)
+
+    def spin_until(self, condition, what):
+        deadline = time.monotonic() + TIMEOUT
+        while not condition():
+            self.executor_of_test.spin_once(timeout_sec=0.02)
+            assert time.monotonic() < deadline, f"{what} did not come"
+
+    def wait_blocks(self, unit, number=2):
+        """Waits for so many more blocks of a unit."""
+        wanted = len(self.blocks[unit]) + number
+        self.spin_until(lambda: len(self.blocks[unit]) >= wanted, f"{number} blocks of {unit}")
+
+    def wait_last(self, unit, condition, what):
+        """Waits until the last block of a unit, computed after its last command, fulfils a condition; returns it."""
+
+        def fulfilled():
+            block = self.blocks[unit][-1] if self.blocks[unit] else None
+            return block and block.first_cycle >= self._since[unit] and condition(block)
+
+        self.spin_until(fulfilled, f"{unit}: {what}")
+        return self.blocks[unit][-1]
+
+    def shows(self, unit, field, value):
+        """Waits until a per-cycle field of a unit has a value."""
+        self.wait_last(unit, lambda block: getattr(block, field)[-1] == value, f"{field} = {value}")
+
+    def await_call(self, client, request, what):
+        assert client.wait_for_service(timeout_sec=TIMEOUT), f"{what} is not there"
+        answer = client.call_async(request)
+        self.spin_until(answer.done, f"the answer of {what}")
+        self.destroy_client(client)
+        return answer.result()
+
+    def call(self, unit, command, **fields):
+        """The response of a command service."""
+        service = SERVICES[self.kinds[unit]][command]
+        name = f"/{unit}/{command}"
+        return self.await_call(self.create_client(service, name), service.Request(**fields), name)
+
+    def done(self, unit, command, **fields):
+        """As `call`, for commands that are to be accepted."""
+        response = self.call(unit, command, **fields)
+        assert response.accepted and response.error_id == 0, response.message
+        self._since[unit] = response.cycle
+        return response
+
+    def refused(self, unit, command, error_id, message, **fields):
+        response = self.call(unit, command, **fields)
+        assert (response.accepted, response.error_id, response.message) == (False, error_id, message)
+        return response
+
+    def write(self, topic, message_type, **fields):
+        """Publishes one message on a PLC topic and waits until it has had the time to act: some PLC blocks."""
+        if topic not in self._writers:
+            self._writers[topic] = self.create_publisher(message_type, topic, PLC_INPUT)
+            self.spin_until(self._writers[topic].get_subscription_count, f"a reader of {topic}")
+        self._writers[topic].publish(message_type(**fields))
+        self.wait_blocks("plc", 10)
+
+    def override(self, unit, percent, **fields):
+        self.write(f"/{unit}/override", msg.Override, percent=float(percent), **{"valid": True, **fields})
+
+    def switch(self, topic, on, **fields):
+        self.write(topic, msg.Switch, on=on, **{"valid": True, **fields})
+
+    def commands(self, target, command):
+        """Arguments and acceptance of the commands of one kind so far."""
+        return [
+            (record.arguments_json, record.accepted)
+            for record in self.records
+            if record.target == target and record.command == command
+        ]
+
+    def state_at(self, unit, cycle, field):
+        """The value of a per-cycle field at a cycle that has come or comes."""
+        self.wait_last(unit, lambda block: block.first_cycle + block.count > cycle, f"cycle {cycle}")
+        block = next(
+            block for block in self.blocks[unit] if block.first_cycle <= cycle < block.first_cycle + block.count
+        )
+        return getattr(block, field)[cycle - block.first_cycle]

@@ -1,0 +1,350 @@
+"""A graph under the hands of a PLC and an operator: every topic and service acts, refuses and is recorded.
+
+All tests share one run. At its end the recording of this run, which no script has played, is verified to the bit.
+"""
+
+import math
+import signal
+import subprocess
+import sys
+
+import pytest
+import rclpy
+from client_support import Client
+from diagnostic_msgs.msg import DiagnosticArray
+from graph_support import MILL, Running, run, verified
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from sensor_msgs.msg import JointState
+
+from cnc_ptp import msg
+from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.topics import DIAGNOSTICS, JOINT_STATES, PLC_INPUT
+from cnc_ptp.parameters import read_machine
+
+UNHEARD_DURATION = 300
+"""Seconds: longer than all tests need; the last test ends the run."""
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    return tmp_path_factory.mktemp("client") / "run.mcap"
+
+
+@pytest.fixture(scope="module")
+def graph(ros_domain, recording):
+    graph = Running(MILL, "--duration", UNHEARD_DURATION, "--record", recording)
+    graph.wait_for_nodes(8)
+    yield graph
+    graph.end()
+
+
+@pytest.fixture(scope="module")
+def client(graph):
+    process.initialise()
+    client = Client(read_machine(str(MILL)))
+    client.start()
+    client.wait_blocks("x", 1)
+    yield client
+    client.destroy_node()
+    client.executor_of_test.shutdown()
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "job.nc"
+    path.write_text("%job\nN10 G01 X60 F3000\nN20 M08\nN30 G01 X0 Y5\nM30\n")
+    return str(path)
+
+
+def stands(block):
+    return block.state[-1] == AxisStateCode.STANDSTILL
+
+
+def test_a_move_begins_at_the_cycle_of_the_answer(client):
+    response = client.done("x", "move_absolute", target=30.0, velocity=100.0)
+    assert response.message == "" and response.cycle % 10 == 0
+    assert client.state_at("x", response.cycle - 1, "state") == AxisStateCode.STANDSTILL
+    assert client.state_at("x", response.cycle, "state") == AxisStateCode.DISCRETE_MOTION
+    assert client.state_at("x", response.cycle + 1, "set_jerk") == 50_000.0
+    client.refused(
+        "x",
+        "move_absolute",
+        23005,
+        "axis x: move_absolute refused: the axis is in DiscreteMotion, it must be in Standstill; nothing was changed",
+        target=1.0,
+    )
+    end = client.wait_last("x", stands, "standstill")
+    assert end.set_position[-1] == 30.0
+
+
+def test_left_out_dynamics_come_from_the_parameters(client):
+    response = client.done("x", "move_relative", distance=-30.0, velocity=math.nan, acceleration=0.0)
+    record = next(record for record in reversed(client.records) if record.command == "move_relative")
+    assert record.arguments_json == '{"distance": -30.0}' and record.cycle == response.cycle
+    assert client.wait_last("x", stands, "standstill").set_position[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("command", "fields", "error_id", "message"),
+    [
+        (
+            "move_absolute",
+            {"target": 400.0},
+            120002,
+            "target 400.0 mm lies beyond the positive soft limit 300.0 mm (P-AXIS-00178)",
+        ),
+        ("move_absolute", {"target": math.nan}, 22001, "target = nan is not finite"),
+        (
+            "move_absolute",
+            {"target": 1.0, "velocity": 501.0},
+            23004,
+            "velocity 501.0 mm/s is above the maximum 500.0 mm/s (P-AXIS-00212)",
+        ),
+        ("move_absolute", {"target": 1.0, "jerk": -1.0}, 23003, "jerk = -1.0 must be greater than 0"),
+        ("set_override", {"percent": 100.5}, 23006, "percent = 100.5 is not within 0 ... 100"),
+    ],
+)
+def test_refusals_say_why(client, command, fields, error_id, message):
+    text = f"axis x: {command} refused: {message}; nothing was changed"
+    client.refused("x", command, error_id, text, **fields)
+    client.spin_until(lambda: any(event.text == text for event in client.events), "the event")
+
+
+def test_stop_ends_on_the_ramp(client):
+    client.done("y", "move_absolute", target=150.0, velocity=50.0)
+    client.wait_last("y", lambda block: block.set_velocity[-1] == 50.0, "full velocity")
+    response = client.done("y", "stop")
+    assert client.state_at("y", response.cycle, "state") == AxisStateCode.STOPPING
+    end = client.wait_last("y", stands, "standstill")
+    assert 0.0 < end.set_position[-1] < 150.0
+    assert client.call("y", "stop").message == "axis y: stop without effect in Standstill"
+    client.done("y", "move_absolute", target=0.0)
+    client.wait_last("y", stands, "standstill")
+
+
+def test_override_topic(client):
+    client.override("x", 50.0)
+    client.shows("x", "override_percent", 50.0)
+    before = len(client.commands("x", "set_override"))
+    client.override("x", 50.0)
+    assert len(client.commands("x", "set_override")) == before, "only a change counts"
+    client.override("x", 0.0, valid=False)
+    client.shows("x", "override_percent", 100.0)  # not served: 100 %
+
+
+def test_sequence_numbers(client):
+    for sequence, percent, expected in (
+        (10, 60, 60.0),
+        (10, 70, 60.0),  # repeated
+        (9, 70, 60.0),  # older
+        (11, 80, 80.0),
+        (1, 90, 90.0),  # a PLC that starts again
+        (1, 95, 90.0),
+        (2**31, 85, 85.0),
+        (2**32 - 1, 75, 75.0),
+        (5, 65, 65.0),  # ran over
+        (0, 100, 100.0),  # not used
+    ):
+        client.override("y", percent, sequence=sequence)
+        client.shows("y", "override_percent", expected)
+
+
+def test_bad_values_are_refused_once(client):
+    for value, text in ((math.nan, "percent = nan is not finite"), (250.0, "percent = 250.0 is not within 0 ... 100")):
+        before = len(client.records)
+        client.override("x", value)
+        client.override("x", value)
+        refusals = [record for record in client.records[before:] if record.target == "x"]
+        assert [record.message for record in refusals] == [f"axis x: set_override refused: {text}; nothing was changed"]
+        assert client.blocks["x"][-1].override_percent[-1] == 100.0
+    client.override("x", 100.0)
+
+
+def test_enable_topic(client):
+    client.switch("/z/enable", False)
+    client.shows("z", "state", AxisStateCode.DISABLED)
+    text = "axis z: move_absolute refused: the axis is in Disabled, it must be in Standstill; nothing was changed"
+    client.refused("z", "move_absolute", 23005, text, target=1.0)
+    client.switch("/z/enable", False, valid=False)
+    client.shows("z", "state", AxisStateCode.STANDSTILL)  # not served: enabled
+
+
+def test_spindle(client):
+    client.override("s", 50.0)
+    client.done("s", "start", direction="cw", speed_rpm=1000.0)
+    client.wait_last("s", lambda block: block.speed_reached[-1], "speed reached")
+    assert client.wait_last("s", lambda block: block.set_speed_rpm[-1] == 500.0, "500 rpm").override_percent[-1] == 50.0
+    text = "spindle s: start refused: direction = 'up' is not cw or ccw; nothing was changed"
+    client.refused("s", "start", 22001, text, direction="up", speed_rpm=10.0)
+    client.override("s", 100.0)
+    client.done("s", "stop")
+    client.wait_last("s", lambda block: block.speed_zero[-1] and block.set_speed_rpm[-1] == 0.0, "speed zero")
+
+
+def test_channel_refusals(client, program, tmp_path):
+    text = "channel channel: start refused: no program is loaded; nothing was changed"
+    client.refused("channel", "start", 22003, text)
+    text = "channel channel: load refused: NC program /nowhere.nc cannot be read: No such file or directory"
+    client.refused("channel", "load", 26110, f"{text}; nothing was changed", program="/nowhere.nc")
+    wrong = tmp_path / "wrong.nc"
+    wrong.write_text("%w\nN10 G01 X60\nM30\n")
+    assert client.done("channel", "load", program=str(wrong))
+    response = client.call("channel", "start")
+    assert not response.accepted and "line 2" in response.message and "N10 G01 X60" in response.message
+
+
+def test_program_with_override_and_feed_hold(client, program):
+    client.done("channel", "load", program=program)
+    response = client.done("channel", "start")
+    text = "channel channel: start refused: a program is running (line 2); nothing was changed"
+    client.refused("channel", "start", 22004, text)
+    assert client.state_at("x", response.cycle + 10, "state") == AxisStateCode.SYNCHRONIZED_MOTION
+    client.override("channel", 40.0)
+    client.shows("channel", "override_percent", 40.0)
+    client.switch("/channel/feed_hold", True)
+    client.wait_last("channel", lambda block: block.state[-1] == ChannelStateCode.HOLD, "hold")
+    client.switch("/channel/feed_hold", True, valid=False)
+    client.override("channel", 150.0)
+    client.wait_last("channel", lambda block: block.done, "the end of the program")
+    client.shows("y", "set_position", 5.0)
+    client.override("channel", 100.0)
+
+
+def test_handshake_by_hand(client, program):
+    requests = []
+    client.create_subscription(msg.HandshakeRequest, "/channel/handshake", requests.append, PLC_INPUT)
+    client.done("plc", "auto_acknowledge", on=False)
+    client.done("channel", "load", program=program)
+    client.done("channel", "start")
+    client.wait_last("channel", lambda block: block.state[-1] == ChannelStateCode.WAITING, "waiting for M08")
+    client.spin_until(lambda: requests and requests[-1].number == 8, "the request of M08")
+    request = requests[-1]
+    assert (request.kind, request.line, request.acknowledge_needed) == ("M", 3, True)
+    client.wait_blocks("channel", 20)
+    assert client.blocks["channel"][-1].line[-1] == 3, "the path waits"
+    text = f"plc plc: acknowledge refused: no request 9999 waits; nothing was changed. Waiting: {request.id}"
+    client.refused("plc", "acknowledge", 22013, text, id=9999)
+    client.done("plc", "acknowledge", id=request.id)
+    client.wait_last("channel", lambda block: block.done, "the end of the program")
+    client.done("plc", "auto_acknowledge", on=True)
+
+
+def test_lost_life_sign_of_the_plc_holds_the_feed(client):
+    for counter in range(3):
+        client.write("/plc/life_sign", msg.LifeSign, counter=counter)
+    client.switch("/channel/feed_hold", False)
+    client.spin_until(lambda: any(event.error_id == 26103 for event in client.events), "the event")
+    event = next(event for event in client.events if event.error_id == 26103)
+    assert event.text.startswith("plc: no life sign of the external PLC for ")
+    assert event.text.endswith(" ms; feed hold is set on all channels")
+    hold, free = ('{"on": true}', True), ('{"on": false}', True)
+    client.spin_until(lambda: client.commands("channel", "feed_hold")[-1] == hold, "feed hold")
+    client.write("/plc/life_sign", msg.LifeSign, counter=7)
+    before = len(client.commands("channel", "feed_hold"))
+    client.switch("/channel/feed_hold", False)  # the same value as before the loss, and a change all the same
+    client.spin_until(lambda: free in client.commands("channel", "feed_hold")[before:], "the PLC takes it away")
+
+
+def test_joint_states_in_si_units(client):
+    seen = {}
+    client.create_subscription(
+        JointState, JOINT_STATES, lambda state: seen.setdefault(state.name[0], []).append(state), PLC_INPUT
+    )
+    client.done("x", "move_absolute", target=200.0, velocity=100.0)
+    client.wait_last("x", lambda block: block.set_velocity[-1] == 100.0, "full velocity")
+    client.wait_blocks("x", 20)
+    client.wait_last("x", stands, "standstill")
+    client.wait_blocks("x", 40)
+    assert set(seen) == {"x", "y", "z"}
+    assert seen["x"][-1].position[0] == pytest.approx(0.2, abs=1e-5)
+    assert max(state.velocity[0] for state in seen["x"]) == pytest.approx(0.1, rel=0.01)
+    client.done("x", "move_absolute", target=0.0)
+    client.wait_last("x", stands, "standstill")
+
+
+def test_diagnostics(client):
+    seen = {}
+
+    def received(array):
+        for status in array.status:
+            seen[status.name] = (status, {value.key: value.value for value in status.values})
+
+    client.create_subscription(DiagnosticArray, DIAGNOSTICS, received, PLC_INPUT)
+    client.spin_until(lambda: len(seen) == 6, "the diagnostics of all units")
+    assert set(seen) == {"plc", "channel", "s", "x", "y", "z"}
+    status, values = seen["x"]
+    assert status.hardware_id == "cnc_ptp" and status.level == b"\x00"
+    assert values["lost_blocks"] == "0" and values["duplicates"] == "0" and int(values["blocks"]) > 100
+    assert float(values["following_error_max"]) > 0.0
+    assert int(values["lateness_p50_us"]) <= int(values["lateness_p99_us"])
+
+
+def test_parameters(client):
+    def ask(service, name, **fields):
+        return client.await_call(client.create_client(service, name), service.Request(**fields), name)
+
+    name = "getriebe.0.kv"
+    assert name in ask(ListParameters, "/x/list_parameters").result.names
+    descriptor = ask(DescribeParameters, "/x/describe_parameters", names=[name]).descriptors[0]
+    assert descriptor.read_only and descriptor.type == ParameterType.PARAMETER_INTEGER
+    assert "P-AXIS-00099" in descriptor.description
+    assert descriptor.integer_range[0].from_value >= 0 and descriptor.integer_range[0].to_value > 5000
+    value = ask(GetParameters, "/x/get_parameters", names=[name]).values[0]
+    assert value.integer_value == 5000
+    wanted = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=1)
+    parameters = [Parameter(name=name, value=wanted)]
+    result = ask(SetParameters, "/x/set_parameters", parameters=parameters).results[0]
+    assert not result.successful and "read-only" in result.reason
+    plc = ask(GetParameters, "/plc/get_parameters", names=["watchdog_ms"]).values[0]
+    assert plc.integer_value == 200
+
+
+def test_a_second_run_on_the_domain_is_refused(client, ros_domain):
+    error = run("run", MILL, "--duration", "1", expect=2).stderr
+    assert error == (
+        f"P-ERR-26107 a run is under way on ROS domain {ros_domain} of this machine; nothing was started. "
+        "Wait for its end, or set ROS_DOMAIN_ID to another number\n"
+    )
+
+
+def test_a_node_that_comes_too_late_ends(client):
+    late = [sys.executable, "-m", "cnc_ptp.nodes.axis", str(MILL), "z"]
+    done = subprocess.run(late, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    assert done.stderr.startswith("P-ERR-26116 z: the run is at cycle ")
+    assert "the node takes no part and ends: nodes must be there before the clock starts" in done.stderr
+
+
+def test_stop_all_ends_the_run_and_the_recording_verifies(client, graph, recording):
+    client.done("s", "start", direction="ccw", speed_rpm=600.0)
+    client.done("y", "move_absolute", target=150.0, velocity=20.0)
+    client.wait_blocks("y", 20)
+    client.done("plc", "stop_all")
+    output = graph.finish(expect=0)
+    assert "lost 0, computed twice 0" in output
+    assert "refused: P-ERR-120002 axis x: move_absolute refused: target 400.0 mm lies beyond" in output
+    recorded = verified(recording)
+    assert recorded.complete and recorded.last_cycle < UNHEARD_DURATION * 1000 - 1
+    seen = {(record.cycle, record.target, record.command, record.arguments_json) for record in client.records}
+    known = {(record.cycle, record.target, record.command, record.arguments_json) for record in recorded.commands}
+    assert seen <= known and len(seen) > 50
+    assert recorded.states["/y/state"]["set_velocity"][-1] == 0.0
+    assert recorded.states["/s/state"]["set_speed_rpm"][-1] == 0.0
+    assert {event.error_id for event in recorded.events} >= {26103, 26110, 120002}
+
+
+def test_a_clock_that_is_told_to_end_says_so(ros_domain):
+    """A clock ends by itself with status 0 in every good run; the supervisor must be able to tell the two apart."""
+    clock = subprocess.Popen([sys.executable, "-m", "cnc_ptp.nodes.clock", str(MILL)], stderr=subprocess.PIPE)
+    try:
+        with pytest.raises(subprocess.TimeoutExpired):
+            clock.wait(3.0)
+        clock.send_signal(signal.SIGTERM)
+        assert clock.wait(10.0) == 128 + signal.SIGTERM
+    finally:
+        clock.kill()
+        clock.wait()
+        clock.stderr.close()

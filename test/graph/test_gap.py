@@ -1,0 +1,192 @@
+"""A clock that leaves out a tick, and other faults of what arrives: the axis stops by itself, no cycle is left out."""
+
+import numpy as np
+import pytest
+import rclpy
+from graph_support import PTP
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Command, PlcBlock
+from cnc_ptp.nodes import convert, process
+from cnc_ptp.nodes.axis import AxisNode
+from cnc_ptp.nodes.topics import BLOCKS, COMMAND, EVENT, EVENTS, TICK, block_topic
+from cnc_ptp.parameters import read_machine
+
+MOVE = {"target": 100.0, "velocity": 200.0}
+
+
+class Surroundings(Node):
+    """Clock and PLC in the hands of a test, around one axis node."""
+
+    def __init__(self):
+        super().__init__("surroundings", enable_rosout=False, start_parameter_services=False)
+        self.ticks = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
+        self.plc = self.create_publisher(msg.PlcBlock, block_topic("plc"), BLOCKS)
+        self.blocks, self.events, self.records = [], [], []
+        self.create_subscription(msg.AxisBlock, block_topic("x"), self.blocks.append, BLOCKS)
+        self.create_subscription(msg.Event, EVENT, self.events.append, EVENTS)
+        self.create_subscription(msg.CommandRecord, COMMAND, self.records.append, EVENTS)
+
+    def tick(self, first_cycle, count=10):
+        self.ticks.publish(msg.CycleTick(first_cycle=first_cycle, count=count))
+
+    def plc_block(self, first_cycle, commands=()):
+        block = PlcBlock(first_cycle, 10, life_sign=first_cycle, commands=list(commands))
+        self.plc.publish(convert.block_to_message(block, convert.time_message(0)))
+
+    def samples(self, field):
+        return np.concatenate([getattr(block, field) for block in self.blocks])
+
+
+class Bench:
+    def __init__(self):
+        process.initialise()
+        self.outside = Surroundings()
+        self.axis = AxisNode(read_machine(str(PTP)), "x", consumers=1)
+        self.executor = process.EventsExecutor()
+        for node in (self.outside, self.axis):
+            self.executor.add_node(node)
+        publishers = (self.outside.ticks, self.outside.plc, self.axis._block_publisher)
+        self.spin_until(lambda: all(publisher.get_subscription_count() for publisher in publishers))
+
+    def spin_until(self, condition):
+        for _ in range(3000):
+            if condition():
+                return
+            self.executor.spin_once(timeout_sec=0.01)
+        raise AssertionError("nothing more comes")
+
+    def run_blocks(self, number):
+        """So many blocks in good order, the move in the first one."""
+        for first_cycle in range(0, 10 * number, 10):
+            self.outside.tick(first_cycle)
+            self.outside.plc_block(first_cycle, [] if first_cycle else [Command("x", "move_absolute", MOVE, 1)])
+        self.spin_until(lambda: len(self.outside.blocks) >= number)
+
+    def wait_for_standstill(self):
+        self.spin_until(lambda: self.outside.blocks[-1].state[-1] == AxisStateCode.ERROR_STOP)
+        self.spin_until(lambda: self.outside.blocks[-1].set_velocity[-1] == 0.0)
+
+    def close(self):
+        for node in (self.axis, self.outside):
+            node.destroy_node()
+        self.executor.shutdown()
+        rclpy.try_shutdown()
+
+
+@pytest.fixture
+def bench():
+    bench = Bench()
+    yield bench
+    bench.close()
+
+
+def check_smooth(outside):
+    """Every cycle once, and no step in position or velocity."""
+    cycles = np.concatenate([range(block.first_cycle, block.first_cycle + block.count) for block in outside.blocks])
+    assert cycles.tolist() == list(range(len(cycles)))
+    assert np.abs(np.diff(outside.samples("set_position"))).max() <= 0.2 + 1e-9
+    assert np.abs(np.diff(outside.samples("set_acceleration"))).max() <= 10_000.0 * 1e-3 * 10.0 + 1e-6
+
+
+def errors(outside):
+    return [(event.error_id, event.text) for event in outside.events if event.severity == 2]
+
+
+def test_a_missing_tick_ends_in_a_controlled_stop(bench):
+    bench.run_blocks(30)
+    bench.outside.tick(310)
+    bench.wait_for_standstill()
+    check_smooth(bench.outside)
+    assert errors(bench.outside) == [
+        (26102, "x: tick 300 of the clock is missing, 310 came"),
+        (
+            26101,
+            "axis x: no block of 'clock' came within the watchdog time; the axis stops on its own ramp (ErrorStop)",
+        ),
+    ]
+    lost = [(record.cycle, record.command, record.arguments_json) for record in bench.outside.records[1:]]
+    assert lost == [(300, "upstream_lost", '{"source": "clock"}')]
+    assert bench.outside.blocks[-1].error_id[-1] == 26101
+    assert bench.axis._blocks_lost == 1
+
+
+def test_a_missing_block_ends_in_a_controlled_stop(bench):
+    bench.run_blocks(30)
+    for first_cycle in range(300, 800, 10):
+        bench.outside.tick(first_cycle)
+        if first_cycle != 300:
+            bench.outside.plc_block(first_cycle)
+    bench.wait_for_standstill()
+    check_smooth(bench.outside)
+    assert errors(bench.outside)[0] == (26102, "x: block 300 of 'plc' is missing, a later one came")
+    assert bench.outside.records[-1].arguments_json == '{"source": "plc"}'
+
+
+def test_silence_of_the_plc_ends_in_a_controlled_stop(bench):
+    bench.run_blocks(30)
+    for first_cycle in range(300, 800, 10):
+        bench.outside.tick(first_cycle)
+    bench.wait_for_standstill()
+    check_smooth(bench.outside)
+    assert [error_id for error_id, _ in errors(bench.outside)] == [26101]
+
+
+def test_silence_of_the_clock_ends_in_a_controlled_stop(bench):
+    bench.run_blocks(30)
+    bench.wait_for_standstill()
+    check_smooth(bench.outside)
+    assert bench.outside.records[-1].arguments_json == '{"source": "clock"}'
+
+
+def test_a_sign_of_life_keeps_a_waiting_axis_from_stopping(bench):
+    """A source that works long (a big program is interpreted) says so, and nobody stops."""
+    bench.run_blocks(30)
+    heartbeat = bench.outside.create_publisher(msg.BlockReport, "/heartbeat", BLOCKS)
+    bench.spin_until(heartbeat.get_subscription_count)
+    signs = 0
+
+    def sign():
+        nonlocal signs
+        signs += 1
+        heartbeat.publish(msg.BlockReport(source="clock", first_cycle=300))
+
+    bench.outside.create_timer(0.04, sign)
+    bench.spin_until(lambda: signs == 15)  # three times the watchdog time
+    assert errors(bench.outside) == []
+    bench.outside.tick(300)
+    bench.outside.plc_block(300)
+    bench.spin_until(lambda: len(bench.outside.blocks) == 31)
+    assert errors(bench.outside) == []
+
+
+def test_what_comes_twice_is_computed_once(bench):
+    bench.run_blocks(3)
+    bench.outside.tick(20)
+    bench.outside.plc_block(20)
+    bench.outside.tick(30)
+    bench.outside.plc_block(30)
+    bench.spin_until(lambda: len(bench.outside.blocks) == 4)
+    assert [block.first_cycle for block in bench.outside.blocks] == [0, 10, 20, 30]
+    assert bench.axis._gate.duplicates == 2
+
+
+def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
+    bench.run_blocks(3)
+    bench.outside.tick(30)
+    bench.outside.tick(40, count=0)
+    bench.spin_until(lambda: len(bench.axis._gate._ticks) == 1)
+    bench.outside.plc_block(30)
+    bench.spin_until(lambda: len(bench.outside.blocks) == 4)
+    record = bench.axis.command(Command("x", "move_absolute", MOVE))
+    assert (record.accepted, record.error_id) == (False, 26115)
+    assert record.message == "axis x: move_absolute refused: the run is over; nothing was changed"
+    bench.spin_until(lambda: bench.outside.records[-1].error_id == 26115)
+
+
+def test_converted_blocks_are_the_same():
+    """What the node publishes is what its unit has computed."""
+    block = AxisBlock(10, 1, *([0.1 * n] for n in range(13)), [1], [2], [3])
+    again = convert.message_to_block(convert.block_to_message(block, convert.time_message(5)))
+    assert all(list(getattr(again, name)) == getattr(block, name) for name in AxisBlock.__slots__[2:])
