@@ -18,6 +18,8 @@ from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, TICK, block_topic
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 POLL = 0.02
+START_DELAY = 0.1
+"""Seconds between the last ready node and the first tick: writers and readers find each other in both directions."""
 OBSERVER_PATIENCE = 2.0
 """Seconds for which a free run waits for a recorder; units have the watchdog time."""
 SECOND_CLOCK = 26109
@@ -64,7 +66,7 @@ class ClockNode(Node):
         self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_report, BLOCKS)
-        self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+        self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
 
     @property
     def done(self) -> bool:
@@ -82,6 +84,8 @@ class ClockNode(Node):
             return
         if self._started_at is None:
             self._start_when_ready()
+        elif time.monotonic() < self._started_at:
+            return
         elif self._free_run:
             self._drop_silent_nodes()
             if not self._open:
@@ -100,9 +104,11 @@ class ClockNode(Node):
             return
         if self.count_publishers(TICK) > 1:
             raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
-        if self._publisher.get_subscription_count() >= len(self._expected - {MONITOR}):
+        if self._plc.get_publisher_count() and self._publisher.get_subscription_count() >= len(
+            self._expected - {MONITOR}
+        ):
             self._start_ns = time.time_ns()
-            self._started_at = time.monotonic() + self._block_time
+            self._started_at = time.monotonic() + START_DELAY
 
     def _tick(self, scheduled_ns: int) -> None:
         if self._cycles is not None and self._first_cycle >= self._cycles:

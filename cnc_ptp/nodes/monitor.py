@@ -46,20 +46,23 @@ class RunMonitor(Node):
         self.run_failed = False
         self.diagnostics: dict[str, dict[str, str]] = {}
         self.standing: dict[str, bool] = {}
-        self._needed = [block_topic(name) for name in (PLC, *list(machine.channels)[:1])]
+        self._needed = []
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         for channel in list(machine.channels)[:1]:
-            self.create_subscription(msg.ChannelBlock, block_topic(channel), self._on_channel, BLOCKS)
-        self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+            self._need(msg.ChannelBlock, block_topic(channel), self._on_channel)
+        self._need(msg.PlcBlock, block_topic(PLC), self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
 
+    def _need(self, block_type: Any, topic: str, received: Any) -> None:
+        self._needed.append(self.create_subscription(block_type, topic, received, BLOCKS))
+
     def _report_ready(self) -> None:
         if self.progress.cycle:
             self._ready_timer.cancel()
-        elif all(self.count_publishers(topic) for topic in self._needed):
+        elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._heartbeat_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 
     def watch_standstill(self, axes: list[str]) -> None:

@@ -69,11 +69,11 @@ class RecorderNode(Node):
         self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
         self.failure: CncError | None = None
         """Why nothing more can be written."""
-        self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)
+        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)]
         for unit, kind in self._units.items():
             block_type = BLOCK_TYPES[kind]
             received = self._guarded(partial(self._on_block, unit, block_type))
-            self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True)
+            self._needed.append(self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._guarded(self._on_diagnostics), PLC_INPUT, raw=True)
@@ -105,7 +105,7 @@ class RecorderNode(Node):
     def _report_ready(self) -> None:
         if self._recording is not None:
             self._ready_timer.cancel()
-        elif all(self.count_publishers(topic) for topic in (TICK, *map(block_topic, self._units))):
+        elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._say(-1)
 
     def _say(self, first_cycle: int) -> None:

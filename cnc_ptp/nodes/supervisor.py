@@ -144,9 +144,9 @@ class Supervisor:
         self.failures.append(f"P-ERR-{error_id} {text}")
         event = Event(self._monitor.progress.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
-        if PLC not in self._dead:
-            self._stop_all.call_async(srv.Execute.Request())
         if self._stop_deadline is None:
+            if PLC not in self._dead:
+                self._stop_all.call_async(srv.Execute.Request())
             now = time.monotonic()
             self._stop_deadline = now + STOP_TIMEOUT
             self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5

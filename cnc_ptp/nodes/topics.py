@@ -8,8 +8,8 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 from cnc_ptp import msg, srv
 
-BLOCKS = QoSProfile(depth=100, reliability=QoSReliabilityPolicy.RELIABLE)
-"""Numbered blocks: nothing is lost while a reader stalls for up to 100 blocks."""
+BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
+"""Numbered blocks: nothing is lost while a reader stalls for up to 1000 blocks (10 s at 100 blocks a second)."""
 
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL

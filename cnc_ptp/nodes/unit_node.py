@@ -107,11 +107,11 @@ class UnitNode(Node):
         self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
 
     def _make_subscriptions(self) -> None:
-        self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)
+        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)]
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         for source in self._gate.sources:
-            kind = self._kinds[source]
-            self.create_subscription(BLOCK_TYPES[kind], block_topic(source), partial(self._on_block, source), BLOCKS)
+            block_type, received = BLOCK_TYPES[self._kinds[source]], partial(self._on_block, source)
+            self._needed.append(self.create_subscription(block_type, block_topic(source), received, BLOCKS))
 
     def _make_services(self) -> None:
         for command, service_type in SERVICES[self.unit.kind].items():
@@ -124,8 +124,7 @@ class UnitNode(Node):
             self._ready_timer.cancel()
             return
         found = self._block_publisher.get_subscription_count() >= self._consumers
-        topics = [TICK, *(block_topic(source) for source in self._gate.sources)]
-        if found and all(self.count_publishers(topic) for topic in topics):
+        if found and all(subscription.get_publisher_count() for subscription in self._needed):
             self._say(-1)
 
     # what arrives

@@ -101,6 +101,7 @@ class Running:
             self.children = nodes_of(self.process.pid)
             if len(self.children) >= count:
                 return self.children
+            assert self.process.poll() is None, self.process.stdout.read()
             time.sleep(0.05)
         raise AssertionError(f"only {list(self.children)} started")
 

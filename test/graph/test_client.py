@@ -199,6 +199,7 @@ def test_channel_refusals(client, program, tmp_path):
 def test_program_with_override_and_feed_hold(client, program):
     client.done("channel", "load", program=program)
     response = client.done("channel", "start")
+    client.shows("channel", "state", ChannelStateCode.RUNNING)
     text = "channel channel: start refused: a program is running (line 2); nothing was changed"
     client.refused("channel", "start", 22004, text)
     assert client.state_at("x", response.cycle + 10, "state") == AxisStateCode.SYNCHRONIZED_MOTION
