@@ -94,3 +94,14 @@ def test_reaches_looks_for_a_stretch_at_the_velocity() -> None:
     rows = [(0.0, 0.0, 0.0, 10.0, 0.0), (1.0, 5.0, -10.0, 0.0, 0.0), (2.0, 15.0, 10.0, -1.0, 0.0)]
     assert reaches(Profile(rows), 10.0) and not reaches(Profile(rows[:1]), 10.0)
     assert not reaches(Profile(rows[2:]), 10.0) and not reaches(standing(1.0), 10.0)
+
+
+def test_a_stop_in_the_brake_phase_ends_the_job_at_once_and_keeps_the_table() -> None:
+    ptp = generator()
+    ptp.start(0, 50.0, LIMITS)
+    cycle = 600
+    assert ptp.state(cycle)[2] < 0.0
+    later = [ptp.state(cycle + n) for n in range(200)]
+    ptp.stop(cycle, LIMITS._replace(deceleration=1.0))
+    assert ptp.job is None and [ptp.state(cycle + n) for n in range(200)] == later
+    assert later[-1][:2] == (50.0, 0.0) and ptp.arrived(cycle + 199)
