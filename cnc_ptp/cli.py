@@ -11,6 +11,8 @@ import click
 from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
 
+LONGEST_RUN = 1e7
+DURATION = click.FloatRange(0.0, LONGEST_RUN)
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
 
@@ -19,7 +21,7 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options that offline run and graph share."""
     for option in (
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
-        click.option("--duration", type=click.FloatRange(min=0.0), help="Seconds; without it the run ends by itself."),
+        click.option("--duration", type=DURATION, help="Seconds; without it the run ends by itself."),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
         click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
         MACHINE,

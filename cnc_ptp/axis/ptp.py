@@ -12,7 +12,7 @@ from cnc_ptp.motion import (
     plan_to_velocity,
     reachable_velocity,
 )
-from cnc_ptp.motion.limits import SMALLEST_LIMIT
+from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
 
 State = tuple[float, float, float, float]
 """Position mm, velocity mm/s, acceleration mm/s², jerk mm/s³ (deg for rotary axes)."""
@@ -76,6 +76,7 @@ class PtpGenerator:
 
         Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
         """
+        check_limits(limits)
         position = self.state(cycle)[0]
         job = Job(target, limits, self._full_velocity(target - position, limits))
         profile = self._from_rest(position, job)

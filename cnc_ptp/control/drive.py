@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
+NEGLIGIBLE = 1e-12
+"""mm/s or deg/s; a lag below it is over, so that a drive comes to rest exactly."""
+
 
 class Drive(Protocol):
     """What the position controller needs of a drive; a real one would exchange its process data in `step`."""
@@ -41,6 +44,8 @@ class SimulatedDrive:
 
     def step(self, command_velocity: float) -> None:
         surplus = self.velocity - command_velocity
+        if -NEGLIGIBLE < surplus < NEGLIGIBLE:
+            surplus = 0.0
         self._true_position += command_velocity * self._cycle_time + surplus * self._lag_time
         self.velocity = command_velocity + surplus * self._decay
         increment = self._encoder_increment

@@ -24,6 +24,7 @@ PATH_NOT_ACCEPTED = 23009
 ENABLE_REMOVED = 23010
 ABOVE_REFERENCE_VELOCITY = 23011
 JERK_RESCALED = 23012
+ACCELERATION_TOO_HIGH = 23013
 SOFT_LIMIT_NEGATIVE = 120003
 SOFT_LIMIT_POSITIVE = 120002
 FOLLOWING_ERROR = 0x4550
@@ -145,8 +146,10 @@ class AxisUnit(Unit):
 
     def do_set_override(self, cycle: int, *, percent: float) -> str | None:
         """Override of PTP motion, 0 … 100 % in steps of 0.0001 % (less is 0). Source: TX1250 2.2."""
-        if not 0.0 <= percent <= 100.0:
-            self._refuse("set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... 100")
+        highest = min(100.0, self._parameters.max_override_percent)
+        if not 0.0 <= percent <= highest:
+            reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
+            self._refuse("set_override", BAD_OVERRIDE, reason)
         acts = self._ptp.set_override(cycle, percent / 100.0)
         self._override_percent = float(percent) if self._ptp.override else 0.0
         if acts or self._state != S.DISCRETE_MOTION:
@@ -328,6 +331,11 @@ class AxisUnit(Unit):
                 f"velocity {limits.velocity} {unit} is above the reference velocity {reference} {unit} (P-MACH-00008)"
             )
             self._refuse(command, ABOVE_REFERENCE_VELOCITY, reason)
+        most = self._parameters.max_acceleration
+        for name, value in (("acceleration", limits.acceleration), ("deceleration", limits.deceleration)):
+            if value > most:
+                reason = f"{name} {value} {unit}² is above the maximum {most} {unit}² (P-AXIS-00008)"
+                self._refuse(command, ACCELERATION_TOO_HIGH, reason)
         return limits
 
     def _rescale_jerk(self, command: str, limits: Limits) -> tuple[Limits, str | None]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
-from typing import ClassVar, NoReturn
+from typing import ClassVar, NamedTuple, NoReturn
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import (
@@ -26,6 +26,7 @@ from cnc_ptp.machine.path_motion import AxisStates, PathMotion, PathPoint
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.machine.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit, state_name
+from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
@@ -61,6 +62,15 @@ class Rows:
         return len(self.axes)
 
 
+class Prepared(NamedTuple):
+    """A program that was interpreted before its load, from the position `start`."""
+
+    text: str
+    program: Program
+    start: tuple[float, ...]
+    blocks: list[CanonicalBlock]
+
+
 class ChannelUnit(Unit):
     """One NC channel with its path axes and spindles."""
 
@@ -87,7 +97,10 @@ class ChannelUnit(Unit):
         self._sequence = ProgramSequence(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._program: Program | None = None
+        self._prepared: Prepared | None = None
         self._modal = ModalState()
+        """What an MDI text finds: the state that the one before has left, if that was carried out in full."""
+        self._modal_at_end: ModalState | None = None
         self._turning_after_reset = {
             spindle.node for spindle in parameters.spindles if not spindles[spindle.node].stops_at_reset
         }
@@ -106,6 +119,12 @@ class ChannelUnit(Unit):
         self._error_id = 0
         self._apply_override()
 
+    def prepare(self, program: str, text: str) -> None:
+        """Parses and interprets before time matters what `load` and `start` then find ready. Raises ProgramError."""
+        parsed = parse_program(text, program)
+        blocks = self._check.blocks(parsed, self._motion.position, ModalState())
+        self._prepared = Prepared(text, parsed, self._motion.position, blocks)
+
     # commands
 
     def do_load(self, cycle: int, *, program: str, text: str | None = None) -> None:
@@ -113,7 +132,8 @@ class ChannelUnit(Unit):
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'")
-        self._program = parse_program(text, program)
+        prepared = self._prepared is not None and self._prepared.text == text and self._prepared.program.file == program
+        self._program = self._prepared.program if prepared and self._prepared else parse_program(text, program)
         self._sequence.source = NO_SOURCE
 
     def do_start(self, cycle: int) -> None:
@@ -201,6 +221,8 @@ class ChannelUnit(Unit):
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
         self._had_axes = has_axes
+        if self._sequence.through and self._modal_at_end is not None:
+            self._modal, self._modal_at_end = self._modal_at_end, None
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
         return self._channel_block(tick, rows, outputs, path_active=has_axes)
 
@@ -292,10 +314,19 @@ class ChannelUnit(Unit):
         for node in self.lost:
             if node in self._axis_nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
-        blocks = self._check.blocks(program, self._motion.position, modal)
-        self._modal = modal
+        blocks = self._prepared_blocks(command, program)
+        if blocks is None:
+            blocks = self._check.blocks(program, self._motion.position, modal)
+        self._modal = ModalState()
+        self._modal_at_end = modal if command == "mdi" else ModalState()
         self._sequence.begin(blocks)
         self._just_started = True
+
+    def _prepared_blocks(self, command: str, program: Program) -> list[CanonicalBlock] | None:
+        ready = self._prepared
+        if ready is None or command != "start" or ready.program is not program or ready.start != self._motion.position:
+            return None
+        return ready.blocks
 
     # override, feedback, faults
 

@@ -47,6 +47,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     },
     "spindle": {
         "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER},
+        "set_speed": {"speed_rpm": NUMBER},
         "stop": {},
         "set_override": {"percent": NUMBER},
         "reset": {},

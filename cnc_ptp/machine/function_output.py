@@ -14,7 +14,9 @@ from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Function, Sp
 from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, Synchronisation
 
 AFTER_MOTION = Synchronisation.MNS_SNS
-WAIT_BEFORE = Synchronisation.MVS_SVS
+LATE = Synchronisation.MVS_SLM | Synchronisation.MVS_SLP | Synchronisation.MNE_SNS
+"""Types that wait later than they do here: until these are built, the path waits before the motion."""
+WAIT_BEFORE = Synchronisation.MVS_SVS | LATE
 WAIT_AFTER = Synchronisation.MVS_SNS | Synchronisation.MNS_SNS
 TYPES = WAIT_BEFORE | WAIT_AFTER | Synchronisation.MOS
 DIRECTIONS = {3: "cw", 4: "ccw"}
@@ -129,6 +131,8 @@ class FunctionOutput:
         direction = self._directions.get(function.spindle)
         if direction is None or function.speed_rpm is None:
             return None
+        if function.m is None:
+            return Command(spindle.node, "set_speed", {"speed_rpm": function.speed_rpm})
         return Command(spindle.node, "start", {"direction": direction, "speed_rpm": function.speed_rpm})
 
     def _request(

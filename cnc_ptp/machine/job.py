@@ -18,6 +18,7 @@ UNREADABLE = 26110
 def read_job(machine: MachineParameters, *, program: str | None, scenario: str | None) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
+    Loads carry the text of their program; a path in a scenario, relative to its file, becomes one from here.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
     """
     entries: list[Entry] = []
@@ -33,6 +34,9 @@ def read_job(machine: MachineParameters, *, program: str | None, scenario: str |
         entries += parse_scenario(
             text, scenario, unit_kinds(machine), lambda path: read_file("NC program", str(folder / path))
         )
+        for entry in entries[2 if program is not None else 0 :]:
+            if entry.command.command == "load":
+                entry.command.arguments["program"] = str(folder / entry.command.arguments["program"])
     return sorted(entries, key=lambda entry: entry.at)
 
 

@@ -77,6 +77,11 @@ class ProgramSequence:
         else:
             self.motion_ended()
 
+    @property
+    def through(self) -> bool:
+        """The program has been carried out to its end."""
+        return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
+
     def stop_spindles(self, *, keep: Container[str] = ()) -> None:
         """M05 for the spindles that the channel has set turning, except the nodes in `keep`."""
         self._outputs.commands += self._functions.stop_spindles(keep)

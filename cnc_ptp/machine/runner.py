@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.machine.blocks import (
+    AxisStateCode,
+    Block,
+    ChannelBlock,
+    ChannelStateCode,
+    Command,
+    CommandRecord,
+    CycleTick,
+    PlcBlock,
+    Severity,
+)
+from cnc_ptp.machine.unit import Unit, state_name
 
 LIFE_SIGN = "plc"
 CLOCK = "clock"
@@ -22,6 +32,7 @@ class UnitRunner:
         self._life_sign = -1
         self._life_sign_cycle = 0
         self._life_sign_lost = False
+        self._state: int | None = None
 
     def command(self, command: Command) -> CommandRecord:
         """A command from a service or a watchdog; acts at the first cycle of the next block."""
@@ -45,7 +56,21 @@ class UnitRunner:
             inputs = {name: block for name, block in inputs.items() if not alone and name not in self.unit.lost}
         block = self.unit.step(tick, inputs)
         self.next_cycle = tick.first_cycle + tick.count
+        self._note_state(block)
         return block
+
+    def _note_state(self, block: Block) -> None:
+        """An event when the unit ends the block in another state than the block before."""
+        if isinstance(block, PlcBlock) or block.state[-1] == self._state:
+            return
+        codes = ChannelStateCode if isinstance(block, ChannelBlock) else AxisStateCode
+        before, self._state = self._state, block.state[-1]
+        if before is None:
+            return
+        index = next(index for index, state in enumerate(block.state) if state == self._state)
+        text = f"{self.unit.name}: {state_name(codes(before))} -> {state_name(codes(self._state))}"
+        line = block.line[index] if isinstance(block, ChannelBlock) else 0
+        self.unit.event(block.first_cycle + index, Severity.INFO, 0, text, line)
 
     def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
         plc = inputs.get(LIFE_SIGN)

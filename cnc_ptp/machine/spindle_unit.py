@@ -9,7 +9,7 @@ from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
-from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit, state_name
 from cnc_ptp.motion import Profile
 from cnc_ptp.parameters import SpindleParameters
 from cnc_ptp.spindle.speed_ramp import plan_speed
@@ -68,19 +68,31 @@ class SpindleUnit(Unit):
             self._refuse("start", NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self._error_id}); reset it first")
         if self._state == S.DISABLED:
             self._refuse("start", NOT_READY, "the spindle is in Disabled, the machine starts it without power")
-        if speed_rpm < 0.0:
-            self._refuse("start", BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
-        limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
-        if speed_rpm > limit_rpm:
-            self._refuse(
-                "start", SPEED_TOO_HIGH, f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm (P-AXIS-00212)"
-            )
+        self._check_speed("start", speed_rpm)
         sign = 1.0 if direction == "cw" else -1.0
         self._check_preferred_direction(cycle, direction, sign)
         self._mode = SpindleMode.CW if direction == "cw" else SpindleMode.CCW
         self._commanded_speed = sign * speed_rpm * DEG_S_PER_RPM
         self._state = S.CONTINUOUS_MOTION
         self._ramp(cycle)
+
+    def do_set_speed(self, cycle: int, *, speed_rpm: float) -> str | None:
+        """An S word alone: a new speed in the same direction; without effect while the spindle does not rotate."""
+        self._check_speed("set_speed", speed_rpm)
+        if self._state != S.CONTINUOUS_MOTION:
+            return f"spindle {self.name}: set_speed without effect in {state_name(self._state)}"
+        sign = 1.0 if self._mode == SpindleMode.CW else -1.0
+        self._commanded_speed = sign * speed_rpm * DEG_S_PER_RPM
+        self._ramp(cycle)
+        return None
+
+    def _check_speed(self, command: str, speed_rpm: float) -> None:
+        if speed_rpm < 0.0:
+            self._refuse(command, BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
+        limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
+        if speed_rpm > limit_rpm:
+            reason = f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm (P-AXIS-00212)"
+            self._refuse(command, SPEED_TOO_HIGH, reason)
 
     def do_stop(self, cycle: int) -> None:
         """M05: down to speed 0 with P-AXIS-00002."""

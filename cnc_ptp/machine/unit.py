@@ -7,7 +7,16 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisStateCode, Block, Command, CommandRecord, CycleTick, Event, Severity
+from cnc_ptp.machine.blocks import (
+    AxisStateCode,
+    Block,
+    ChannelStateCode,
+    Command,
+    CommandRecord,
+    CycleTick,
+    Event,
+    Severity,
+)
 from cnc_ptp.machine.commands import check_command
 
 Handler = Callable[..., str | None]
@@ -81,6 +90,6 @@ class Unit(ABC):
         return f"<{self.kind} {self.name}>"
 
 
-def state_name(state: AxisStateCode) -> str:
+def state_name(state: AxisStateCode | ChannelStateCode) -> str:
     """PLCopen spelling: DISCRETE_MOTION -> DiscreteMotion."""
     return "".join(part.capitalize() for part in state.name.split("_"))

@@ -20,6 +20,9 @@ CENTRE_OFFSET_RATIO = 0.05
 
 CALL_DEPTH = 20
 
+BLOCK_LIMIT = 1_000_000
+"""Blocks that a program may execute, calls counted each time: a program is interpreted as a whole before it starts."""
+
 CheckTarget = Callable[[tuple[float, ...], Source], None]
 
 
@@ -51,7 +54,9 @@ def interpret(
     channel = Channel(axes, index, spindles, centre_offset, centre_offset_ratio)
     state = ModalState() if state is None else state
     state.position = tuple(start)
-    for block in _executed(program, block_skip, call_depth):
+    for count, block in enumerate(_executed(program, block_skip, call_depth)):
+        if count >= BLOCK_LIMIT:
+            raise faults.TOO_MANY_BLOCKS.at(block.source, limit=BLOCK_LIMIT)
         canonical = _resolve(channel, state, block, check_target)
         if canonical is not None:
             yield canonical

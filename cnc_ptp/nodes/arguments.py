@@ -24,22 +24,23 @@ RECORDERS = click.option(
 )
 
 
-def unit_main(node_class: Callable[..., Any], what: str) -> Callable[[], None]:
-    """The `main` of the node of one unit: `<executable> MACHINE.yaml NAME`."""
+def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter) -> Callable[[], None]:
+    """The `main` of the node of one unit: `<executable> MACHINE.yaml NAME`, with `more` options for its class."""
 
     @click.command(help=f"Runs the {what} NAME of MACHINE as a ROS node.")
     @MACHINE
     @NAME
     @FREE_RUN
     @RECORDERS
-    def command(machine: str, name: str, free_run: bool, recorders: int) -> None:
+    def command(machine: str, name: str, free_run: bool, recorders: int, **options: Any) -> None:
         def make() -> Any:
             parameters = read_machine(machine)
             consumers = consumers_of(parameters, name, recorders=recorders)
-            return node_class(parameters, name, consumers=consumers, free_run=free_run)
+            return node_class(parameters, name, consumers=consumers, free_run=free_run, **options)
 
         sys.exit(process.run_node(make))
 
+    command.params.extend(more)
     return lambda: call(command)
 
 

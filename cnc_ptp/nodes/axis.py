@@ -65,6 +65,9 @@ class AxisNode(UnitNode):
         result.message = "" if done else f"the axis stands at {result.position}, target {self._target}"
         return done
 
+    def run_ended(self) -> None:
+        self._move_job.end()
+
     def after_block(self, block: Block) -> None:
         if not isinstance(block, AxisBlock):
             return

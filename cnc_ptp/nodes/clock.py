@@ -166,7 +166,7 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 
 @click.command()
 @arguments.MACHINE
-@click.option("--duration", type=click.FloatRange(min=0.0), help="Seconds; without it the run ends by itself.")
+@click.option("--duration", type=click.FloatRange(0.0, 1e7), help="Seconds; without it the run ends by itself.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @arguments.FREE_RUN
 def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:

@@ -18,7 +18,7 @@ FEEDBACK_BLOCKS = 10
 class JobServer:
     """An action of a unit node: start commands, then block by block until the unit says that the job has ended.
 
-    One job at a time; a second goal runs into the refusal of the start command, which is its result.
+    One job at a time: a goal is rejected while another one is open, and ends as aborted with the run.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class JobServer:
             action_type,
             name,
             self._execute,
-            goal_callback=lambda goal: GoalResponse.ACCEPT,
+            goal_callback=lambda goal: GoalResponse.ACCEPT if self._goal is None else GoalResponse.REJECT,
             cancel_callback=self._cancel,
         )
 
@@ -77,6 +77,11 @@ class JobServer:
     def _cancel(self, goal: ServerGoalHandle) -> CancelResponse:
         self._node.command(self._halt)
         return CancelResponse.ACCEPT
+
+    def end(self) -> None:
+        """The run is over: an open job is told that it was not done."""
+        if self._ended is not None and not self._ended.done():
+            self._ended.set_result((self._type.Result(message="the run has ended"), False))
 
     def after_block(self, block: Block) -> None:
         """Called by the node with each block that it has computed."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
+
+import click
 
 from cnc_ptp import action, msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord
+from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
+from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
@@ -23,9 +27,13 @@ class ChannelNode(UnitNode):
     Action: /<channel>/run_program (RunProgram); cancel = reset.
     """
 
-    def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
+    def __init__(self, machine: MachineParameters, name: str, *, program: str | None = None, **options: Any) -> None:
+        """`program`: a file that the PLC will load first; it is interpreted here, before the clock starts."""
         arguments.require_unit(machine, name, ["channel"])
-        super().__init__(machine, build_unit(machine, name), **options)
+        unit = build_unit(machine, name)
+        if program is not None and isinstance(unit, ChannelUnit):
+            unit.prepare(program, read_file("NC program", program))
+        super().__init__(machine, unit, **options)
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
         self._program_job = JobServer(
             self,
@@ -51,6 +59,16 @@ class ChannelNode(UnitNode):
                 return self.refuse(command, error.error_id, error.message.rpartition("; ")[0])
             command = Command(self.unit.name, "load", {"program": path, "text": text})
         return super().command(command)
+
+    def complete_commands(self, block: PlcBlock) -> None:
+        """The text of a program does not travel in blocks; a file that has gone leaves a load that the unit refuses."""
+        for command in block.commands:
+            if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
+                with contextlib.suppress(CncError):
+                    command.arguments["text"] = read_file("NC program", command.arguments["program"])
+
+    def run_ended(self) -> None:
+        self._program_job.end()
 
     def after_block(self, block: Block) -> None:
         if isinstance(block, ChannelBlock):
@@ -78,7 +96,8 @@ def program_result(block: Block, result: Any) -> bool | None:
     return done
 
 
-main = arguments.unit_main(ChannelNode, "NC channel")
+PROGRAM = click.Option(["--program"], help="NC program that will be loaded first: interpreted before the clock starts.")
+main = arguments.unit_main(ChannelNode, "NC channel", PROGRAM)
 
 if __name__ == "__main__":
     main()

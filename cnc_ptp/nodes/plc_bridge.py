@@ -37,7 +37,8 @@ class PlcBridgeNode(UnitNode):
     def __init__(
         self, machine: MachineParameters, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True, **options: Any
     ) -> None:
-        super().__init__(machine, build_unit(machine, PLC, scenario=scenario, end_when_idle=end_when_idle), **options)
+        entries = [without_text(entry) for entry in scenario]
+        super().__init__(machine, build_unit(machine, PLC, scenario=entries, end_when_idle=end_when_idle), **options)
         self._sequence: dict[str, int] = {}
         self._last: dict[str, str] = {}
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
@@ -45,6 +46,8 @@ class PlcBridgeNode(UnitNode):
         self._life_sign_seen = 0.0
         self._life_sign_lost = False
         self._channels = list(machine.channels)
+        units = {**machine.channels, **machine.axes, **machine.spindles}
+        self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
         for unit in (*machine.channels, *machine.axes, *machine.spindles):
             self._listen(msg.Override, unit, "override", self._override)
         for unit in machine.channels:
@@ -68,9 +71,9 @@ class PlcBridgeNode(UnitNode):
 
         self.create_subscription(message_type, topic, received, PLC_INPUT)
 
-    @staticmethod
-    def _override(unit: str, message: msg.Override) -> Command:
-        return Command(unit, "set_override", {"percent": message.percent if message.valid else FULL_OVERRIDE})
+    def _override(self, unit: str, message: msg.Override) -> Command:
+        full = min(FULL_OVERRIDE, self._highest_override[unit])
+        return Command(unit, "set_override", {"percent": message.percent if message.valid else full})
 
     @staticmethod
     def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
@@ -110,6 +113,14 @@ class PlcBridgeNode(UnitNode):
 def is_newer(sequence: int, last: int) -> bool:
     """False for repeated and older numbers. 0 is not looked at; 1 begins a new count; the count may run over."""
     return sequence == 0 or (sequence == 1 and last != 1) or 0 < (sequence - last) % 2**32 < 2**31
+
+
+def without_text(entry: Entry) -> Entry:
+    """A load travels without the text of its program: blocks go to every unit; the channel reads the file itself."""
+    if entry.command.command != "load":
+        return entry
+    arguments = {"program": entry.command.arguments["program"]}
+    return Entry(entry.at, Command(entry.command.target, "load", arguments))
 
 
 @click.command()

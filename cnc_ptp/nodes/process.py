@@ -25,6 +25,8 @@ SIGNALLED = 128
 """Exit status of a node that a signal has ended: this plus the signal's number, as shells have it."""
 DOMAIN_TAKEN = 26107
 NO_ROS = 26108
+HIGHEST_DOMAIN = 232
+"""The UDP port numbers of DDS end there."""
 SPIN_TIMEOUT = 0.1
 """Seconds after which a spinning process looks whether it was told to end."""
 PATIENCE = 3.0
@@ -53,6 +55,11 @@ def initialise() -> None:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         raise CncError(NO_ROS, f"ROS does not start: {error}; nothing was started") from None
+    domain = rclpy.get_default_context().get_domain_id()
+    if domain > HIGHEST_DOMAIN:
+        rclpy.try_shutdown()
+        reason = f"ROS_DOMAIN_ID = {domain} is not within 0 ... {HIGHEST_DOMAIN}"
+        raise CncError(NO_ROS, f"ROS does not start: {reason}; nothing was started")
 
 
 def claim_domain() -> socket.socket:

@@ -94,12 +94,13 @@ class Supervisor:
         job = self._job
         free_run = ["--free-run"] if job.free_run else []
         recorders = ["--recorders", "1"] if job.record else []
+        program = ["--program", job.program] if job.program else []
         if job.record:
             yield RECORDER, ["recorder", job.machine, job.record, *free_run]
         for name, kind in unit_kinds(self._machine).items():
             if kind != "plc":
-                yield name, [MODULES[kind], job.machine, name, *free_run, *recorders]
-        program = ["--program", job.program] if job.program else []
+                first = program if name == next(iter(self._machine.channels), None) else []
+                yield name, [MODULES[kind], job.machine, name, *first, *free_run, *recorders]
         scenario = ["--scenario", job.scenario] if job.scenario else []
         stay = ["--stay"] if job.duration is not None else []
         yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *free_run, *recorders]

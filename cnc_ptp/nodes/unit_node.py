@@ -45,6 +45,8 @@ MACHINE = "machine"
 BLOCK_SKIPPED = 26102
 RUN_OVER = 26115
 TOO_LATE = 26116
+LONGEST_COMMAND = 2.0
+"""Seconds that a command or block may take; after that the node counts as silent."""
 READY_PERIOD = 0.05
 DIAGNOSTICS_PERIOD = 1.0
 
@@ -152,7 +154,10 @@ class UnitNode(Node):
 
     def _on_block(self, source: str, message: Any) -> None:
         self._heard[source] = time.monotonic()
-        self._gate.add_block(source, convert.message_to_block(message))
+        block = convert.message_to_block(message)
+        if isinstance(block, PlcBlock):
+            self.complete_commands(block)
+        self._gate.add_block(source, block)
         self._compute_ready_blocks()
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
@@ -220,6 +225,13 @@ class UnitNode(Node):
         self.after_block(block)
         if self._gate.closed:
             self._publish_diagnostics()
+            self.run_ended()
+
+    def run_ended(self) -> None:
+        """For subclasses: the last block has been computed."""
+
+    def complete_commands(self, block: PlcBlock) -> None:
+        """For subclasses: what commands of the PLC need besides what travels in its block."""
 
     def after_block(self, block: Block) -> None:
         """For subclasses: what else is to be published of a block."""
@@ -295,13 +307,13 @@ class UnitNode(Node):
             self._busy = False
 
     def _heartbeat_while_busy(self) -> None:
-        """A long command (a big program is interpreted at once) must not look like a dead node."""
+        """A long command (a big program is interpreted) must not look like a dead node, but an endless one must."""
         period = self._watchdog / 4.0
-        was_busy = False
+        busy_for = 0.0
         while self.context.ok():
-            if self._busy and was_busy:
+            if self._busy and 0.0 < busy_for < LONGEST_COMMAND:
                 self._say(self._gate.next_cycle)
-            was_busy = self._busy
+            busy_for = busy_for + period if self._busy else 0.0
             time.sleep(period)
 
     def _publish_diagnostics(self) -> None:

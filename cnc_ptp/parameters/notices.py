@@ -6,13 +6,16 @@ from cnc_ptp.parameters.parameter_set import ParameterSet
 
 SIMULATED_DRIVES = (4, 16)
 VELOCITY_INDEPENDENT = 4
+LATE_TYPES = ("MVS_SLM", "MVS_SLP", "MNE_SNS")
 
 
 def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
     """One line a warning, with file and line."""
     for parameters in sets.values():
         yield from without_effect(parameters)
-        if parameters.kind != "channel":
+        if parameters.kind == "channel":
+            yield from late_synchronisation(parameters)
+        else:
             yield from simulated_drive(parameters)
             yield from following_error(parameters)
 
@@ -27,6 +30,15 @@ def without_effect(parameters: ParameterSet) -> Iterator[str]:
         declaration, indexes, _ = parameters.find(ros_name)
         if not declaration.effective:
             yield line(parameters, declaration.id, indexes, "accepted, but without effect in this version")
+
+
+def late_synchronisation(parameters: ParameterSet) -> Iterator[str]:
+    """Types that wait later than the path does here."""
+    for ros_name in parameters.given:
+        declaration, indexes, value = parameters.find(ros_name)
+        late = [name for name in LATE_TYPES if "_synch" in ros_name and name in str(value)]
+        if late:
+            yield line(parameters, declaration.id, indexes, f"{late[0]} waits before the motion, like MVS_SVS")
 
 
 def simulated_drive(parameters: ParameterSet) -> Iterator[str]:

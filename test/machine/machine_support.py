@@ -60,7 +60,7 @@ class UnitBench:
         while self.cycle < end:
             tick = CycleTick(self.cycle, min(self.count, end - self.cycle))
             self.blocks.append(self.runner.replay(tick, inputs or {}))
-            self.events += self.unit.take_events()
+            self.events += [event for event in self.unit.take_events() if event.severity]
 
     def column(self, name: str) -> list[Any]:
         return [value for block in self.blocks for value in getattr(block, name)]
@@ -153,7 +153,7 @@ class MachineBench:
     def _take(self, outputs: Any) -> None:
         for name, output in outputs.items():
             self.blocks[name].append(output.block)
-            self.events += output.events
+            self.events += [event for event in output.events if event.severity]
             self.records += output.records
 
     def column(self, unit: str, name: str) -> list[Any]:

@@ -387,7 +387,7 @@ def test_override_outside_0_to_100_is_refused(percent: float) -> None:
     start(bench, 1000.0)
     bench.run(100)
     assert bench.refused("set_override", percent=percent) == (
-        f"P-ERR-23006 axis x: set_override refused: percent = {percent} is not within 0 ... 100; nothing was changed"
+        f"P-ERR-23006 axis x: set_override refused: percent = {percent} is not within 0 ... 100 (P-AXIS-00109, at most 100); nothing was changed"
     )
     bench.run(10)
     assert set(bench.column("override_percent")) == {100.0}

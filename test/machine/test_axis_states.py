@@ -587,3 +587,12 @@ def test_state_names_are_those_of_plcopen(state: S) -> None:
 
 def test_units_show_their_names() -> None:
     assert repr(axis_bench().unit) == "<axis x>"
+
+
+@pytest.mark.parametrize("name", ["acceleration", "deceleration"])
+def test_an_acceleration_above_that_of_the_axis_is_refused(name: str) -> None:
+    bench = axis_bench(max_acceleration=50000.0)
+    assert bench.refused("move_absolute", target=5.0, **{name: 50000.5}) == (
+        f"P-ERR-23013 axis x: move_absolute refused: {name} 50000.5 mm/s² is above the maximum 50000.0 mm/s² (P-AXIS-00008); "
+        "nothing was changed"
+    )

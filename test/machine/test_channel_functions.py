@@ -117,7 +117,7 @@ def test_the_type_of_m3_rules_over_that_of_s_in_one_block() -> None:
     assert {line[cycle] for cycle in waiting} == {4} and {x[cycle] for cycle in waiting} == {5.0}
     assert [c[1:] for c in commands(bench)[:2]] == [
         ("start", '{"direction": "cw", "speed_rpm": 1200.0}'),
-        ("start", '{"direction": "cw", "speed_rpm": 3000.0}'),
+        ("set_speed", '{"speed_rpm": 3000.0}'),
     ]
 
 

@@ -305,17 +305,30 @@ def test_mdi_blocks_carry_their_modal_state_on() -> None:
     assert bench.position("x") == 20.0
 
 
-def test_mdi_after_a_program_continues_with_its_modal_state() -> None:
+def test_mdi_after_a_program_begins_with_the_initial_state() -> None:
     bench = MachineBench("%P\nG91 G01 X10 F3000\nM30", end_when_idle=False).run(1.0)
-    bench.give("channel", "mdi", text="X10")
+    bench.give("channel", "mdi", text="X15")
     bench.run(1.0)
-    assert bench.position("x") == 20.0
-    bench.give("channel", "mdi", text="G90 G161")
+    assert bench.position("x") == 15.0
+    bench.give("channel", "mdi", text="G91")
     bench.run(0.1)
     assert bench.states("channel")[-1] == C.READY
-    bench.give("channel", "start")  # a program begins with the initial state again
+    bench.give("channel", "start")  # and so does a program after MDI
+    bench.run(1.0)
+    assert bench.position("x") == 25.0
+    bench.give("channel", "mdi", text="X30")
     bench.run(1.0)
     assert bench.position("x") == 30.0
+
+
+def test_mdi_knows_nothing_of_blocks_that_were_not_executed() -> None:
+    """The program is aborted in its first block: the G91 and F of the second one never were."""
+    bench = MachineBench("%P\nG90 G01 X50 F600\nG91 G01 X1 F60000\nM30", end_when_idle=False).run(0.5)
+    bench.give("channel", "reset")
+    bench.run(0.5)
+    bench.give("channel", "mdi", text="G1 X10 F3000")
+    bench.run(1.0)
+    assert bench.position("x") == 10.0
 
 
 @pytest.mark.parametrize("name", ["C", "A"])

@@ -162,3 +162,11 @@ def test_arguments_that_are_no_json_are_recorded_all_the_same() -> None:
     )
     bench.run(0.01)
     assert bench.records[-1].arguments_json == '{"target": "{1, 2}"}'
+
+
+def test_a_prepared_program_changes_nothing_but_the_time_of_its_start() -> None:
+    """Interpreting before the run (what the channel's node does with --program) gives the same bits."""
+    plain, prepared = MachineBench(BRACKET), MachineBench(BRACKET)
+    channel = prepared.units["channel"]
+    channel.prepare("test.nc", BRACKET)
+    assert plain.run(3.0).column("x", "set_position") == prepared.run(3.0).column("x", "set_position")

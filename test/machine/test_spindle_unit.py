@@ -261,9 +261,24 @@ def test_refused_starts_change_nothing(arguments: dict[str, Any], text: str) -> 
     assert bench.columns() == undisturbed.columns()
 
 
+def test_a_speed_alone_keeps_the_direction_and_starts_nothing() -> None:
+    """An S word after the PLC has stopped the spindle must not start it again."""
+    bench = spindle_bench()
+    assert bench.give("set_speed", speed_rpm=500.0).message == "spindle s: set_speed without effect in Standstill"
+    bench.give("start", direction="ccw", speed_rpm=1000.0)
+    bench.run(1000)
+    bench.give("set_speed", speed_rpm=400.0)
+    bench.run(1000)
+    assert bench.column("set_speed_rpm")[-1] == -400.0
+    assert bench.refused("set_speed", speed_rpm=-1.0) == (
+        "P-ERR-24001 spindle s: set_speed refused: speed -1.0 rpm must not be negative; the direction is cw or ccw; "
+        "nothing was changed"
+    )
+
+
 def test_unknown_command() -> None:
     assert spindle_bench().refused("orient") == (
-        "P-ERR-22002 spindle s: unknown command 'orient'; nothing was changed. Known: reset, set_override, start, stop"
+        "P-ERR-22002 spindle s: unknown command 'orient'; nothing was changed. Known: reset, set_override, set_speed, start, stop"
     )
 
 

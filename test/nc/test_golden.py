@@ -3,7 +3,7 @@
 import pytest
 from nc_support import HERE, machine
 
-from cnc_ptp.nc import faults
+from cnc_ptp.nc import faults, interpreter
 from cnc_ptp.nc.canonical import format_block
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
@@ -57,7 +57,16 @@ def test_check_finds_the_same_error(path):
 def test_every_fault_has_a_bad_program():
     known = {fault.error_id for fault in vars(faults).values() if isinstance(fault, Fault)}
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
-    assert known == shown
+    assert known == shown | {faults.TOO_MANY_BLOCKS.error_id}
+
+
+def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
+    monkeypatch.setattr(interpreter, "BLOCK_LIMIT", 50)
+    text = "%L TEN\n" + "G91 G00 X1\n" * 10 + "M29\n%P\n" + "LL TEN\n" * 5 + "M30\n"
+    with pytest.raises(ProgramError) as caught:
+        stream(text, "long.nc")
+    reason = "the program executes more than 50 blocks, calls counted each time"
+    assert str(caught.value) == f"P-ERR-21043 long.nc line 3 column 1 'G91 G00 X1': {reason}"
 
 
 def test_fault_numbers_are_unique():

@@ -46,7 +46,7 @@ def test_channel_of_the_mill() -> None:
     channel = read_machine(CONFIG / "mill.yaml").channels["channel"]
     wait, tell = Synchronisation.MVS_SVS, Synchronisation.MOS
     assert channel.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("Z", "z"))
-    assert channel.spindles == (ChannelSpindle("S", "s", wait, wait, wait, wait, tell),)
+    assert channel.spindles == (ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell),)
     assert (channel.main_spindle, channel.m_functions[8]) == ("S", wait)
 
 

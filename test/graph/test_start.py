@@ -1,0 +1,122 @@
+"""Starting and ending: by hand without supervisor, composed, with a full disk, on a domain that does not exist."""
+
+import signal
+import subprocess
+import sys
+
+import pytest
+import yaml
+from graph_support import PTP, TIMEOUT, Running, run, verified
+
+from cnc_ptp.nodes.process import PROFILE, RANGE, set_environment
+from cnc_ptp.recording.reader import read_recording
+
+SCENARIO = "- {at: 0.0, to: x, do: move_absolute, target: 5000.0, velocity: 100.0}\n"
+
+
+@pytest.fixture
+def one_axis(tmp_path):
+    """A machine with a single axis: quick to start."""
+    ptp = yaml.load(PTP.read_text(), yaml.BaseLoader)
+    for axis in ("y", "z", "c"):
+        del ptp[f"/{axis}"]
+    ptp["/machine"]["ros__parameters"]["axes"] = ["x"]
+    path = tmp_path / "one.yaml"
+    path.write_text(yaml.dump(ptp).replace("'", ""))
+    (tmp_path / "move.yaml").write_text(SCENARIO)
+    return path
+
+
+def node(module, *arguments):
+    return subprocess.Popen(
+        [sys.executable, "-m", f"cnc_ptp.nodes.{module}", *map(str, arguments)], stderr=subprocess.PIPE, text=True
+    )
+
+
+def test_nodes_by_hand_without_a_supervisor(one_axis, tmp_path):
+    recording = tmp_path / "hand.mcap"
+    nodes = [
+        node("recorder", one_axis, recording),
+        node("axis", one_axis, "x", "--recorders", "1"),
+        node("plc_bridge", one_axis, "--stay", "--recorders", "1", "--scenario", tmp_path / "move.yaml"),
+    ]
+    clock = node("clock", one_axis, "--duration", "1", "--wait-for", "recorder")
+    try:
+        assert clock.wait(TIMEOUT) == 0
+        for process in reversed(nodes):
+            process.send_signal(signal.SIGINT)
+            assert process.wait(TIMEOUT) == 128 + signal.SIGINT
+        assert [process.stderr.read() for process in (*nodes, clock)] == ["", "", "", ""]
+    finally:
+        for process in (*nodes, clock):
+            process.kill()
+            process.wait()
+            process.stderr.close()
+    recorded = verified(recording)
+    assert recorded.complete and recorded.last_cycle == 999 and recorded.states["/x/state"]["set_velocity"][-1] == 100.0
+
+
+def test_interrupted_composed_run(one_axis, tmp_path):
+    recording = tmp_path / "composed.mcap"
+    graph = Running(one_axis, "--scenario", tmp_path / "move.yaml", "--composed", "--record", recording)
+    try:
+        graph.wait_until_recorded(recording, 20_000)
+        graph.process.send_signal(signal.SIGTERM)
+        output = graph.finish(expect=1)
+    finally:
+        graph.end()
+    assert "P-ERR-26106 the run was interrupted (SIGTERM); everything was stopped on its ramps" in output
+    recorded = verified(recording)
+    assert recorded.complete and recorded.states["/x/state"]["set_velocity"][-1] == 0.0
+
+
+def test_full_disk(one_axis):
+    """/dev/full can be opened, and takes nothing."""
+    done = run("run", one_axis, "--record", "/dev/full", expect=1)
+    assert "P-ERR-26007 recording /dev/full: cannot be written at offset " in done.stderr
+    assert "No space left on device; recording ends here, the chunks before it stay readable" in done.stderr
+    assert "failed: P-ERR-26104 node 'recorder' " in done.stdout
+    assert "Exception in" not in done.stderr
+
+
+def test_full_disk_in_a_composed_run(one_axis):
+    done = run("run", one_axis, "--composed", "--record", "/dev/full", expect=1)
+    assert "failed: P-ERR-26007 recording /dev/full: cannot be written" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("domain", "reason"),
+    [("1000", "ROS_DOMAIN_ID = 1000 is not within 0 ... 232"), ("two", "ROS_DOMAIN_ID is not an integral number")],
+)
+def test_no_such_domain(one_axis, domain, reason, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    error = run("run", one_axis, "--composed", expect=2).stderr
+    assert error.startswith("P-ERR-26108 ROS does not start: ") and reason in error
+    assert error.endswith("; nothing was started\n")
+
+
+def test_free_run_that_is_recorded_in_full(one_axis, tmp_path):
+    """As fast as all can, the recorder included: 20 s in a few seconds, and not a block is missing."""
+    recording = tmp_path / "free.mcap"
+    run("run", one_axis, "--scenario", tmp_path / "move.yaml", "--duration", "20", "--free-run", "--record", recording)
+    recorded = verified(recording)
+    assert recorded.last_cycle == 19_999 and read_recording(recording).topics["/plc/block"].count == 2000
+
+
+@pytest.mark.parametrize(
+    ("given", "rmw", "result"),
+    [
+        ({}, "rmw_fastrtps_cpp", {RANGE: "SYSTEM_DEFAULT", PROFILE: "localhost.xml"}),
+        ({RANGE: "LOCALHOST"}, "rmw_fastrtps_cpp", {RANGE: "SYSTEM_DEFAULT", PROFILE: "localhost.xml"}),
+        ({RANGE: "SUBNET"}, "rmw_fastrtps_cpp", {RANGE: "SUBNET"}),
+        ({PROFILE: "own.xml"}, "rmw_fastrtps_cpp", {RANGE: "LOCALHOST", PROFILE: "own.xml"}),
+        ({"ROS_LOCALHOST_ONLY": "1"}, "rmw_fastrtps_cpp", {RANGE: "LOCALHOST", "ROS_LOCALHOST_ONLY": "1"}),
+        ({}, "rmw_cyclonedds_cpp", {RANGE: "LOCALHOST"}),
+    ],
+)
+def test_messages_stay_on_the_machine_unless_the_user_decides(given, rmw, result):
+    environment = dict(given)
+    set_environment(environment, rmw)
+    if PROFILE in environment:
+        environment[PROFILE] = environment[PROFILE].rpartition("/")[2]
+    assert environment == result
