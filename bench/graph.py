@@ -65,6 +65,7 @@ def resources(run: GraphRun) -> Iterator[Figure]:
     yield Figure(f"{len(nodes)} nodes together", sum(cores[name] for name in nodes), "cores", goal=1.0, at_most=True)
     for name in [*nodes, SUPERVISOR]:
         yield Figure(f"  {name}", cores[name], "cores")
+    yield Figure("others on this computer meanwhile", run.others / run.wall, "cores")
     if not run.pss_mb:
         return
     yield Figure(f"memory of {len(nodes)} nodes (PSS)", sum(run.pss_mb[name] for name in nodes), "MB")

@@ -27,6 +27,8 @@ class GraphRun:
     cycles: int = 0
     cpu: dict[str, float] = field(default_factory=dict)
     """Processor seconds by node."""
+    others: float = 0.0
+    """Processor seconds that everything else on this computer took (and what the host took away)."""
     pss_mb: dict[str, float] = field(default_factory=dict)
     """Memory by node, shared pages split over those who use them."""
     blocks: int = 0
@@ -82,6 +84,8 @@ class Sample:
     time: float
     cycle: int
     cpu: dict[str, float]
+    busy: float
+    """Processor seconds of the whole computer, besides idling."""
 
 
 class Watch:
@@ -110,7 +114,7 @@ class Watch:
                 self.run.pss_mb = {name: each.memory_full_info().pss / 1e6 for name, each in self._processes.items()}
         except (psutil.NoSuchProcess, psutil.AccessDenied):  # the run is ending
             return
-        self._samples.append(Sample(now, cycle, cpu))
+        self._samples.append(Sample(now, cycle, cpu, computer_seconds()))
 
     def finish(self) -> GraphRun:
         """The differences between the first and the last sample."""
@@ -118,6 +122,7 @@ class Watch:
             first, last = self._samples[0], self._samples[-1]
             self.run.wall, self.run.cycles = last.time - first.time, last.cycle - first.cycle
             self.run.cpu = {name: last.cpu[name] - first.cpu[name] for name in last.cpu}
+            self.run.others = max(0.0, last.busy - first.busy - sum(self.run.cpu.values()))
         return self.run
 
     def _find_processes(self) -> dict[str, psutil.Process]:
@@ -129,6 +134,12 @@ class Watch:
 def process_seconds(process: psutil.Process) -> float:
     times = process.cpu_times()
     return float(times.user + times.system)
+
+
+def computer_seconds() -> float:
+    """Processor seconds of everything, with those that the host of a virtual machine took away."""
+    times = psutil.cpu_times()
+    return float(sum(times) - times.idle - times.iowait - times.guest - times.guest_nice)
 
 
 def node_name(command_line: list[str]) -> str:
