@@ -55,6 +55,17 @@ def small_machine(folder):
     return path
 
 
+def one_axis_machine(folder):
+    """The first axis of ptp.yaml alone: quick to start."""
+    ptp = yaml.load(PTP.read_text(), yaml.BaseLoader)
+    for axis in ("y", "z", "c"):
+        del ptp[f"/{axis}"]
+    ptp["/machine"]["ros__parameters"]["axes"] = ["x"]
+    path = folder / "one.yaml"
+    path.write_text(yaml.dump(ptp).replace("'", ""))
+    return path
+
+
 def verified(path, *, whole=True):
     """The recording, after the kernel was re-run from it and every state compared.
 

@@ -5,7 +5,17 @@ import time
 
 import numpy as np
 import pytest
-from graph_support import LONG_PROGRAM, MILL, Running, alive, kill, small_machine, verified, wait_until_gone
+from graph_support import (
+    LONG_PROGRAM,
+    MILL,
+    Running,
+    alive,
+    kill,
+    one_axis_machine,
+    small_machine,
+    verified,
+    wait_until_gone,
+)
 
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.recording.reader import read_recording
@@ -80,8 +90,8 @@ def test_killed_supervisor_leaves_no_orphan(running):
 
 
 def test_interrupt_while_the_nodes_start(tmp_path):
-    graph = Running(MILL, "--record", tmp_path / "run.mcap")
-    nodes = graph.wait_for_nodes(8)
+    graph = Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap")
+    nodes = graph.wait_for_nodes(4)
     time.sleep(0.2)
     graph.process.send_signal(signal.SIGTERM)
     output = graph.finish(expect=1)
@@ -91,11 +101,11 @@ def test_interrupt_while_the_nodes_start(tmp_path):
 
 
 def test_killed_node_while_the_nodes_start(tmp_path):
-    graph = Running(MILL, "--record", tmp_path / "run.mcap")
-    nodes = dict(graph.wait_for_nodes(8))
-    kill(nodes["y"])
+    graph = Running(one_axis_machine(tmp_path), "--record", tmp_path / "run.mcap")
+    nodes = dict(graph.wait_for_nodes(4))
+    kill(nodes["x"])
     output = graph.finish(expect=1)
-    text = f"P-ERR-26104 node 'y' (process {nodes['y']}) was ended by SIGKILL during the run; nothing has moved yet"
+    text = f"P-ERR-26104 node 'x' (process {nodes['x']}) was ended by SIGKILL during the run; nothing has moved yet"
     assert text in output
     assert wait_until_gone(nodes.values()) == []
     assert not read_recording_exists(tmp_path / "run.mcap")

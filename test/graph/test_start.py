@@ -5,8 +5,7 @@ import subprocess
 import sys
 
 import pytest
-import yaml
-from graph_support import PTP, TIMEOUT, Running, run, verified
+from graph_support import TIMEOUT, Running, one_axis_machine, run, verified
 
 from cnc_ptp.nodes.process import PROFILE, RANGE, set_environment
 from cnc_ptp.recording.reader import read_recording
@@ -17,14 +16,8 @@ SCENARIO = "- {at: 0.0, to: x, do: move_absolute, target: 5000.0, velocity: 100.
 @pytest.fixture
 def one_axis(tmp_path):
     """A machine with a single axis: quick to start."""
-    ptp = yaml.load(PTP.read_text(), yaml.BaseLoader)
-    for axis in ("y", "z", "c"):
-        del ptp[f"/{axis}"]
-    ptp["/machine"]["ros__parameters"]["axes"] = ["x"]
-    path = tmp_path / "one.yaml"
-    path.write_text(yaml.dump(ptp).replace("'", ""))
     (tmp_path / "move.yaml").write_text(SCENARIO)
-    return path
+    return one_axis_machine(tmp_path)
 
 
 def node(module, *arguments):
