@@ -32,7 +32,8 @@ demo: setup
 	$(BIN)/cnc_ptp report runs/demo.mcap -o runs/demo.html
 
 test: setup
-	$(BIN)/pytest
+	$(BIN)/pytest -n 2 --dist worksteal --ignore test/graph
+	$(BIN)/pytest test/graph
 
 lint: setup
 	$(BIN)/ruff check .

@@ -246,7 +246,7 @@ def test_a_job_is_the_program_at_0_and_the_scenario(tmp_path: Path) -> None:
         (2.0, "channel", "load"),
     ]
     assert entries[0].command.arguments == {"program": str(tmp_path / "p.nc"), "text": "%P\nG01 X5 F3000\nM30"}
-    assert entries[3].command.arguments == {"program": "q.nc", "text": "%Q\nM30"}
+    assert entries[3].command.arguments == {"program": str(tmp_path / "q.nc"), "text": "%Q\nM30"}
     assert read_job(MILL, program=None, scenario=None) == []
 
 
