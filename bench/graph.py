@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -47,6 +48,7 @@ def real_time(run: GraphRun) -> Iterator[Figure]:
     machine = read_machine(MACHINE)
     block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
     yield Figure("failures and errors", len(run.failures), "", goal=0.0, at_most=True)
+    yield from failures(run)
     yield Figure("blocks computed by all units", run.blocks, "")
     yield Figure("blocks lost", run.lost_blocks, "", goal=0.0, at_most=True)
     yield Figure("ticks and blocks that came twice", run.duplicates, "", goal=0.0, at_most=True)
@@ -73,8 +75,15 @@ def resources(run: GraphRun) -> Iterator[Figure]:
         yield Figure(f"  {name}", run.pss_mb[name], "MB")
 
 
+def failures(run: GraphRun) -> Iterator[Figure]:
+    """What went wrong first, and how often."""
+    for text, count in Counter(run.failures).most_common(3):
+        yield Figure(text, count, "times", goal=0.0, at_most=True)
+
+
 def rate(name: str, run: GraphRun) -> Iterator[Figure]:
-    """Cycles a second and the cores that this takes."""
+    """Cycles a second and the cores that this takes; what went wrong."""
+    yield from failures(run)
     if run.wall:
         yield Figure(name, run.cycles / run.wall, "cycles/s")
         yield Figure(f"{name}: all processes", sum(run.cpu.values()) / run.wall, "cores")

@@ -60,6 +60,12 @@ def test_figures_of_a_watched_run() -> None:
     assert [figure.value for figure in graph.rate("free run", run)] == [1000.0, pytest.approx(0.55)]
 
 
+def test_failures_are_told() -> None:
+    run = GraphRun(failures=["P-ERR-26104 node 'x' ended", "P-ERR-26104 node 'x' ended"])
+    told = [(figure.name, figure.value, figure.met) for figure in graph.rate("free run", run)]
+    assert told == [("P-ERR-26104 node 'x' ended", 2, False)]
+
+
 def test_a_run_too_short_to_be_watched_has_no_cores() -> None:
     run = Watch(memory_at=1e9, own=SUPERVISOR).finish()
     assert [figure.name for figure in graph.resources(run)] == ["start-up, from the call to the first cycle"]
