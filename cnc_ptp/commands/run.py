@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 
 from cnc_ptp.commands.console import RUN_FAILED, print_faults
+from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.nodes.composed import run_composed
@@ -24,6 +25,7 @@ def run(
     composed: bool,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died."""
+    keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     read_job(parameters, program=program, scenario=scenario)
     if record is not None:

@@ -10,9 +10,11 @@ from dataclasses import dataclass, field
 from rich.console import Console
 
 from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults
+from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, CycleTick, PlcBlock, Severity
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, Command, CycleTick, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import PLC, build_units
@@ -27,6 +29,7 @@ class Result:
     cycles: int = 0
     program_cycles: int = 0
     failed: bool = False
+    interrupted: str = ""
     following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     errors: list[str] = field(default_factory=list)
     refusals: list[str] = field(default_factory=list)
@@ -54,6 +57,7 @@ def simulate(
     machine: str, program: str | None, scenario: str | None, duration: float | None, record: str | None
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error."""
+    keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     job = read_job(parameters, program=program, scenario=scenario)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
@@ -65,17 +69,29 @@ def simulate(
         cycle_time_ns = parameters.cycle_time_us * 1000
         recording = Recording(record, read_file("machine file", machine), 0, cycle_time_ns)
     try:
-        with RunProgress() as progress, recording or nullcontext():
+        with RunProgress() as progress, recording or nullcontext(), EndRequest() as end:
             for outputs in offline.run(cycles=cycles):
                 result.add(outputs)
                 progress.show_block(outputs)
                 if recording is not None:
                     write(recording, outputs)
+                if end.given and interrupted(offline, outputs, result, end):
+                    break
     except CncError as error:  # of the recording: it cannot be written any more
         print_error(error)
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started)
-    return RUN_FAILED if result.failed else 0
+    return RUN_FAILED if result.failed or result.interrupted else 0
+
+
+def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: EndRequest) -> bool:
+    """Has everything stopped on its ramps after the first signal; True when all stands, or at the second signal."""
+    if not result.interrupted:
+        result.interrupted = end.text("everything stops on its ramps")
+        offline.runner(PLC).command(Command(PLC, "stop_all", {}))
+        return False
+    plc = outputs[PLC].block
+    return end.repeated or (isinstance(plc, PlcBlock) and plc.run_done)
 
 
 def write(recording: Recording, outputs: Outputs) -> None:
@@ -101,4 +117,6 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
     console.print(f"program time {result.program_cycles * cycle_time:.3f} s")
     for axis, error in result.following_errors.items():
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
+    if result.interrupted:
+        console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
     print_faults(console, result.errors, result.refusals)

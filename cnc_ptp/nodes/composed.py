@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import signal
 import time
 from collections.abc import Callable
 
 from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.wiring import PLC, consumers_of, unit_kinds
 from cnc_ptp.nodes import process
@@ -19,7 +19,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import INTERRUPTED, STOP_TIMEOUT, Job, observers_of
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
@@ -54,20 +54,20 @@ def run_composed(
     def done() -> bool:
         return clock.done and (recorder is None or recorder.settled)
 
-    end = process.EndRequest()
+    end = EndRequest()
     failures = []
     try:
         process.spin(nodes, done=lambda: done() or stopped(end, nodes), wait=clock.wait_time, after=after)
     except CncError as error:
         failures.append(f"{error}; the run ends")
     claim.close()
+    end.restore()
     if end.given:
-        name = signal.Signals(end.number).name
-        failures.append(f"P-ERR-{INTERRUPTED} the run was interrupted ({name}); everything was stopped on its ramps")
+        failures.append(end.text("everything was stopped on its ramps"))
     return monitor, failures
 
 
-def stopped(end: process.EndRequest, nodes: list[Node]) -> bool:
+def stopped(end: EndRequest, nodes: list[Node]) -> bool:
     """After an interrupt: everything is stopped on its ramps first, at most for STOP_TIMEOUT."""
     if not end.given:
         return False

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import signal
 import socket
 import sys
-import time
 from collections.abc import Callable, MutableMapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.interrupt import EndRequest
 
 FAILED = 1
 WRONG_INPUT = 2
@@ -79,33 +78,6 @@ def claim_domain() -> socket.socket:
             "Wait for its end, or set ROS_DOMAIN_ID to another number",
         ) from None
     return claim
-
-
-class EndRequest:
-    """SIGINT and SIGTERM as a flag: a callback in work is finished, nothing is torn apart."""
-
-    def __init__(self) -> None:
-        self.number = 0
-        """The last signal that came, 0 = none."""
-        self.deadline = 0.0
-        """Monotonic time by which the process ends; 0 = not decided yet."""
-        self._count = 0
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._handle)
-
-    def _handle(self, number: int, frame: object) -> None:
-        self.number = number
-        self._count += 1
-
-    @property
-    def given(self) -> bool:
-        return self._count > 0
-
-    def over(self, patience: float) -> bool:
-        """True at the second signal, or `patience` seconds after the first was seen."""
-        if self.deadline == 0.0:
-            self.deadline = time.monotonic() + patience
-        return self._count > 1 or time.monotonic() > self.deadline
 
 
 def spin(

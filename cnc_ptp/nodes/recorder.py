@@ -186,9 +186,9 @@ class RecorderNode(Node):
 
 
 def require_writable(path: str) -> None:
-    """Raises CncError 26113 when no file can be made at `path`."""
+    """Raises CncError 26113 when no file can be made at `path`; what is there stays until the first tick."""
     try:
-        with Path(path).open("wb"):
+        with Path(path).open("ab"):
             pass
     except OSError as error:
         raise CncError(

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from cnc_ptp import msg, srv
+from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
@@ -20,7 +21,6 @@ from cnc_ptp.parameters import MachineParameters
 
 NODE_DIED = 26104
 NOT_READY = 26105
-INTERRUPTED = 26106
 POLL = 0.05
 START_TIMEOUT = 60.0
 STOP_TIMEOUT = 15.0

@@ -1,0 +1,135 @@
+"""How a run ends that is not left alone: interrupted, disk full; and what a terminal sees of it."""
+
+import os
+import pty
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from cnc_ptp import cli
+from cnc_ptp.commands.replay import replay_blocks
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.verify import verify
+
+ROOT = Path(__file__).parents[2]
+MILL = ROOT / "config" / "mill.yaml"
+BRACKET = ROOT / "examples" / "bracket.nc"
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, arguments)]
+
+
+def wait_for_size(path, size):
+    deadline = time.monotonic() + 60.0
+    while not (path.exists() and path.stat().st_size >= size):
+        assert time.monotonic() < deadline, "nothing was recorded"
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_simulation_stops_on_its_ramps(number, tmp_path):
+    recording = tmp_path / "run.mcap"
+    job = command("simulate", MILL, "--program", BRACKET, "--duration", 1e6, "--record", recording)
+    with subprocess.Popen(job, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as running:
+        wait_for_size(recording, 200_000)
+        running.send_signal(number)
+        output, _ = running.communicate(timeout=60)
+    assert running.returncode == 1
+    assert f"failed: P-ERR-26106 the run was interrupted ({number.name}); everything stops on its ramps" in output
+    assert "Traceback" not in output
+    recorded = read_recording(recording)
+    assert recorded.complete and verify(recorded, replay_blocks).equal
+    for axis in ("x", "y", "z"):
+        assert recorded.states[f"/{axis}/state"]["set_velocity"][-1] == 0.0
+    assert recorded.states["/s/state"]["set_speed_rpm"][-1] == 0.0
+
+
+def test_end_request():
+    before = signal.getsignal(signal.SIGTERM)
+    with EndRequest() as end:
+        assert not end.given and not end.repeated
+        os.kill(os.getpid(), signal.SIGTERM)
+        assert end.given and not end.repeated and not end.over(60.0)
+        assert end.text("all stops") == "P-ERR-26106 the run was interrupted (SIGTERM); all stops"
+        os.kill(os.getpid(), signal.SIGINT)
+        assert end.repeated and end.over(60.0)
+    assert signal.getsignal(signal.SIGTERM) is before
+    with EndRequest() as end:
+        assert end.over(-1.0), "patience is at its end"
+
+
+def test_recording_that_grows_too_large_ends_the_run(tmp_path):
+    recording = tmp_path / "run.mcap"
+    done = subprocess.run(
+        command("simulate", MILL, "--program", BRACKET, "--record", recording),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000)),
+    )
+    assert done.returncode == 1
+    assert f"P-ERR-26007 recording {recording}: cannot be written at offset " in done.stderr
+    assert "File too large; recording ends here, the chunks before it stay readable" in done.stderr
+    assert "program time" in done.stdout and "Traceback" not in done.stderr
+    recorded = read_recording(recording)
+    assert not recorded.complete and recorded.last_cycle > 500 and verify(recorded, replay_blocks).equal
+
+
+@pytest.mark.parametrize("name", ["simulate", "run"])
+def test_a_recording_does_not_overwrite_what_the_run_is_made_of(name, tmp_path):
+    program, scenario, machine = tmp_path / "p.nc", tmp_path / "s.yaml", tmp_path / "m.yaml"
+    program.write_text("%p\nM30\n")
+    scenario.write_text("[]")
+    machine.write_text(MILL.read_text())
+    job = [name, machine, "--program", program, "--scenario", scenario]
+    for what, path in (("machine file", machine), ("NC program", program), ("scenario", scenario)):
+        before = path.read_bytes()
+        result = call(*job, "--record", path)
+        assert result.exit_code == 2
+        assert result.stderr == (
+            f"P-ERR-26117 recording {path} would overwrite the {what} {path}; nothing was started\n"
+        )
+        assert path.read_bytes() == before
+
+
+def test_a_run_without_cycles(tmp_path):
+    result = call("simulate", MILL, "--duration", "0", "--record", tmp_path / "a.mcap")
+    assert result.exit_code == 0 and "machine time 0.000 s (0 cycles)" in result.stdout
+    result = call("replay", tmp_path / "a.mcap")
+    assert result.exit_code == 1
+    assert result.stderr == f"{tmp_path}/a.mcap: holds no per-cycle states, nothing could be compared\n"
+
+
+def test_a_terminal_sees_block_position_and_feed():
+    terminal, other_end = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "160"}
+    job = command("simulate", MILL, "--program", BRACKET)
+    running = subprocess.Popen(job, stdout=subprocess.DEVNULL, stderr=other_end, env=environment)
+    os.close(other_end)
+    shown = b""
+    while True:
+        try:
+            part = os.read(terminal, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not part:
+            break
+        shown += part
+    os.close(terminal)
+    assert running.wait(60) == 0
+    text = shown.decode()
+    assert "block " in text and "/" in text and " line " in text
+    assert " X" in text and " Y" in text and " Z" in text and " F" in text
