@@ -104,7 +104,12 @@ def test_left_out_dynamics_come_from_the_parameters(client):
             "velocity 501.0 mm/s is above the maximum 500.0 mm/s (P-AXIS-00212)",
         ),
         ("move_absolute", {"target": 1.0, "jerk": -1.0}, 23003, "jerk = -1.0 must be greater than 0"),
-        ("set_override", {"percent": 100.5}, 23006, "percent = 100.5 is not within 0 ... 100 (P-AXIS-00109, at most 100)"),
+        (
+            "set_override",
+            {"percent": 100.5},
+            23006,
+            "percent = 100.5 is not within 0 ... 100 (P-AXIS-00109, at most 100)",
+        ),
     ],
 )
 def test_refusals_say_why(client, command, fields, error_id, message):
@@ -153,7 +158,10 @@ def test_sequence_numbers(client):
 
 
 def test_bad_values_are_refused_once(client):
-    for value, text in ((math.nan, "percent = nan is not finite"), (250.0, "percent = 250.0 is not within 0 ... 100 (P-AXIS-00109, at most 100)")):
+    for value, text in (
+        (math.nan, "percent = nan is not finite"),
+        (250.0, "percent = 250.0 is not within 0 ... 100 (P-AXIS-00109, at most 100)"),
+    ):
         before = len(client.records)
         client.override("x", value)
         client.override("x", value)
