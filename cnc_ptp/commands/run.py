@@ -8,6 +8,7 @@ from cnc_ptp.commands.console import RUN_FAILED, print_faults
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
+from cnc_ptp.nodes import process
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
@@ -38,7 +39,8 @@ def run(
             progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
 
         if composed:
-            monitor, failures = run_composed(parameters, job, show=show)
+            with process.priority(not free_run):
+                monitor, failures = run_composed(parameters, job, show=show)
         else:
             supervisor = Supervisor(parameters, job, show=show)
             monitor, failures = supervisor.run(), supervisor.failures

@@ -176,11 +176,14 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
         parameters = read_machine(machine)
         return ClockNode(parameters, wait_for=wait_for, free_run=free_run, cycles=cycles_of(parameters, duration))
 
-    sys.exit(
-        process.run_node(
-            make, done=lambda node: node.done, wait=lambda node: node.wait_time(), after=lambda node: node.advance()
-        )
+    status = process.run_node(
+        make,
+        done=lambda node: node.done,
+        wait=lambda node: node.wait_time(),
+        after=lambda node: node.advance(),
+        real_time=not free_run,
     )
+    sys.exit(status)
 
 
 def main() -> None:

@@ -145,7 +145,7 @@ def command(
             free_run=free_run,
         )
 
-    sys.exit(process.run_node(make))
+    sys.exit(process.run_node(make, real_time=not free_run))
 
 
 def main() -> None:

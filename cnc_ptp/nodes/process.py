@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import socket
 import sys
-from collections.abc import Callable, MutableMapping, Sequence
+from collections.abc import Callable, Iterator, MutableMapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,8 @@ DOMAIN_TAKEN = 26107
 NO_ROS = 26108
 HIGHEST_DOMAIN = 232
 """The UDP port numbers of DDS end there."""
+PRIORITY = 5
+"""Of 1 ... 99: above all ordinary programs, below what the kernel runs at 50."""
 SPIN_TIMEOUT = 0.1
 """Seconds after which a spinning process looks whether it was told to end."""
 PATIENCE = 3.0
@@ -45,6 +48,25 @@ def set_environment(environment: MutableMapping[str, str], rmw: str) -> None:
         return
     environment[RANGE] = "SYSTEM_DEFAULT"  # LOCALHOST itself would add shared memory, whatever a profile says
     environment[PROFILE] = str(Path(__file__).with_name("localhost.xml"))
+
+
+@contextmanager
+def priority(real_time: bool) -> Iterator[None]:
+    """Real-time scheduling for what this thread does and for the threads that it starts, where the system allows it.
+
+    Root may, and users to whom limits.conf gives rtprio; nodes then keep their time beside other busy programs.
+    """
+    if not real_time:
+        yield
+        return
+    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+    with suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
+    try:
+        yield
+    finally:
+        with suppress(PermissionError):
+            os.sched_setscheduler(0, before, parameters)
 
 
 def initialise() -> None:
@@ -116,26 +138,29 @@ def run_node(
     settled: Callable[[Any], bool] = lambda node: True,
     wait: Callable[[Any], float] = lambda node: SPIN_TIMEOUT,
     after: Callable[[Any], None] = lambda node: None,
+    real_time: bool = False,
 ) -> int:
     """Makes a node and spins it until `done(node)`, or until a signal came and the node has `settled`.
 
+    `real_time`: with the priority of a node that keeps time.
     Returns the exit status: 0 done, 1 an error during the work, 2 refused start, 128 + n ended by signal n.
     """
     end = EndRequest()
-    try:
-        initialise()
-        node = make()
-    except CncError as error:
-        print(error, file=sys.stderr)
-        rclpy.try_shutdown()
-        return WRONG_INPUT
+    with priority(real_time):
+        try:
+            initialise()
+            node = make()
+        except CncError as error:
+            print(error, file=sys.stderr)
+            rclpy.try_shutdown()
+            return WRONG_INPUT
 
-    def is_over() -> bool:
-        return done(node) or (end.given and (settled(node) or end.over(PATIENCE)))
+        def is_over() -> bool:
+            return done(node) or (end.given and (settled(node) or end.over(PATIENCE)))
 
-    try:
-        spin([node], done=is_over, wait=lambda: wait(node), after=lambda: after(node))
-    except CncError as error:
-        print(error, file=sys.stderr)
-        return FAILED
+        try:
+            spin([node], done=is_over, wait=lambda: wait(node), after=lambda: after(node))
+        except CncError as error:
+            print(error, file=sys.stderr)
+            return FAILED
     return SIGNALLED + end.number if end.given else 0

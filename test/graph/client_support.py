@@ -2,6 +2,7 @@
 
 import time
 
+from rclpy.action import ActionClient
 from rclpy.node import Node
 
 from cnc_ptp import msg
@@ -9,7 +10,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, COMMAND, EVENT, EVENTS, PLC_INPUT, SERVICES, block_topic
 
-TIMEOUT = 30.0
+TIMEOUT = 60.0
 
 
 class Client(Node):
@@ -95,6 +96,20 @@ class Client(Node):
 
     def switch(self, topic, on, **fields):
         self.write(topic, msg.Switch, on=on, **{"valid": True, **fields})
+
+    def action(self, action_type, name, **fields):
+        """Sends a goal; returns its handle and the feedback that comes."""
+        client, feedback = ActionClient(self, action_type, name), []
+        assert client.wait_for_server(timeout_sec=TIMEOUT), f"{name} is not there"
+        goal = client.send_goal_async(action_type.Goal(**fields), feedback_callback=feedback.append)
+        self.spin_until(goal.done, f"the answer of {name}")
+        return goal.result(), feedback
+
+    def result_of(self, goal):
+        """Status and result of an accepted goal."""
+        answer = goal.get_result_async()
+        self.spin_until(answer.done, "the result of the action")
+        return answer.result().status, answer.result().result
 
     def commands(self, target, command):
         """Arguments and acceptance of the commands of one kind so far."""

@@ -10,6 +10,7 @@ import sys
 
 import pytest
 import rclpy
+from action_msgs.msg import GoalStatus
 from client_support import Client
 from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import MILL, Running, run, verified
@@ -17,7 +18,7 @@ from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from sensor_msgs.msg import JointState
 
-from cnc_ptp import msg
+from cnc_ptp import action, msg
 from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import DIAGNOSTICS, JOINT_STATES, PLC_INPUT
@@ -241,20 +242,69 @@ def test_handshake_by_hand(client, program):
     client.done("plc", "auto_acknowledge", on=True)
 
 
-def test_lost_life_sign_of_the_plc_holds_the_feed(client):
-    for counter in range(3):
-        client.write("/plc/life_sign", msg.LifeSign, counter=counter)
-    client.switch("/channel/feed_hold", False)
-    client.spin_until(lambda: any(event.error_id == 26103 for event in client.events), "the event")
-    event = next(event for event in client.events if event.error_id == 26103)
-    assert event.text.startswith("plc: no life sign of the external PLC for ")
-    assert event.text.endswith(" ms; feed hold is set on all channels")
-    hold, free = ('{"on": true}', True), ('{"on": false}', True)
-    client.spin_until(lambda: client.commands("channel", "feed_hold")[-1] == hold, "feed hold")
-    client.write("/plc/life_sign", msg.LifeSign, counter=7)
-    before = len(client.commands("channel", "feed_hold"))
-    client.switch("/channel/feed_hold", False)  # the same value as before the loss, and a change all the same
-    client.spin_until(lambda: free in client.commands("channel", "feed_hold")[before:], "the PLC takes it away")
+def test_move_action(client):
+    goal, feedback = client.action(action.MoveAxis, "/x/move", target=40.0, velocity=100.0)
+    assert goal.accepted
+    second, _ = client.action(action.MoveAxis, "/x/move", target=1.0)
+    assert not second.accepted, "one job at a time"
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_SUCCEEDED
+    assert (result.success, result.error_id, result.message, result.position) == (True, 0, "", 40.0)
+    distances = [message.feedback.remaining_distance for message in feedback]
+    assert len(distances) >= 2 and distances == sorted(distances, reverse=True) and distances[0] < 40.0
+
+
+def test_cancelled_move_stops_on_its_ramp(client):
+    goal, feedback = client.action(action.MoveAxis, "/x/move", target=0.0, velocity=20.0)
+    client.spin_until(lambda: feedback, "feedback")
+    cancel = goal.cancel_goal_async()
+    client.spin_until(cancel.done, "the answer to the cancel")
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_CANCELED and not result.success
+    assert 0.0 < result.position < 40.0
+    assert result.message == f"the axis stands at {result.position}, target 0.0"
+    client.shows("x", "state", AxisStateCode.STANDSTILL)
+
+
+def test_refused_move_is_aborted(client):
+    goal, _ = client.action(action.MoveAxis, "/x/move", target=1000.0)
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_ABORTED and (result.success, result.error_id) == (False, 120002)
+    assert result.message.startswith("axis x: move_absolute refused: target 1000.0 mm lies beyond")
+
+
+def test_the_death_of_a_client_stops_nothing(client):
+    other = Client(read_machine(str(MILL)))
+    other.start()
+    goal, _ = other.action(action.MoveAxis, "/x/move", target=0.0, velocity=50.0)
+    assert goal.accepted
+    other.destroy_node()
+    other.executor_of_test.shutdown()
+    client.wait_last("x", lambda block: stands(block) and block.set_position[-1] == 0.0, "the end of the move")
+    client.wait_blocks("channel", 3)  # the channel hears of it a block later
+
+
+def test_run_program_action(client, program):
+    goal, feedback = client.action(action.RunProgram, "/channel/run_program", program=program)
+    status, result = client.result_of(goal)
+    assert (result.message, result.error_id, status) == ("", 0, GoalStatus.STATUS_SUCCEEDED)
+    assert client.state_at("channel", result.cycle, "state") == ChannelStateCode.READY
+    progress = [message.feedback.progress for message in feedback]
+    assert progress == sorted(progress) and {message.feedback.line for message in feedback} >= {2, 4}
+    goal, feedback = client.action(action.RunProgram, "/channel/run_program")
+    client.spin_until(lambda: feedback, "feedback")
+    cancel = goal.cancel_goal_async()
+    client.spin_until(cancel.done, "the answer to the cancel")
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_CANCELED
+    assert result.message.startswith("the program was aborted after block ")
+    goal, _ = client.action(action.RunProgram, "/channel/run_program", program="/nowhere.nc")
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_ABORTED and result.error_id == 26110
+    client.done("x", "move_absolute", target=0.0)
+    client.done("y", "move_absolute", target=0.0)
+    client.wait_last("x", stands, "standstill")
+    client.wait_last("y", stands, "standstill")
 
 
 def test_joint_states_in_si_units(client):
@@ -311,8 +361,11 @@ def test_parameters(client):
     assert plc.integer_value == 200
 
 
-def test_a_second_run_on_the_domain_is_refused(client, ros_domain):
-    error = run("run", MILL, "--duration", "1", expect=2).stderr
+def test_a_second_run_on_the_domain_is_refused(client, ros_domain, recording):
+    """Even one that would record to the same file."""
+    size = recording.stat().st_size
+    error = run("run", MILL, "--duration", "1", "--record", recording, expect=2).stderr
+    assert recording.stat().st_size >= size > 0
     assert error == (
         f"P-ERR-26107 a run is under way on ROS domain {ros_domain} of this machine; nothing was started. "
         "Wait for its end, or set ROS_DOMAIN_ID to another number\n"
@@ -325,6 +378,22 @@ def test_a_node_that_comes_too_late_ends(client):
     assert done.returncode == 1 and "Traceback" not in done.stderr
     assert done.stderr.startswith("P-ERR-26116 z: the run is at cycle ")
     assert "the node takes no part and ends: nodes must be there before the clock starts" in done.stderr
+
+
+def test_lost_life_sign_of_the_plc_holds_the_feed(client):
+    for counter in range(3):
+        client.write("/plc/life_sign", msg.LifeSign, counter=counter)
+    client.switch("/channel/feed_hold", False)
+    client.spin_until(lambda: any(event.error_id == 26103 for event in client.events), "the event")
+    event = next(event for event in client.events if event.error_id == 26103)
+    assert event.text.startswith("plc: no life sign of the external PLC for ")
+    assert event.text.endswith(" ms; feed hold is set on all channels")
+    hold, free = ('{"on": true}', True), ('{"on": false}', True)
+    client.spin_until(lambda: client.commands("channel", "feed_hold")[-1] == hold, "feed hold")
+    client.write("/plc/life_sign", msg.LifeSign, counter=7)
+    before = len(client.commands("channel", "feed_hold"))
+    client.switch("/channel/feed_hold", False)  # the same value as before the loss, and a change all the same
+    client.spin_until(lambda: free in client.commands("channel", "feed_hold")[before:], "the PLC takes it away")
 
 
 def test_stop_all_ends_the_run_and_the_recording_verifies(client, graph, recording):
