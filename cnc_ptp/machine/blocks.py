@@ -11,31 +11,8 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-
-class AxisStateCode(IntEnum):
-    """PLCopen states of axes and spindles (AxisState.msg)."""
-
-    DISABLED = 0
-    STANDSTILL = 1
-    HOMING = 2
-    DISCRETE_MOTION = 3
-    CONTINUOUS_MOTION = 4
-    SYNCHRONIZED_MOTION = 5
-    STOPPING = 6
-    ERROR_STOP = 7
-
-
-class StatusBit(IntEnum):
-    """Bits of AxisState.status_bits that TwinCAT's axis status word names."""
-
-    PROTECTED = 1 << 5
-    ERROR_DELAYED = 1 << 6
-    HAS_BEEN_STOPPED = 1 << 7
-    HAS_JOB = 1 << 8
-    CONSTANT_VELOCITY = 1 << 12
-    COMPENSATING = 1 << 13
-    EXT_SETPOINT = 1 << 14
-    ERROR = 1 << 31
+from cnc_ptp.axis.states import AxisStateCode as AxisStateCode
+from cnc_ptp.axis.states import StatusBit as StatusBit
 
 
 class SpindleMode(IntEnum):

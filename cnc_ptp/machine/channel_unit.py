@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NamedTuple, NoReturn
 
+from cnc_ptp.axis.states import state_name
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import (
     AxisBlock,
@@ -25,7 +26,7 @@ from cnc_ptp.machine.function_output import FunctionOutput, Outputs
 from cnc_ptp.machine.path_motion import AxisStates, PathMotion, PathPoint
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.machine.program_sequence import NO_SOURCE, Phase, ProgramSequence
-from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit, state_name
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Program

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from cnc_ptp.axis.states import state_name
 from cnc_ptp.machine.blocks import (
     AxisStateCode,
     Block,
@@ -15,7 +16,7 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     Severity,
 )
-from cnc_ptp.machine.unit import Unit, state_name
+from cnc_ptp.machine.unit import Unit
 
 LIFE_SIGN = "plc"
 CLOCK = "clock"

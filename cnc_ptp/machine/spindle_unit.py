@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, NoReturn
 
+from cnc_ptp.axis.states import state_name
 from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
-from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit, state_name
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.motion import Profile
 from cnc_ptp.parameters import SpindleParameters
 from cnc_ptp.spindle.speed_ramp import plan_speed

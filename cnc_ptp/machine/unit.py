@@ -8,9 +8,7 @@ from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import (
-    AxisStateCode,
     Block,
-    ChannelStateCode,
     Command,
     CommandRecord,
     CycleTick,
@@ -70,10 +68,14 @@ class Unit(ABC):
     def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
         self._warning = ""
         check_command(self.kind, self.name, command, arguments)
-        handler: Handler = getattr(self, f"do_{command}")
-        self._warning = handler(cycle, **arguments) or ""
+        self._warning = self.handler(command)(cycle, **arguments) or ""
         if command == "upstream_lost":
             self.lost.add(arguments["source"])
+
+    def handler(self, command: str) -> Handler:
+        """What carries out a command that this kind of unit knows."""
+        handler: Handler = getattr(self, f"do_{command}")
+        return handler
 
     def event(self, cycle: int, severity: int, error_id: int, text: str, line: int = 0) -> None:
         self.events.append(Event(cycle, self.name, severity, error_id, text, line))
@@ -88,8 +90,3 @@ class Unit(ABC):
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name}>"
-
-
-def state_name(state: AxisStateCode | ChannelStateCode) -> str:
-    """PLCopen spelling: DISCRETE_MOTION -> DiscreteMotion."""
-    return "".join(part.capitalize() for part in state.name.split("_"))

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench
 
+from cnc_ptp.axis.states import state_name
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import ChannelBlock, StatusBit
-from cnc_ptp.machine.unit import state_name
 
 DYNAMICS = {"velocity": 2000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50_000.0}
 

@@ -1,0 +1,62 @@
+"""Enable and reset of an axis."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.faults import ENABLE_REMOVED, STILL_MOVING
+from cnc_ptp.axis.states import AxisStateCode as S
+
+
+class PowerCommands:
+    """`power` and `reset`."""
+
+    def __init__(self, axis: Axis, *, actual_position: Callable[[], float]) -> None:
+        """`actual_position` in mm or deg, as the encoder shows it."""
+        self._axis = axis
+        self._actual_position = actual_position
+
+    def do_power(self, cycle: int, *, on: bool) -> str | None:
+        """Enables or disables the axis; a moving axis is stopped on its ramp first.
+
+        Where the position loop was open it is closed at the actual position, so that the enable moves nothing.
+        """
+        axis = self._axis
+        if on == axis.powered:
+            return f"axis {axis.name}: power is {'on' if on else 'off'} already"
+        if on:
+            self._switch_on(cycle)
+        else:
+            self._switch_off(cycle)
+        return None
+
+    def _switch_on(self, cycle: int) -> None:
+        axis = self._axis
+        if axis.ptp.finished(cycle):
+            axis.ptp.take_over(cycle, self._actual_position(), 0.0, 0.0)
+        axis.powered = True
+        if axis.state == S.DISABLED:
+            axis.state = S.STANDSTILL
+
+    def _switch_off(self, cycle: int) -> None:
+        axis = self._axis
+        axis.powered = False
+        if axis.state == S.STANDSTILL:
+            axis.state = S.DISABLED
+        elif axis.state == S.SYNCHRONIZED_MOTION:
+            axis.fault(cycle, ENABLE_REMOVED, "the enable was removed during path motion")
+        elif axis.state == S.DISCRETE_MOTION:
+            axis.ptp.stop(cycle, axis.own_limits)
+            axis.state = S.STOPPING
+
+    def do_reset(self, cycle: int) -> None:
+        """Leaves ErrorStop; refused while the axis moves (23008)."""
+        axis = self._axis
+        if axis.state != S.ERROR_STOP:
+            return
+        if not axis.ptp.finished(cycle):
+            axis.refuse("reset", STILL_MOVING, "the axis still moves on its error ramp; wait for standstill")
+        axis.error_id = 0
+        axis.ptp.finish()
+        axis.state = axis.at_rest_state()

@@ -1,0 +1,36 @@
+"""States and status bits of an axis, as PLC and recordings see them."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class AxisStateCode(IntEnum):
+    """PLCopen states of axes and spindles (AxisState.msg)."""
+
+    DISABLED = 0
+    STANDSTILL = 1
+    HOMING = 2
+    DISCRETE_MOTION = 3
+    CONTINUOUS_MOTION = 4
+    SYNCHRONIZED_MOTION = 5
+    STOPPING = 6
+    ERROR_STOP = 7
+
+
+class StatusBit(IntEnum):
+    """Bits of AxisState.status_bits, numbered as in TwinCAT's axis status word."""
+
+    PROTECTED = 1 << 5
+    ERROR_DELAYED = 1 << 6
+    HAS_BEEN_STOPPED = 1 << 7
+    HAS_JOB = 1 << 8
+    CONSTANT_VELOCITY = 1 << 12
+    COMPENSATING = 1 << 13
+    EXT_SETPOINT = 1 << 14
+    ERROR = 1 << 31
+
+
+def state_name(state: IntEnum) -> str:
+    """PLCopen spelling: DISCRETE_MOTION -> DiscreteMotion."""
+    return "".join(part.capitalize() for part in state.name.split("_"))
