@@ -1,12 +1,13 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html
 # make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
+# make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 
-.PHONY: setup demo test lint bench docs clean
+.PHONY: setup demo test lint bench figures docs clean
 setup: $(VENV)/.package
 
 $(VENV)/.python:
@@ -42,6 +43,9 @@ lint: setup
 
 bench: setup
 	$(BIN)/python -m bench
+
+figures: setup
+	$(BIN)/python -m figures
 
 docs: setup
 	$(BIN)/python -m cnc_ptp.parameters.reference > docs/parameters.md

@@ -1,0 +1,114 @@
+"""Runs a figure's scenario offline and keeps what is drawn: the cycles of its axes and the commands."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisBlock, CommandRecord, Severity
+from cnc_ptp.machine.job import read_job
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import MachineParameters, read_machine
+from figures.scenario_head import FigureError, FigureScenario
+
+Column = npt.NDArray[np.float64]
+PER_CYCLE = tuple(field.name for field in fields(AxisBlock) if field.name not in ("first_cycle", "count"))
+
+
+@dataclass(frozen=True, slots=True)
+class Marker:
+    """A command that took effect: when (s) and what. Those of cycle 0 are the set-up and have none."""
+
+    time: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class FigureRun:
+    """A run of `cycles` cycles.
+
+    `columns[axis][field]` has one value a cycle, fields as in AxisBlock (mm, s, deg); `units[axis]` is mm or deg.
+    """
+
+    cycle_time: float
+    columns: Mapping[str, Mapping[str, Column]]
+    units: Mapping[str, str]
+    markers: tuple[Marker, ...]
+
+    @property
+    def cycles(self) -> int:
+        return len(next(iter(self.columns.values()))["state"])
+
+    @property
+    def time(self) -> Column:
+        """Of each cycle, in s."""
+        return np.arange(self.cycles) * self.cycle_time
+
+    def column(self, axis: str, field: str) -> Column:
+        """`actual_acceleration` is the difference quotient of the actual velocity; all else are fields."""
+        if field == "actual_acceleration":
+            return np.asarray(np.gradient(self.columns[axis]["actual_velocity"], self.cycle_time), dtype=np.float64)
+        return self.columns[axis][field]
+
+
+def run_figure(figure: FigureScenario) -> FigureRun:
+    """Runs until all axes stand. Raises FigureError where an input is wrong, a command refused or a fault occurs."""
+    try:
+        machine = read_machine(figure.machine_path)
+        job = read_job(machine, program=None, scenario=str(figure.path))
+    except CncError as error:
+        raise FigureError(figure.path, error) from None
+    for axis in figure.axes:
+        if axis not in machine.axes:
+            known = ", ".join(machine.axes)
+            raise FigureError(figure.path, f"axis '{axis}' does not exist in {figure.machine}, known are {known}")
+    return _collect(figure, machine, list(OfflineMachine(machine, build_units(machine, scenario=job)).run()))
+
+
+def _collect(figure: FigureScenario, machine: MachineParameters, ticks: list[Outputs]) -> FigureRun:
+    outputs = [output for tick in ticks for output in tick.values()]
+    records = [record for output in outputs for record in output.records]
+    refused = [f"P-ERR-{record.error_id} {record.message}" for record in records if not record.accepted]
+    errors = [
+        f"P-ERR-{event.error_id} {event.text}"
+        for output in outputs
+        for event in output.events
+        if event.severity == Severity.ERROR
+    ]
+    if errors or refused:
+        raise FigureError(figure.path, (errors + refused)[0])
+    cycle_time = machine.cycle_time_us * 1e-6
+    return FigureRun(
+        cycle_time,
+        {axis: _columns([tick[axis].block for tick in ticks]) for axis in figure.axes},
+        {axis: "deg" if machine.axes[axis].rotary else "mm" for axis in figure.axes},
+        tuple(
+            Marker(record.cycle * cycle_time, _text(record))
+            for record in records
+            if record.target in figure.axes and record.cycle
+        ),
+    )
+
+
+def _columns(blocks: list[object]) -> dict[str, Column]:
+    return {
+        name: np.array([value for block in blocks for value in getattr(block, name)], dtype=np.float64)
+        for name in PER_CYCLE
+    }
+
+
+SHOWN = {"target": "", "distance": "", "position": "", "percent": " %", "length": ""}
+"""The argument that stands behind the name of a command, and its unit where that is not the axis'."""
+
+
+def _text(record: CommandRecord) -> str:
+    """`move_absolute` with its target 1000.0 becomes 'move absolute 1000'; its dynamics are in the caption."""
+    arguments = json.loads(record.arguments_json)
+    shown = [f"{arguments[name]:g}{unit}" for name, unit in SHOWN.items() if name in arguments]
+    return " ".join([record.command.replace("_", " "), *shown])

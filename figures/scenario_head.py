@@ -1,0 +1,79 @@
+"""The head of a figure's scenario: what the picture needs to say about itself.
+
+The head is the block of comment lines at the top of the file, `key: value` each; indented lines go on with the value:
+
+    # title: Dynamics 1.1
+    # caption: One or two sentences, which may
+    #   go on in further lines.
+    # machine: config/ptp.yaml
+    # axes: x
+
+It stands in the scenario itself so that a figure is one file, read in one go and added without touching another.
+For the run these lines are comments: `cnc_ptp simulate MACHINE --scenario FILE` takes the file as it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+KEYS = ("title", "caption", "machine", "axes")
+
+
+class FigureError(Exception):
+    """A figure cannot be drawn: which, why, and what happens now."""
+
+    def __init__(self, path: Path, reason: object) -> None:
+        super().__init__(f"figure {path.name}: {reason}; no picture was drawn")
+
+
+@dataclass(frozen=True, slots=True)
+class FigureScenario:
+    """A scenario that is a figure. `machine` is relative to the repository, `axes` are drawn in this order."""
+
+    path: Path
+    title: str
+    caption: str
+    machine: str
+    axes: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Of the picture: the file name without its ending."""
+        return self.path.stem
+
+    @property
+    def machine_path(self) -> Path:
+        return ROOT / self.machine
+
+
+def read_head(path: Path) -> FigureScenario:
+    """The head of a scenario file. Raises FigureError."""
+    head: dict[str, str] = {}
+    for line in comment_block(path.read_text(encoding="utf-8")):
+        if line.startswith(" ") and head:
+            last = next(reversed(head))
+            head[last] += " " + line.strip()
+            continue
+        key, colon, value = line.partition(":")
+        if not colon or key not in KEYS:
+            raise FigureError(path, f"'{line}' in the head is not one of {', '.join(f'{key}: ...' for key in KEYS)}")
+        if key in head:
+            raise FigureError(path, f"'{key}' stands twice in the head")
+        head[key] = value.strip()
+    for key in KEYS:
+        if not head.get(key):
+            raise FigureError(path, f"the head (comment lines at the top of the file) has no '{key}: ...'")
+    axes = tuple(axis.strip() for axis in head["axes"].split(","))
+    return FigureScenario(path, head["title"], head["caption"], head["machine"], axes)
+
+
+def comment_block(text: str) -> list[str]:
+    """The comment lines at the top, without their marks."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line[1:].removeprefix(" "))
+    return lines

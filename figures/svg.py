@@ -1,0 +1,50 @@
+"""Writes a drawing as SVG: the same bytes for the same motion, small, readable on light and on dark pages."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from figures.colours import DARK
+
+FONTS = '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", "DejaVu Sans", sans-serif'
+SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none", "path.simplify_threshold": 0.25}
+"""Fixed names of elements, text as text, lines without points that nobody sees (a quarter pixel)."""
+
+HEAD = '<style type="text/css">'
+LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+
+
+def svg_text(drawing: Figure, *, title: str) -> str:
+    """The drawing as SVG with the given title, without date and without versions."""
+    buffer = io.StringIO()
+    with matplotlib.rc_context(SETTINGS):
+        drawing.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Title": title})
+    text = LONG_NUMBER.sub(lambda match: f"{float(match[0]):.2f}", buffer.getvalue())
+    text = "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
+    return text.replace(HEAD, HEAD + style(), 1)
+
+
+def style() -> str:
+    """Fonts, and the colours of dark pages: the file itself has those of light ones, for viewers that know no CSS."""
+    rules = [
+        f'[style*="{kind}: {light}"]{{{kind}:{dark}!important}}'
+        for light, dark in DARK.items()
+        for kind in ("fill", "stroke")
+    ]
+    dark = "\n".join(rules)
+    return f"text{{font-family:{FONTS}!important}}\n@media (prefers-color-scheme: dark){{\n{dark}\n}}\n"
+
+
+def write_if_changed(path: Path, text: str) -> bool:
+    """Writes a file unless it has that text already; True when written."""
+    if path.exists() and path.read_text(encoding="utf-8") == text:
+        return False
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return True
