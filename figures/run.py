@@ -48,12 +48,13 @@ class FigureRun:
     @property
     def time(self) -> Column:
         """Of each cycle, in s."""
-        return np.arange(self.cycles) * self.cycle_time
+        return np.arange(self.cycles, dtype=np.float64) * self.cycle_time
 
     def column(self, axis: str, field: str) -> Column:
         """`actual_acceleration` is the difference quotient of the actual velocity; all else are fields."""
         if field == "actual_acceleration":
-            return np.asarray(np.gradient(self.columns[axis]["actual_velocity"], self.cycle_time), dtype=np.float64)
+            quotient: Column = np.gradient(self.columns[axis]["actual_velocity"], self.cycle_time)
+            return quotient
         return self.columns[axis][field]
 
 

@@ -17,6 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.job import read_file
+
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
 
@@ -50,8 +53,12 @@ class FigureScenario:
 
 def read_head(path: Path) -> FigureScenario:
     """The head of a scenario file. Raises FigureError."""
+    try:
+        text = read_file("scenario", str(path))
+    except CncError as error:
+        raise FigureError(path, error) from None
     head: dict[str, str] = {}
-    for line in comment_block(path.read_text(encoding="utf-8")):
+    for line in comment_block(text):
         if line.startswith(" ") and head:
             last = next(reversed(head))
             head[last] += " " + line.strip()

@@ -1,0 +1,236 @@
+"""The tool that makes figures of scenarios: heads, refusals, pictures, command line."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from figure_support import SCENARIOS, run_of
+
+from figures import __main__ as command
+from figures.colours import DARK
+from figures.external_profile import FILE, csv_text
+from figures.picture import draw, label_rows, number
+from figures.run import FigureRun, Marker, run_figure
+from figures.scenario_head import ROOT, FigureError, FigureScenario, read_head
+from figures.svg import svg_text
+
+HEAD = {"title": "A move", "caption": "One millimetre.", "machine": "config/ptp.yaml", "axes": "x"}
+MOVE = "- {at: 0.05, to: x, do: move_absolute, target: 1}\n"
+PICTURES = ROOT / "docs" / "figures"
+PANELS = ["position in mm", "velocity in mm/s", "acceleration in mm/s²", "following error in mm", "time in s"]
+
+
+def written(folder: Path, head: dict[str, str], scenario: str = MOVE) -> Path:
+    """A scenario file with a head."""
+    file = folder / "move.yaml"
+    file.write_text("".join(f"# {key}: {value}\n" for key, value in head.items()) + scenario, encoding="utf-8")
+    return file
+
+
+def texts_of(svg: str) -> list[str]:
+    """All texts of a picture; fails where it is not well formed."""
+    root = ElementTree.fromstring(svg)
+    return ["".join(text.itertext()) for text in root.iter("{http://www.w3.org/2000/svg}text")]
+
+
+def fault_of(file: Path) -> str:
+    with pytest.raises(FigureError) as caught:
+        run_figure(read_head(file))
+    return str(caught.value)
+
+
+# heads
+
+
+def test_head_gives_title_caption_machine_and_axes(tmp_path):
+    file = tmp_path / "two_axes.yaml"
+    file.write_text(
+        "# title: Two: axes\n# caption: The first line\n#   and the second: both.\n# machine: config/ptp.yaml\n# axes: x, y\n"
+        f"{MOVE}# caption: not in the head\n"
+    )
+    caption = "The first line and the second: both."
+    assert read_head(file) == FigureScenario(file, "Two: axes", caption, "config/ptp.yaml", ("x", "y"))
+    assert read_head(file).name == "two_axes"
+
+
+@pytest.mark.parametrize("key", HEAD)
+def test_head_without_a_key(tmp_path, key):
+    head = {name: value for name, value in HEAD.items() if name != key}
+    where = "figure move.yaml: the head (comment lines at the top of the file) has no"
+    assert fault_of(written(tmp_path, head)) == f"{where} '{key}: ...'; no picture was drawn"
+    assert fault_of(written(tmp_path, {**HEAD, key: ""})) == f"{where} '{key}: ...'; no picture was drawn"
+
+
+def test_head_with_an_unknown_key(tmp_path):
+    expected = "'axis: x' in the head is not one of title: ..., caption: ..., machine: ..., axes: ..."
+    assert fault_of(written(tmp_path, {**HEAD, "axis": "x"})) == f"figure move.yaml: {expected}; no picture was drawn"
+
+
+def test_head_with_a_key_twice(tmp_path):
+    file = written(tmp_path, HEAD, "# title: Another\n" + MOVE)
+    assert fault_of(file) == "figure move.yaml: 'title' stands twice in the head; no picture was drawn"
+
+
+# runs
+
+
+def test_file_that_cannot_be_read(tmp_path):
+    file = tmp_path / "move.yaml"
+    reason = f"P-ERR-26110 scenario {file} cannot be read: No such file or directory; nothing was started"
+    assert fault_of(file) == f"figure move.yaml: {reason}; no picture was drawn"
+
+
+def test_axis_that_the_machine_does_not_have(tmp_path):
+    expected = (
+        "figure move.yaml: axis 'w' does not exist in config/ptp.yaml, known are x, y, z, c; no picture was drawn"
+    )
+    assert fault_of(written(tmp_path, {**HEAD, "axes": "w"})) == expected
+
+
+def test_machine_that_does_not_exist(tmp_path):
+    text = fault_of(written(tmp_path, {**HEAD, "machine": "config/lathe.yaml"}))
+    assert text.startswith("figure move.yaml: P-ERR-")
+    assert "config/lathe.yaml" in text
+
+
+def test_scenario_with_an_unknown_command(tmp_path):
+    text = fault_of(written(tmp_path, HEAD, "- {at: 0, to: x, do: jump}\n"))
+    assert "move.yaml:5: axis x: unknown command 'jump'" in text
+
+
+def test_a_refused_command_is_no_figure(tmp_path):
+    text = fault_of(written(tmp_path, HEAD, MOVE + "- {at: 0.06, to: x, do: set_override, percent: 101}\n"))
+    assert text.startswith("figure move.yaml: P-ERR-23006 axis x: set_override refused: percent = 101 ")
+    assert text.endswith("; nothing was changed; no picture was drawn")
+
+
+def test_a_fault_is_no_figure(tmp_path):
+    silence = "- {at: 0.06, to: plc, do: set_life_sign, on: off}\n"
+    text = fault_of(written(tmp_path, HEAD, "- {at: 0.05, to: x, do: move_absolute, target: 5000}\n" + silence))
+    assert text.startswith("figure move.yaml: P-ERR-26101 axis x: no block of 'plc' came within the watchdog time; ")
+
+
+def test_commands_of_the_set_up_are_not_marked():
+    assert run_of("ptp_override_20_100").markers == (
+        Marker(0.05, "move absolute 5000"),
+        Marker(1.5, "set override 100 %"),
+    )
+
+
+# pictures
+
+
+@pytest.fixture(scope="module")
+def override_picture():
+    figure = read_head(SCENARIOS / "ptp_override_100_75_100.yaml")
+    return svg_text(draw(figure, run_of(figure.name)), title=figure.title)
+
+
+def test_picture_names_panels_units_commands_and_values(override_picture):
+    texts = texts_of(override_picture)
+    assert set(PANELS) <= set(texts)
+    assert texts.count("set") == texts.count("actual") == 3
+    assert {"set override 75 %", "override 75 %", "5000", "2000", "−5000"} <= set(texts)
+    assert "Override 100 % to 75 % and back" in texts
+
+
+def test_picture_is_the_same_each_time_and_has_no_date(override_picture):
+    figure = read_head(SCENARIOS / "ptp_override_100_75_100.yaml")
+    assert svg_text(draw(figure, run_figure(figure)), title=figure.title) == override_picture
+    assert "date" not in override_picture
+    assert "Matplotlib v" not in override_picture
+    assert not re.search(r"\d\.\d{3,}[ \"]", override_picture)
+
+
+def test_every_colour_has_one_for_dark_pages(override_picture):
+    body = override_picture.split("</style>")[1]
+    colours = set(re.findall(r"#[0-9a-f]{6}", body))
+    assert colours <= set(DARK)
+    assert len(colours) >= 10
+    for light in colours:
+        assert f'[style*="stroke: {light}"]{{stroke:{DARK[light]}!important}}' in override_picture
+
+
+def test_several_axes_are_named_and_have_a_colour_each(tmp_path):
+    y = "- {at: 0.05, to: y, do: move_absolute, target: -2}\n"
+    figure = read_head(written(tmp_path, {**HEAD, "axes": "x, y"}, MOVE + y))
+    texts = texts_of(svg_text(draw(figure, run_figure(figure)), title=figure.title))
+    assert texts.count("x set") == texts.count("y actual") == 3
+    assert {"1", "−2"} <= set(texts)
+    assert "move absolute 1, move absolute -2" in texts
+
+
+def test_labels_that_would_overlap_stand_in_rows():
+    run = run_of("ptp_dynamics_1_1")
+    markers = (
+        Marker(0.1, "a long text of a command"),
+        Marker(0.15, "another"),
+        Marker(0.6, "third"),
+        Marker(1.24, "last"),
+    )
+    labels = label_rows(FigureRun(run.cycle_time, run.columns, run.units, markers), run.cycles)
+    assert [(label.row, label.at_left) for label in labels] == [(0, False), (1, False), (0, False), (0, False)]
+    at_the_edge = (Marker(1.24, "a text that has no room at the right"),)
+    labels = label_rows(FigureRun(run.cycle_time, run.columns, run.units, at_the_edge), run.cycles)
+    assert labels[0].at_left
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(2000.0, "2000"), (1696.77, "1696.8"), (3.394, "3.39"), (-5000.0, "−5000"), (-0.001, "0")]
+)
+def test_values_are_short(value, text):
+    assert number(value) == text
+
+
+# the folder
+
+
+def test_every_scenario_has_its_picture_and_every_picture_its_scenario():
+    scenarios = {file.stem for file in SCENARIOS.glob("*.yaml")}
+    assert {picture.stem for picture in PICTURES.iterdir()} == scenarios
+
+
+@pytest.mark.parametrize("scenario", sorted(SCENARIOS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_scenario_is_a_figure(scenario):
+    figure = read_head(scenario)
+    assert figure.machine_path.is_file()
+    picture = (PICTURES / f"{figure.name}.svg").read_text(encoding="utf-8")
+    assert figure.title in texts_of(picture)
+    assert set(PANELS) <= set(texts_of(picture))
+    assert len(picture.encode()) < 100_000
+
+
+def test_setpoints_of_the_external_example_are_those_of_the_script():
+    assert FILE.read_text(encoding="utf-8") == csv_text()
+
+
+# the command
+
+
+def test_command_draws_what_is_named_and_says_what_changed(tmp_path):
+    arguments = ["ptp_dynamics_1_1", "--pictures", str(tmp_path)]
+    first = CliRunner().invoke(command.main, arguments)
+    assert first.exit_code == 0
+    assert re.fullmatch(r"ptp_dynamics_1_1: 1\.\d\d s of machine time, \d\d kB, written\n", first.output)
+    second = CliRunner().invoke(command.main, arguments)
+    assert second.output == first.output.replace("written", "unchanged")
+    assert set(PANELS) <= set(texts_of((tmp_path / "ptp_dynamics_1_1.svg").read_text(encoding="utf-8")))
+
+
+def test_command_draws_the_others_when_one_fails(tmp_path):
+    written(tmp_path, HEAD)
+    (tmp_path / "bad.yaml").write_text(MOVE)
+    result = CliRunner().invoke(command.main, ["--scenarios", str(tmp_path), "--pictures", str(tmp_path / "svg")])
+    assert result.exit_code == 1
+    assert result.output.startswith(
+        "figure bad.yaml: the head (comment lines at the top of the file) has no 'title: ...'"
+    )
+    assert [file.name for file in (tmp_path / "svg").iterdir()] == ["move.svg"]
+
+
+def test_command_refuses_unknown_names(tmp_path):
+    result = CliRunner().invoke(command.main, ["nothing", "--scenarios", str(tmp_path)])
+    assert result.exit_code == 2
+    assert f"there is no scenario {tmp_path}/nothing.yaml; nothing was drawn" in " ".join(result.output.split())
