@@ -7,13 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.offsetbox import AnchoredOffsetbox, HPacker, TextArea
 from matplotlib.patches import FancyBboxPatch
 from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import offset_copy
 
 from figures.colours import BLUE, BY_AXIS, EDGE, FAINT, GREEN, GRID, INK, PAPER, RED, SOFT, YELLOW, Pair
 from figures.run import Column, FigureRun
@@ -27,7 +24,7 @@ TEXT_LEFT, PLOT = 22.0, WIDTH - LEFT - RIGHT
 CAPTION_LETTERS = 140
 SMALL, NORMAL, LARGE = 8.5, 9.5, 14.0
 LETTER = 5.0
-"""Width of a small letter, generously."""
+"""Width of a small letter, generously: nothing is placed by measured text, so viewers may have other fonts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +81,7 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
         draw_commands(axes, labels, with_texts=panel is PANELS[0])
         upper = lower + GAP
     axes.tick_params(labelbottom=True)
-    axes.set_xlabel("time in s", color=SOFT, fontsize=NORMAL, labelpad=4)
+    write(drawing, LEFT + 0.5 * PLOT, height - 17.0, "time in s", colour=SOFT, align="center")
     return drawing
 
 
@@ -107,11 +104,19 @@ def draw_card(drawing: Figure, height: float) -> None:
 
 
 def write(
-    drawing: Figure, x: float, y: float, words: str, *, colour: str, size: float = NORMAL, weight: str = "normal"
+    drawing: Figure,
+    x: float,
+    y: float,
+    words: str,
+    *,
+    colour: str,
+    size: float = NORMAL,
+    weight: str = "normal",
+    align: str = "left",
 ) -> None:
     """Text at `x`, `y` in points from the upper left corner."""
     height = drawing.get_size_inches()[1] * POINTS_PER_INCH
-    drawing.text(x / WIDTH, 1.0 - y / height, words, color=colour, fontsize=size, fontweight=weight, va="baseline")
+    drawing.text(x / WIDTH, 1.0 - y / height, words, color=colour, fontsize=size, fontweight=weight, ha=align)
 
 
 # commands
@@ -259,22 +264,20 @@ def draw_header(axes: Axes, panel: Panel, run: FigureRun, drawn: list[Curve], of
         fontsize=NORMAL,
         fontweight="bold",
     )
-    names: list[Artist] = [
-        TextArea(curve.name, textprops={"color": curve.colour, "fontsize": SMALL, "fontweight": "bold"})
-        for curve in drawn
-        if curve.name
-    ]
-    if names:
-        box = AnchoredOffsetbox(
-            "lower right",
-            child=HPacker(children=names, pad=0, sep=9),
-            bbox_to_anchor=(1.0, 1.0),
-            bbox_transform=offset_copy(axes.transAxes, axes.get_figure(root=True), y=offset - 2.0, units="points"),
-            borderpad=0.0,
-            pad=0.0,
-            frameon=False,
+    right = 0.0
+    for curve in reversed(drawn):
+        axes.annotate(
+            curve.name,
+            (1.0, 1.0),
+            (right, offset),
+            xycoords="axes fraction",
+            textcoords="offset points",
+            ha="right",
+            color=curve.colour,
+            fontsize=SMALL,
+            fontweight="bold",
         )
-        axes.add_artist(box)
+        right -= LETTER * len(curve.name) + 10.0
 
 
 def write_values(axes: Axes, panel: Panel, drawn: list[Curve]) -> None:

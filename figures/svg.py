@@ -13,7 +13,12 @@ from matplotlib.figure import Figure
 from figures.colours import DARK
 
 FONTS = '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", "DejaVu Sans", sans-serif'
-SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none", "path.simplify_threshold": 0.25}
+SETTINGS: dict[Any, Any] = {
+    "svg.hashsalt": "cnc_ptp",
+    "svg.fonttype": "none",
+    "font.sans-serif": ["DejaVu Sans"],
+    "path.simplify_threshold": 0.25,
+}
 """Fixed names of elements, text as text, lines without points that nobody sees (a quarter pixel)."""
 
 HEAD = '<style type="text/css">'
