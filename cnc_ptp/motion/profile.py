@@ -11,7 +11,7 @@ The last row of a table is the end state with a = j = 0: after its end a motion 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
 import numpy as np
@@ -108,3 +108,22 @@ def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[li
             p += d * (v + d * (0.5 * a + d * (j / 6.0)))
             v += d * (a + d * (0.5 * j))
     return rows, t, p, v
+
+
+def integrate_back(t: float, pieces: Sequence[Piece]) -> tuple[list[Row], float]:
+    """String pieces together from time t so that they end at rest at position 0: the rows, and t after the last piece.
+
+    Pieces without duration leave no row.
+    """
+    pieces_back: list[tuple[float, Row]] = []
+    p = v = 0.0
+    for d, a, j in reversed(pieces):
+        if d > 0.0:
+            v -= d * (a + d * (0.5 * j))
+            p -= d * (v + d * (0.5 * a + d * (j / 6.0)))
+            pieces_back.append((d, (0.0, p, v, a, j)))
+    rows: list[Row] = []
+    for d, (_, p, v, a, j) in reversed(pieces_back):
+        rows.append((t, p, v, a, j))
+        t += d
+    return rows, t

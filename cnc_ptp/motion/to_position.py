@@ -17,7 +17,8 @@ from __future__ import annotations
 from math import sqrt
 
 from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
-from cnc_ptp.motion.profile import Piece, Profile, Row, integrate
+from cnc_ptp.motion.profile import Piece, Profile, Row, integrate, integrate_back
+from cnc_ptp.motion.quartic import largest_root
 from cnc_ptp.motion.ramp import NEGLIGIBLE, brake, brake_term, ramp, stop_way
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
 
@@ -58,19 +59,20 @@ def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits
 
 
 def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail: list[Piece]) -> Profile:
-    """Rows for the pieces of Γ (counted from p) and of the stop ramp (counted back from the target), in direction s.
+    """Rows for the pieces of Γ (counted on from p and v) and of the stop ramp (counted back from the target at rest).
 
-    The rounding of the whole falls between the two, the end is exact.
+    All values seen in direction s. Start and end are exact, the rounding of the whole falls between the two.
     """
-    first, t, x, v = integrate(0.0, 0.0, v, head)
-    last, t, x, v = integrate(t, x, v, tail)
+    first, t, _, _ = integrate(0.0, 0.0, v, head)
+    last, t = integrate_back(t, tail)
     rows: list[Row]
     if s > 0.0:
         rows = [(t0, p + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in first]
-        rows += [(t0, target + (x0 - x), v0, a0, j0) for t0, x0, v0, a0, j0 in last]
+        rows += [(t0, target + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in last]
     else:
         rows = [(t0, p - x0, -v0, -a0, -j0) for t0, x0, v0, a0, j0 in first]
-        rows += [(t0, target - (x0 - x), -v0, -a0, -j0) for t0, x0, v0, a0, j0 in last]
+        rows += [(t0, target - x0, -v0, -a0, -j0) for t0, x0, v0, a0, j0 in last]
+    rows[:1] = [(0.0, p, s * v, *rows[0][3:])] if rows else []
     rows.append((t, target, 0.0, 0.0, 0.0))
     return Profile(rows)
 
@@ -102,8 +104,7 @@ def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Pi
         x += d * (v + d * (0.5 * a + d * (j / 6.0)))
         v += d * (a + d * (0.5 * j))
     cruise = way - x - brake_term(velocity * jerk, deceleration) / scale
-    head.append((max(0.0, cruise) / velocity, 0.0, 0.0))
-    return head, brake(velocity, 0.0, deceleration, jerk)
+    return head, [(max(0.0, cruise) / velocity, 0.0, 0.0), *brake(velocity, 0.0, deceleration, jerk)]
 
 
 def _leave_at_constant_acceleration(
@@ -151,37 +152,26 @@ def _leave_at_rising_acceleration(
 def _solve_free(low: float, high: float, c: float, rest: float) -> float:
     """a in [low, high] with 2ca + a³ + (c + a²)^1.5 = rest.
 
-    Newton from above on y⁴ + 4cy² - 4·rest·y - c² = 0 with y = √(c + a²) + a. The polynomial is convex and rising
-    right of the solution, so the steps come down to it; they end when rounding ends them.
+    y = √(c + a²) + a is the largest root of y⁴ + 4cy² - 4·rest·y - c² = 0; one Newton step takes its rounding away.
     """
-    if c == 0.0:
-        a = (0.5 * rest) ** (1.0 / 3.0) if rest > 0.0 else 0.0
-        return min(max(a, low), high)
-    y = sqrt(max(0.0, c + high * high)) + high
-    for _ in range(60):
-        square = y * y
-        slope = 4.0 * (y * (square + 2.0 * c) - rest)
-        if slope <= 0.0:
-            break
-        step = (square * (square + 4.0 * c) - 4.0 * rest * y - c * c) / slope
-        if step <= 1e-16 * y:
-            break
-        y -= step
+    y = max(largest_root(4.0 * c, -4.0 * rest, 20.0 * c * c), sqrt(max(0.0, -c)))
     a = 0.5 * (y - c / y) if y > 0.0 else 0.0
+    q = c + a * a
+    top = sqrt(q) if q > 0.0 else 0.0
+    slope = (2.0 * top + a) * (top + a)
+    if slope > 0.0:
+        a -= (a * (2.0 * c + a * a) + q * top - rest) / slope
     return min(max(a, low), high)
 
 
 def _solve_bounded(low: float, high: float, c: float, rest: float, bound: float) -> float:
-    """a in [low, high] with 2ca + a³ + q·A-/2 + q²/(2A-) = rest, q = c + a²: Newton as in `_solve_free`."""
-    a = high
-    for _ in range(60):
-        q = c + a * a
-        value = a * (2.0 * c + a * a) + 0.5 * q * (bound + q / bound) - rest
-        slope = 2.0 * c + 3.0 * a * a + a * (bound + 2.0 * q / bound)
-        if slope <= 0.0:
-            break
-        step = value / slope
-        if step <= 1e-16 * abs(a):
-            break
-        a -= step
+    """a in [low, high] with 2ca + a³ + q·A-/2 + q²/(2A-) = rest, q = c + a².
+
+    x = a + A-/2 is the largest root of (x² + m)² + 2A-·c·x = 2A-·rest, m = c - A-²/4; then as in `_solve_free`.
+    """
+    a = largest_root(2.0 * c - 0.5 * bound * bound, 2.0 * bound * c, 8.0 * bound * rest) - 0.5 * bound
+    q = c + a * a
+    slope = (a + bound) * (2.0 * q / bound + a)
+    if slope > 0.0:
+        a -= (a * (2.0 * c + a * a) + 0.5 * q * (bound + q / bound) - rest) / slope
     return min(max(a, low), high)
