@@ -16,10 +16,9 @@ def largest_root(p: float, q: float, e: float) -> float:
     """
     z = _resolvent_root(p, q, e)
     alpha = sqrt(z)
+    k = abs(q) / alpha if alpha > 0.0 else 0.0
     if e > 4.0 * abs(p) * z:
         k = sqrt(e + z * (z + 2.0 * p))
-    else:
-        k = abs(q) / alpha if alpha > 0.0 else 0.0
     t = z + 2.0 * p
     if -0.5 * z < t < 0.0:
         t = (k * k - e) / z
