@@ -6,8 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
-from rclpy.action.server import ServerGoalHandle
-from rclpy.task import Future
+from rclpy.action.server import GoalEvent, ServerGoalHandle
 
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord
 
@@ -41,60 +40,71 @@ class JobServer:
         self._feedback = feedback
         self._result = result
         self._goal: ServerGoalHandle | None = None
-        self._ended: Future | None = None
         self._first_cycle = 0
         self._blocks = 0
         self._server = ActionServer(
             node,
             action_type,
             name,
-            self._execute,
+            conclude,
             goal_callback=lambda goal: GoalResponse.ACCEPT if self._goal is None else GoalResponse.REJECT,
+            handle_accepted_callback=self._begin,
             cancel_callback=self._cancel,
         )
 
-    async def _execute(self, goal: ServerGoalHandle) -> Any:
+    def _begin(self, goal: ServerGoalHandle) -> None:
+        """Gives the start commands; the result follows from the blocks.
+
+        No coroutine that awaits the end: EventsExecutor would poll it without a pause.
+        """
+        goal._update_state(GoalEvent.EXECUTE)
+        self._goal, self._blocks = goal, 0
         for command in self._start(goal.request):
             record: CommandRecord = self._node.command(command)
             if not record.accepted:
-                goal.abort()
-                return self._refused(record)
-        self._goal, self._ended = goal, Future()
+                self._finish(self._type.Result(success=False, error_id=record.error_id, message=record.message))
+                return
         self._first_cycle = record.cycle
-        message, succeeded = await self._ended
-        self._goal = self._ended = None
-        if goal.is_cancel_requested:
-            goal.canceled()
-        elif succeeded:
-            goal.succeed()
-        else:
-            goal.abort()
-        return message
 
-    def _refused(self, record: CommandRecord) -> Any:
-        return self._type.Result(success=False, error_id=record.error_id, message=record.message)
+    def _finish(self, result: Any) -> None:
+        """Answers the goal; the next one may come."""
+        goal, self._goal = self._goal, None
+        self._server.notify_execute(goal, lambda goal: conclude(goal, result))
 
     def _cancel(self, goal: ServerGoalHandle) -> CancelResponse:
+        if goal is not self._goal:
+            return CancelResponse.REJECT
         self._node.command(self._halt)
         return CancelResponse.ACCEPT
 
     def end(self) -> None:
         """The run is over: an open job is told that it was not done."""
-        if self._ended is not None and not self._ended.done():
-            self._ended.set_result((self._type.Result(message="the run has ended"), False))
+        if self._goal is not None:
+            self._finish(self._type.Result(message="the run has ended"))
 
     def after_block(self, block: Block) -> None:
         """Called by the node with each block that it has computed."""
-        if self._goal is None or self._ended is None or self._ended.done() or block.first_cycle < self._first_cycle:
+        if self._goal is None or block.first_cycle < self._first_cycle:
             return
         message = self._type.Result()
         succeeded = self._result(block, message)
         if succeeded is not None:
             message.success = succeeded and not self._goal.is_cancel_requested
-            self._ended.set_result((message, message.success))
+            self._finish(message)
             return
         self._blocks += 1
         if self._blocks % FEEDBACK_BLOCKS == 0:
             feedback = self._type.Feedback()
             self._feedback(block, feedback)
             self._goal.publish_feedback(feedback)
+
+
+def conclude(goal: ServerGoalHandle, result: Any) -> Any:
+    """Brings a goal into its last state."""
+    if goal.is_cancel_requested:
+        goal.canceled()
+    elif result.success:
+        goal.succeed()
+    else:
+        goal.abort()
+    return result

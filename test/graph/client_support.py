@@ -26,6 +26,7 @@ class Client(Node):
         self.create_subscription(msg.Event, EVENT, self.events.append, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self.records.append, EVENTS)
         self._writers = {}
+        self._askers = {}
         self._since = dict.fromkeys(self.kinds, 0)
 
     def start(self):
@@ -57,18 +58,18 @@ class Client(Node):
         """Waits until a per-cycle field of a unit has a value."""
         self.wait_last(unit, lambda block: getattr(block, field)[-1] == value, f"{field} = {value}")
 
-    def await_call(self, client, request, what):
-        assert client.wait_for_service(timeout_sec=TIMEOUT), f"{what} is not there"
-        answer = client.call_async(request)
-        self.spin_until(answer.done, f"the answer of {what}")
-        self.destroy_client(client)
+    def ask(self, service, name, **fields):
+        """The response of any service."""
+        if name not in self._askers:
+            self._askers[name] = self.create_client(service, name)
+            self.spin_until(self._askers[name].service_is_ready, name)
+        answer = self._askers[name].call_async(service.Request(**fields))
+        self.spin_until(answer.done, f"the answer of {name}")
         return answer.result()
 
     def call(self, unit, command, **fields):
         """The response of a command service."""
-        service = SERVICES[self.kinds[unit]][command]
-        name = f"/{unit}/{command}"
-        return self.await_call(self.create_client(service, name), service.Request(**fields), name)
+        return self.ask(SERVICES[self.kinds[unit]][command], f"/{unit}/{command}", **fields)
 
     def done(self, unit, command, **fields):
         """As `call`, for commands that are to be accepted."""
@@ -99,14 +100,17 @@ class Client(Node):
 
     def action(self, action_type, name, **fields):
         """Sends a goal; returns its handle and the feedback that comes."""
-        client, feedback = ActionClient(self, action_type, name), []
-        assert client.wait_for_server(timeout_sec=TIMEOUT), f"{name} is not there"
-        goal = client.send_goal_async(action_type.Goal(**fields), feedback_callback=feedback.append)
+        if name not in self._askers:
+            self._askers[name] = ActionClient(self, action_type, name)
+            self.spin_until(self._askers[name].server_is_ready, name)
+        feedback = []
+        goal = self._askers[name].send_goal_async(action_type.Goal(**fields), feedback_callback=feedback.append)
         self.spin_until(goal.done, f"the answer of {name}")
         return goal.result(), feedback
 
     def result_of(self, goal):
         """Status and result of an accepted goal."""
+        assert goal.accepted
         answer = goal.get_result_async()
         self.spin_until(answer.done, "the result of the action")
         return answer.result().status, answer.result().result

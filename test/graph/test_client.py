@@ -301,10 +301,10 @@ def test_run_program_action(client, program):
     goal, _ = client.action(action.RunProgram, "/channel/run_program", program="/nowhere.nc")
     status, result = client.result_of(goal)
     assert status == GoalStatus.STATUS_ABORTED and result.error_id == 26110
-    client.done("x", "move_absolute", target=0.0)
-    client.done("y", "move_absolute", target=0.0)
-    client.wait_last("x", stands, "standstill")
-    client.wait_last("y", stands, "standstill")
+    for axis in ("x", "y"):
+        client.wait_last(axis, stands, "standstill")
+        client.done(axis, "move_absolute", target=0.0)
+        client.wait_last(axis, stands, "standstill")
 
 
 def test_joint_states_in_si_units(client):
@@ -342,10 +342,7 @@ def test_diagnostics(client):
 
 
 def test_parameters(client):
-    def ask(service, name, **fields):
-        return client.await_call(client.create_client(service, name), service.Request(**fields), name)
-
-    name = "getriebe.0.kv"
+    ask, name = client.ask, "getriebe.0.kv"
     assert name in ask(ListParameters, "/x/list_parameters").result.names
     descriptor = ask(DescribeParameters, "/x/describe_parameters", names=[name]).descriptors[0]
     assert descriptor.read_only and descriptor.type == ParameterType.PARAMETER_INTEGER
