@@ -1,4 +1,4 @@
-"""What all functions of an axis share: its state, its setpoint generator, refusals and faults."""
+"""What all functions of an axis share: its state, its setpoints, refusals and faults."""
 
 from __future__ import annotations
 
@@ -6,23 +6,38 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from cnc_ptp.axis.checks import MotionChecks
+from cnc_ptp.axis.compensation import Compensation
+from cnc_ptp.axis.external import ExternalSetpoints
+from cnc_ptp.axis.faults import (
+    SETPOINT_TOO_FAR,
+    SETPOINTS_STOPPED,
+    SOFT_LIMIT_NEGATIVE,
+    SOFT_LIMIT_POSITIVE,
+    TARGET_MISSED,
+)
+from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator, State
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import StatusBit
+from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.parameters import AxisParameters
 
 Report = Callable[[int, int, str], None]
-"""Takes an error event: cycle, number, text."""
+"""Takes an event: cycle, number, text."""
 
 
 class Axis:
     """The setpoint side of an axis. Commands (one class a group) change it, the unit around it computes cycles.
 
-    Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time P-AXIS-00196), or on that of the
-    motion in work where this is stronger.
+    The setpoint is the basic motion (PTP generator) plus what a compensation and external setpoints add. Every fault
+    ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time P-AXIS-00196), or on that of the motion in
+    work where this is stronger.
     """
 
-    def __init__(self, parameters: AxisParameters, *, cycle_time: float, report_error: Report) -> None:
-        """`cycle_time` in s; `report_error` takes each fault as an event."""
+    def __init__(
+        self, parameters: AxisParameters, *, cycle_time: float, report_error: Report, report_warning: Report
+    ) -> None:
+        """`cycle_time` in s; the reports take faults and warnings as events."""
         self.parameters = parameters
         self.name = parameters.name
         self.unit = "deg" if parameters.rotary else "mm"
@@ -31,29 +46,172 @@ class Axis:
         self.ptp = PtpGenerator(
             position=parameters.start_position, cycle_time=cycle_time, override_type=parameters.override_type
         )
+        self.compensation = Compensation(cycle_time=cycle_time)
+        self.external = ExternalSetpoints(
+            cycle_time=cycle_time,
+            dead_time=parameters.external_dead_time,
+            limits=self.own_limits._replace(velocity=parameters.max_velocity),
+        )
+        self.superposed = False
+        """Compensation or external setpoints add something to the basic motion."""
+        self.override_filter = OverrideFilter(
+            steps=parameters.override_steps, interval_cycles=round(parameters.override_interval / cycle_time)
+        )
+        self.target_window = TargetWindow(
+            window=parameters.position_window, cycles=round(parameters.target_time / cycle_time)
+        )
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0
         self.has_been_stopped = False
         self.override_percent = 100.0
+        self._longest_silence = round(parameters.external_timeout / cycle_time)
         self._report_error = report_error
+        self._report_warning = report_warning
+
+    # setpoints
 
     def setpoint(self, cycle: int) -> State:
         """Position, velocity, acceleration and jerk at `cycle`, as they stand before a command that acts there."""
-        return self.ptp.state(cycle)
+        return self.superimposed(cycle, self.ptp.state(cycle))
 
-    def at_rest_state(self) -> S:
+    def superimposed(self, cycle: int, base: State) -> State:
+        """The basic motion at `cycle` with compensation and external setpoints."""
+        if not self.superposed:
+            return base
+        return self.external.at(cycle, self.compensation.at(cycle, base))
+
+    def shift(self, cycle: int) -> float:
+        """Where the axis is beside its basic motion for good, mm (deg): targets of the axis lie there too."""
+        external = self.external.contribution(cycle)[0] if self.external.mode is None else 0.0
+        return self.compensation.offset + external
+
+    def moving(self, cycle: int) -> bool:
+        return not self.ptp.finished(cycle) or (self.superposed and self.external.moving(cycle))
+
+    def absorb(self, cycle: int) -> None:
+        """The basic motion takes over what compensation and external setpoints have added; both are over."""
+        if self.superposed:
+            self.ptp.take_over(cycle, *self.setpoint(cycle)[:3])
+            self._end_superposition()
+
+    def place(self, cycle: int, position: float) -> None:
+        """A standing axis without position control was moved to `position`."""
+        self.ptp.take_over(cycle, position, 0.0, 0.0)
+        self._end_superposition()
+
+    def _end_superposition(self) -> None:
+        self.compensation.reset()
+        self.external.reset()
+        self.superposed = False
+
+    def stop(self, cycle: int, *, locks: bool = True) -> None:
+        """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP."""
+        self.ptp.stop(cycle, self.own_limits, locks=locks)
+        self.compensation.stop()
+        self.external.disable(cycle)
+
+    def set_override(self, cycle: int, percent: float) -> bool:
+        """Lets an override act; False when it does not change the motion in work."""
+        acts = self.ptp.set_override(cycle, percent / 100.0)
+        self.override_percent = float(percent) if self.ptp.override else 0.0
+        return acts
+
+    # states
+
+    def begin_block(self, cycle: int) -> None:
+        """What waits for the first cycle of a block: the override filter."""
+        percent = self.override_filter.due(cycle)
+        if percent is not None:
+            self.set_override(cycle, percent)
+
+    def rest_state(self) -> S:
         """Where an axis without error comes to rest."""
         return S.STANDSTILL if self.powered else S.DISABLED
 
     def advance_state(self, cycle: int) -> None:
-        """Ends a motion that is through at `cycle`."""
-        if self.state == S.DISCRETE_MOTION and self.ptp.arrived(cycle):
+        """Ends a motion that is through at `cycle`; a request that waited for the end of a stop has begun by itself."""
+        if self.ptp.job is not None and self.state == S.STOPPING:
+            self.state = S.DISCRETE_MOTION
+            self.has_been_stopped = False
+        if not self.ptp.arrived(cycle):
+            return
+        if self.state in (S.DISCRETE_MOTION, S.STOPPING):
+            self.compensation.end()
+        if self.superposed and self.external.mode is not None:
+            self._finish(S.CONTINUOUS_MOTION)
+        elif self.superposed and self.external.moving(cycle):
+            self._finish(S.STOPPING)
+        else:
+            self._finish(self.rest_state())
+
+    def _finish(self, state: S) -> None:
+        if state != self.state:
             self.ptp.finish()
-            self.state = S.STANDSTILL
-        elif self.state == S.STOPPING and self.ptp.finished(cycle):
-            self.ptp.finish()
-            self.state = self.at_rest_state()
+        self.state = state
+
+    def status_bits(self, setpoint: State, actual_position: float) -> int:
+        position, velocity, acceleration, _ = setpoint
+        bits = 0
+        if self.ptp.job is not None:
+            bits |= StatusBit.HAS_JOB
+        if self.has_been_stopped:
+            bits |= StatusBit.HAS_BEEN_STOPPED
+        if velocity != 0.0 and acceleration == 0.0:
+            bits |= StatusBit.CONSTANT_VELOCITY
+        if self.superposed:
+            bits |= StatusBit.COMPENSATING if self.compensation.active else 0
+            bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0
+        if self.error_id:
+            bits |= StatusBit.ERROR
+        if velocity == 0.0 and self.ptp.job is None and self.target_window.reached(position, actual_position):
+            bits |= StatusBit.IN_TARGET_POSITION
+        return bits
+
+    # monitoring
+
+    def watch_superposition(self, cycle: int, setpoint: State) -> None:
+        """External setpoints that jump or stay away, and soft limits that nothing has checked beforehand."""
+        if self.error_id:
+            return
+        rejected, silence = self.external.rejected, self.external.silence(cycle)
+        if rejected is not None:
+            packet, way = rejected
+            reason = (
+                f"external setpoint {packet.position} {self.unit} is {abs(way):g} {self.unit} away, farther than the "
+                f"axis gets at {self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
+            )
+            self.fault(cycle, SETPOINT_TOO_FAR, reason)
+        elif silence > self._longest_silence:
+            timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
+            self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves")
+        else:
+            self._watch_soft_limits(cycle, *setpoint[:2])
+
+    def _watch_soft_limits(self, cycle: int, position: float, velocity: float) -> None:
+        low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
+        where = f"set position {position} {self.unit} is beyond the"
+        if position > high and velocity > 0.0:
+            reason = f"{where} positive soft limit {high} {self.unit} (P-AXIS-00178)"
+            self.fault(cycle, SOFT_LIMIT_POSITIVE, reason)
+        elif position < low and velocity < 0.0:
+            reason = f"{where} negative soft limit {low} {self.unit} (P-AXIS-00177)"
+            self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason)
+
+    def watch_target(self, cycle: int, set_position: float, actual_position: float) -> None:
+        """For a cycle in which the setpoint stands."""
+        if not self.target_window.overdue(cycle, set_position, actual_position):
+            return
+        distance = abs(self.target_window.error(set_position, actual_position))
+        self._report_warning(
+            cycle,
+            TARGET_MISSED,
+            f"axis {self.name}: {self.parameters.target_time:g} s after its end the motion is {distance:g} {self.unit} "
+            f"away from its target, more than the position window {self.parameters.position_window:g} {self.unit} "
+            "(P-AXIS-00236)",
+        )
+
+    # refusals and faults
 
     def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
         raise self.checks.refusal(command, error_id, reason)
@@ -61,6 +219,8 @@ class Axis:
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop."""
         self.error_id = error_id
+        self.absorb(cycle)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
+        self.target_window.forget()
         self.state = S.ERROR_STOP
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")

@@ -33,8 +33,8 @@ class PowerCommands:
 
     def _switch_on(self, cycle: int) -> None:
         axis = self._axis
-        if axis.ptp.finished(cycle):
-            axis.ptp.take_over(cycle, self._actual_position(), 0.0, 0.0)
+        if not axis.moving(cycle):
+            axis.place(cycle, self._actual_position())
         axis.powered = True
         if axis.state == S.DISABLED:
             axis.state = S.STANDSTILL
@@ -46,8 +46,8 @@ class PowerCommands:
             axis.state = S.DISABLED
         elif axis.state == S.SYNCHRONIZED_MOTION:
             axis.fault(cycle, ENABLE_REMOVED, "the enable was removed during path motion")
-        elif axis.state == S.DISCRETE_MOTION:
-            axis.ptp.stop(cycle, axis.own_limits)
+        elif axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
+            axis.stop(cycle)
             axis.state = S.STOPPING
 
     def do_reset(self, cycle: int) -> None:
@@ -59,4 +59,4 @@ class PowerCommands:
             axis.refuse("reset", STILL_MOVING, "the axis still moves on its error ramp; wait for standstill")
         axis.error_id = 0
         axis.ptp.finish()
-        axis.state = axis.at_rest_state()
+        axis.state = axis.rest_state()

@@ -1,9 +1,13 @@
-"""PTP setpoint generator: start, override and stop on immutable runtime tables (TX1250, 2.1 and 2.2)."""
+"""PTP setpoint generator: start, override, stop, new target, new velocity on immutable runtime tables (TX1250, 2)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from bisect import bisect_left
+from dataclasses import dataclass, replace
+from math import ceil, copysign
 
+from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
+from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
 from cnc_ptp.motion import (
     Limits,
     Profile,
@@ -24,14 +28,26 @@ STANDING = (0.0, 0.0, 0.0)
 SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
 
+REDUCTIONS = 8
+"""Steps in which a new velocity that cannot be reached is brought nearer to the old one (TX1250 2.4)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A positioning that was started: where to, with which limits, and the velocity that 100 percent override means."""
+    """A positioning: where to, with which limits, and the velocity that its last leg can reach of them."""
 
     target: float
     limits: Limits
-    full_velocity: float
+    reduced_velocity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Activation:
+    """A new velocity (mm/s) that comes when the axis passes `position` in `direction`."""
+
+    position: float
+    direction: float
+    velocity: float
 
 
 class PtpGenerator:
@@ -39,24 +55,35 @@ class PtpGenerator:
 
     Time is the cycle number: a table that was made for cycle c gives its start state at c. A command given for cycle c
     plans from the state that the old table has at c, so that no change steps the velocity or the acceleration.
+    What happens later by itself (a new velocity at its activation position, a request that waits for the end of a stop)
+    is due at a cycle that is known beforehand: `states` gives cycles up to it, `advance` carries it out.
     """
 
     def __init__(self, *, position: float, cycle_time: float, override_type: int) -> None:
         """`position` in mm or deg, `cycle_time` in s; override types 1 to 4 as in TX1250 2.2."""
         self._cycle_time = cycle_time
-        self._override_type = override_type
         self._origin = 0
         self._profile = standing(position)
         self._ramp_limits: Limits | None = None
+        self._stopped_job: Job | None = None
+        self._stop_locks = False
+        self._suspended: Request | None = None
+        self._activation: Activation | None = None
+        self._due: int | None = None
+        self.override_type = override_type
         self.job: Job | None = None
         self.override = 1.0
+
+    # setpoints
 
     def state(self, cycle: int) -> State:
         """Setpoint at `cycle`: position, velocity, acceleration, jerk."""
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
 
     def states(self, first_cycle: int, count: int) -> list[State]:
-        """Setpoints of `count` cycles."""
+        """Setpoints of `count` cycles, fewer (but one at least) when something comes due among them."""
+        if self._due is not None:
+            count = max(1, min(count, self._due - first_cycle))
         state = self.state(first_cycle)
         if state[1:] == STANDING and self.finished(first_cycle):
             return [state] * count
@@ -69,7 +96,18 @@ class PtpGenerator:
 
     def arrived(self, cycle: int) -> bool:
         """True when the table is through and leaves nothing to do (a job held by override 0 is something left)."""
-        return self.finished(cycle) and (self.job is None or self._ends_at(self.job))
+        return self.finished(cycle) and self._suspended is None and (self.job is None or self._ends_at(self.job))
+
+    def braking(self, cycle: int) -> bool:
+        """True in the brake phase: the last ramp down of a job, or that of a stop."""
+        return self.job is None or self._in_brake_phase(cycle, self.job)
+
+    @property
+    def can_redirect(self) -> bool:
+        """True while there is a positioning, or a stop of one, that can be led to a new target."""
+        return self.job is not None or self._stopped_job is not None
+
+    # commands
 
     def start(self, cycle: int, target: float, limits: Limits) -> None:
         """Starts from standstill towards `target` (mm or deg); with override 0 the job waits.
@@ -77,11 +115,8 @@ class PtpGenerator:
         Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
         """
         check_limits(limits)
-        position = self.state(cycle)[0]
-        job = Job(target, limits, self._full_velocity(target - position, limits))
-        profile = self._from_rest(position, job)
-        self.job = job
-        self._set(cycle, profile, limits)
+        job = self._job_from_rest(self.state(cycle)[0], target, limits)
+        self._begin(cycle, job, self._table(cycle, job))
 
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
@@ -90,48 +125,92 @@ class PtpGenerator:
         velocity level cannot be reached; types 3 and 4 take the highest level that can.
         """
         self.override = ratio if ratio >= SMALLEST_OVERRIDE else 0.0
-        if self.job is None or self._braking(cycle, self.job):
+        job = self.job
+        if job is None or self._in_brake_phase(cycle, job):
             return False
-        profile = self._at_level(cycle, self.job)
-        if profile is not None:
-            self._set(cycle, profile, self.job.limits)
-        return profile is not None
+        table = self._table(cycle, job)
+        if self._level_is_missed(cycle, job, table):
+            return False
+        self._set(cycle, table, job.limits)
+        return True
 
-    def stop(self, cycle: int, limits: Limits, *, at_least: bool = False) -> None:
+    def stop(self, cycle: int, limits: Limits, *, at_least: bool = False, locks: bool = True) -> None:
         """Ends the job and ramps down with A- and J of the motion in work, or of `limits` if none is.
 
-        `at_least`: the ramp is not weaker than `limits` either. A brake phase runs on otherwise.
+        `at_least`: the ramp is not weaker than `limits` either. A brake phase runs on otherwise. `locks`: new targets
+        wait until the axis stands (a stop); without, they act at once (a halt).
         """
         ramp = self._ramp_limits or limits
         if at_least:
             ramp = Limits(*map(max, ramp, limits))
-        elif self.job is not None and self._braking(cycle, self.job):
-            self.job = None
+        brakes = self.job is not None and self._in_brake_phase(cycle, self.job)
+        self._stopped_job, self.job = self.job or self._stopped_job, None
+        self._suspended = self._activation = self._due = None
+        self._stop_locks = locks
+        if at_least or not brakes:
+            position, velocity, acceleration, _ = self.state(cycle)
+            self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, ramp), ramp)
+
+    def redirect(self, cycle: int, request: Request) -> None:
+        """New target, with or without a new velocity, for the positioning in work (TX1250 2.3, 2.4).
+
+        A pending activation is deleted. During a stop the request waits until the axis stands.
+        """
+        if self.job is None and self._stop_locks:
+            self._suspended = request
+            self._due = self._origin + ceil(self._profile.duration / self._cycle_time)
+        else:
+            self._carry_out(cycle, request)
+
+    def drop_suspended(self) -> bool:
+        """Takes back a request that waits for the end of a stop; False when there is none."""
+        waiting = self._suspended is not None
+        if waiting:
+            self._suspended = self._due = None
+        return waiting
+
+    def advance(self, cycle: int) -> None:
+        """Carries out what is due at `cycle`."""
+        if self._due is None or cycle < self._due:
             return
-        position, velocity, acceleration, _ = self.state(cycle)
-        self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, ramp), ramp)
-        self.job = None
+        self._due = None
+        if self._suspended is not None:
+            request, self._suspended = self._suspended, None
+            self._carry_out(cycle, request)
+        elif self._activation is not None and self.job is not None:
+            activation, self._activation = self._activation, None
+            self._change_velocity(cycle, self.job, activation.velocity)
 
     def finish(self) -> None:
         """The table is through: job and stop are done."""
-        self.job = None
+        self.job = self._stopped_job = None
         self._ramp_limits = None
+        self._suspended = self._activation = self._due = None
 
     def take_over(self, cycle: int, position: float, velocity: float, acceleration: float) -> None:
         """Continues from a state that another setpoint source has at `cycle`; unless it stands, a stop must follow."""
-        self.job = None
-        self._set(cycle, Profile([(0.0, position, velocity, acceleration, 0.0)]), None)
+        ramp = self._ramp_limits
+        self.finish()
+        self._set(cycle, Profile([(0.0, position, velocity, acceleration, 0.0)]), ramp)
+
+    # tables
+
+    def _begin(self, cycle: int, job: Job, table: Profile) -> None:
+        self.job, self._stopped_job = job, None
+        self._set(cycle, table, job.limits)
 
     def _set(self, cycle: int, profile: Profile, limits: Limits | None) -> None:
         self._origin = cycle
         self._profile = profile
         self._ramp_limits = limits
+        if self._activation is not None:
+            self._due = self._crossing(cycle, self._activation)
 
     def _ends_at(self, job: Job) -> bool:
         """The table in work leads to the target; the one of override 0 does not."""
         return bool(self._profile.end[0] == job.target)
 
-    def _braking(self, cycle: int, job: Job) -> bool:
+    def _in_brake_phase(self, cycle: int, job: Job) -> bool:
         """True when the table leads to the target and nothing but its last ramp down is left."""
         if not self._ends_at(job):
             return False
@@ -142,42 +221,103 @@ class PtpGenerator:
         tolerance = 1e-9 * max(1.0, abs(job.target), abs(position))
         return abs(ahead - job.target) <= tolerance
 
-    def _full_velocity(self, distance: float, limits: Limits) -> float:
-        if self._override_type in (2, 4):
-            return limits.velocity
+    def _job_from_rest(self, position: float, target: float, limits: Limits) -> Job:
         symmetric = min(limits.acceleration, limits.deceleration)
-        return min(limits.velocity, reachable_velocity(abs(distance), symmetric, limits.jerk))
+        reached = reachable_velocity(abs(target - position), symmetric, limits.jerk)
+        return Job(target, limits, min(limits.velocity, reached))
+
+    def _job_on_the_way(self, cycle: int, target: float, limits: Limits) -> Job:
+        """The job to `target` for an axis in motion; where it stops and returns, the way back counts."""
+        position, velocity, acceleration, _ = self.state(cycle)
+        leg = last_leg(plan_to_position(position, velocity, acceleration, target, limits))
+        if leg[0][2] == 0.0 and leg[0][3] == 0.0:
+            return self._job_from_rest(leg[0][1], target, limits)
+        return Job(target, limits, min(limits.velocity, peak_velocity(leg)))
 
     def _level(self, job: Job) -> Limits:
         """Limits with the velocity of the override; below what tables can be made for, the smallest of these."""
-        return job.limits._replace(velocity=max(job.full_velocity * self.override, SMALLEST_LIMIT))
+        full = job.limits.velocity if self.override_type in (2, 4) else job.reduced_velocity
+        return job.limits._replace(velocity=max(full * self.override, SMALLEST_LIMIT))
 
-    def _from_rest(self, position: float, job: Job) -> Profile:
-        if self.override == 0.0:
-            return standing(position)
-        return plan_rest_to_rest(position, job.target, self._level(job))
-
-    def _at_level(self, cycle: int, job: Job) -> Profile | None:
-        """The table for the override as it is now; None when the old one is to be kept."""
+    def _table(self, cycle: int, job: Job) -> Profile:
+        """The way to the target at the velocity of the override; with override 0 the way to standstill."""
         position, velocity, acceleration, _ = self.state(cycle)
         if self.override == 0.0:
             return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
         if velocity == 0.0 and acceleration == 0.0:
-            return self._from_rest(position, job)
-        level = self._level(job)
-        profile = plan_to_position(position, velocity, acceleration, job.target, level)
-        if self._override_type in (1, 2) and self._ends_at(job) and not reaches(profile, level.velocity):
-            return None
-        return profile
+            return plan_rest_to_rest(position, job.target, self._level(job))
+        return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
 
+    def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
+        """Override types 1 and 2: the table in work leads to the target, and the new one does not reach its level."""
+        if self.override_type not in (1, 2) or self.override == 0.0 or not self._ends_at(job):
+            return False
+        _, velocity, acceleration, _ = self.state(cycle)
+        return (velocity != 0.0 or acceleration != 0.0) and not reaches(table, self._level(job).velocity)
 
-def standing(position: float) -> Profile:
-    """The table of an axis that stands at `position`."""
-    return Profile([(0.0, position, 0.0, 0.0, 0.0)])
+    # new target, new velocity
 
+    def _carry_out(self, cycle: int, request: Request) -> None:
+        """Leads to the new target; the new velocity comes now, later or never.
 
-def reaches(profile: Profile, velocity: float) -> bool:
-    """True when the table holds a stretch at `velocity` (mm/s, either direction) without acceleration."""
-    return any(
-        abs(abs(v) - velocity) <= 1e-9 * velocity and abs(a) <= 1e-9 * abs(v) + 1e-12 for _, _, v, a, _ in profile.rows
-    )
+        Where the axis has passed the target, or cannot stop before it, it stops and returns, with the old velocity; if
+        that cannot be reached on the way back but the new one can, with the new one.
+        """
+        before = self.job or self._stopped_job
+        if before is None:
+            return
+        position, velocity, _, _ = self.state(cycle)
+        goal = request.target if self.job is None else self.job.target
+        direction = copysign(1.0, velocity or goal - position)
+        self._activation = self._due = None
+        job = self._job_on_the_way(cycle, request.target, before.limits)
+        leg = last_leg(plan_to_position(*self.state(cycle)[:3], request.target, before.limits))
+        returns = velocity != 0.0 and leg[0][2] == 0.0
+        if returns and request.velocity is not None and request.velocity <= job.reduced_velocity < job.limits.velocity:
+            job = replace(job, limits=job.limits._replace(velocity=request.velocity), reduced_velocity=request.velocity)
+        self._begin(cycle, job, self._table(cycle, job))
+        if request.velocity is not None and not returns:
+            self._stage_velocity(cycle, job, velocity_stage(direction, position, request), direction, request)
+
+    def _stage_velocity(self, cycle: int, job: Job, stage: Stage, direction: float, request: Request) -> None:
+        assert request.velocity is not None
+        if stage is Stage.NOW:
+            self._change_velocity(cycle, job, request.velocity)
+        elif stage is Stage.LATER:
+            self._activation = Activation(request.activation_position, direction, request.velocity)
+            self._due = self._crossing(cycle, self._activation)
+
+    def _change_velocity(self, cycle: int, job: Job, velocity: float) -> None:
+        """Takes the new velocity, or what comes nearest to it on the rest of the way; else the old table stays."""
+        reached = self._nearest_reached(cycle, job, velocity)
+        if reached is not None:
+            changed = self._job_on_the_way(cycle, job.target, job.limits._replace(velocity=reached))
+            self._begin(cycle, changed, self._table(cycle, changed))
+
+    def _nearest_reached(self, cycle: int, job: Job, velocity: float) -> float | None:
+        """`velocity` if the rest of the way has a stretch at it, else by bisection towards the old one; None if not."""
+        best, low, high, candidate = None, job.limits.velocity, velocity, velocity
+        for _ in range(1 + REDUCTIONS):
+            if self._can_reach(cycle, job, candidate):
+                best = low = candidate
+                if candidate == velocity:
+                    break
+            else:
+                high = candidate
+            candidate = 0.5 * (low + high)
+        return best
+
+    def _can_reach(self, cycle: int, job: Job, velocity: float) -> bool:
+        """True when the rest of the way has a stretch at `velocity`, scaled by the override."""
+        level = velocity * (self.override or 1.0)
+        limits = job.limits._replace(velocity=max(level, SMALLEST_LIMIT))
+        return reaches(plan_to_position(*self.state(cycle)[:3], job.target, limits), limits.velocity)
+
+    def _crossing(self, cycle: int, activation: Activation) -> int | None:
+        """The first cycle at which the table in work is at or past the activation position, None when it never is."""
+        end = max(cycle, self._origin + ceil(self._profile.duration / self._cycle_time))
+
+        def passed(at: int) -> bool:
+            return activation.direction * (self.state(at)[0] - activation.position) >= 0.0
+
+        return cycle + bisect_left(range(cycle, end), True, key=passed) if passed(end) else None

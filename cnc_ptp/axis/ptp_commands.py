@@ -1,55 +1,60 @@
-"""PTP functions of an axis: start, override, stop. Source: TX1250 2.1 and 2.2."""
+"""PTP functions of an axis: start, override, stop, new target, new velocity. Source: TX1250 2.1 to 2.4."""
 
 from __future__ import annotations
 
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import BAD_OVERRIDE, BELOW_INCREMENT, NOT_READY
+from cnc_ptp.axis.faults import (
+    BAD_OVERRIDE,
+    BAD_OVERRIDE_TYPE,
+    BELOW_INCREMENT,
+    COMPENSATION_RUNS,
+    NO_MODULO_AXIS,
+    NO_POSITIONING,
+    NOT_READY,
+    START_BESIDE_EXTERNAL,
+)
+from cnc_ptp.axis.modulo import modulo_target
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
+from cnc_ptp.axis.two_stage import Request
+
+OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
 class PtpCommands:
-    """Commands that start, change and end a positioning; each is refused as a whole or carried out."""
+    """Commands that start and change a positioning; each is refused as a whole or carried out."""
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
 
+    # start (2.1)
+
     def do_move_absolute(self, cycle: int, *, target: float, **dynamics: float) -> str | None:
-        """Starts to `target` (mm, deg). Source: TX1250 2.1. Refusals: 23003–23005, 23011, 23013, 120002, 120003."""
+        """Starts to `target` (mm, deg). Refusals: 23003–23005, 23011, 23013, 23027, 120002, 120003."""
         return self._start("move_absolute", cycle, float(target), dynamics)
 
     def do_move_relative(self, cycle: int, *, distance: float, **dynamics: float) -> str | None:
         """Starts by `distance` (mm, deg) from the set position."""
         return self._start("move_relative", cycle, self._axis.setpoint(cycle)[0] + distance, dynamics)
 
-    def do_stop(self, cycle: int) -> str | None:
-        """Stops PTP motion on the ramp of its start. Source: TX1250 2.2."""
-        axis = self._axis
-        if axis.state == S.SYNCHRONIZED_MOTION:
-            axis.refuse("stop", NOT_READY, "the channel path moves the axis; use feed_hold or reset of the channel")
-        if axis.state != S.DISCRETE_MOTION:
-            return f"axis {axis.name}: stop without effect in {state_name(axis.state)}"
-        axis.ptp.stop(cycle, axis.own_limits)
-        axis.state = S.STOPPING
-        axis.has_been_stopped = True
-        return None
+    def do_move_modulo(self, cycle: int, *, position: float, **dynamics: float) -> str | None:
+        """Starts to the modulo position |`position`| (deg), with whole turns; its sign is the direction.
 
-    def do_set_override(self, cycle: int, *, percent: float) -> str | None:
-        """Override of PTP motion, 0 … 100 % in steps of 0.0001 % (less is 0). Source: TX1250 2.2."""
-        axis = self._axis
-        highest = min(100.0, axis.parameters.max_override_percent)
-        if not 0.0 <= percent <= highest:
-            reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
-            axis.refuse("set_override", BAD_OVERRIDE, reason)
-        acts = axis.ptp.set_override(cycle, percent / 100.0)
-        axis.override_percent = float(percent) if axis.ptp.override else 0.0
-        if acts or axis.state != S.DISCRETE_MOTION:
-            return None
-        reason = "brake phase or level out of reach"
-        return f"axis {axis.name}: override {percent} % does not change the motion in work ({reason})"
+        Refused besides with 23024 on an axis that does not count modulo.
+        """
+        parameters = self._axis.parameters
+        if not parameters.modulo:
+            reason = "the axis does not count modulo (P-AXIS-00015)"
+            self._axis.refuse("move_modulo", NO_MODULO_AXIS, reason)
+        turn = parameters.modulo_high - parameters.modulo_low
+        target = modulo_target(self._axis.setpoint(cycle)[0], float(position), turn)
+        return self._start("move_modulo", cycle, target, dynamics)
 
     def _start(self, command: str, cycle: int, target: float, dynamics: dict[str, float]) -> str | None:
         axis = self._axis
+        if axis.external.mode is not None:
+            reason = "external setpoints are enabled; a PTP start beside them is not permitted"
+            axis.refuse(command, START_BESIDE_EXTERNAL, reason)
         if axis.state != S.STANDSTILL:
             axis.refuse(command, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill")
         limits = axis.checks.dynamics(command, dynamics)
@@ -63,7 +68,75 @@ class PtpCommands:
                 f"P-WARN-{BELOW_INCREMENT} axis {axis.name}: {command} over {distance:g} {axis.unit} is below one "
                 f"encoder increment ({increment} {axis.unit}); the axis does not move"
             )
+        axis.absorb(cycle)
         axis.ptp.start(cycle, target, limits)
+        axis.target_window.watch()
         axis.has_been_stopped = False
         axis.state = S.DISCRETE_MOTION
         return warning
+
+    # override (2.2)
+
+    def do_set_override(self, cycle: int, *, percent: float) -> str | None:
+        """Override of PTP motion, 0 … 100 % in steps of 0.0001 % (less is 0), through the filter if there is one."""
+        axis = self._axis
+        highest = min(100.0, axis.parameters.max_override_percent)
+        if not 0.0 <= percent <= highest:
+            reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
+            axis.refuse("set_override", BAD_OVERRIDE, reason)
+        used = axis.override_filter.take(cycle, percent)
+        if used is None or axis.set_override(cycle, used) or axis.state != S.DISCRETE_MOTION:
+            return None
+        reason = "brake phase or level out of reach"
+        return f"axis {axis.name}: override {percent} % does not change the motion in work ({reason})"
+
+    def do_set_override_type(self, cycle: int, *, type: int) -> None:
+        """1 reduced, 2 original, 3 and 4 the same iterated; counts from the next override or start on."""
+        if type not in OVERRIDE_TYPES:
+            reason = f"type = {type} is none of 1, 2, 3, 4"
+            self._axis.refuse("set_override_type", BAD_OVERRIDE_TYPE, reason)
+        self._axis.ptp.override_type = type
+
+    # new target (2.3), new velocity and new target (2.4)
+
+    def do_new_target(self, cycle: int, *, target: float) -> str | None:
+        """Leads the positioning in work to `target` (mm, deg). Refusals: 23005, 23014, 23015, 120002, 120003."""
+        self._check_redirection("new_target", target)
+        return self._redirect("new_target", cycle, Request(self._in_basic_motion(cycle, target)))
+
+    def do_new_velocity_and_target(
+        self, cycle: int, *, velocity: float, target: float, activation_position: float
+    ) -> str | None:
+        """New target at once, new velocity (mm/s) from `activation_position` on.
+
+        Refused besides with 23003, 23004 and 23011 for the velocity.
+        """
+        command = "new_velocity_and_target"
+        self._check_redirection(command, target)
+        self._axis.checks.positive(command, {"velocity": velocity})
+        self._axis.checks.velocity(command, velocity)
+        positions = self._in_basic_motion(cycle, target), self._in_basic_motion(cycle, activation_position)
+        return self._redirect(command, cycle, Request(positions[0], float(velocity), positions[1]))
+
+    def _in_basic_motion(self, cycle: int, position: float) -> float:
+        return position - self._axis.shift(cycle)
+
+    def _check_redirection(self, command: str, target: float) -> None:
+        axis = self._axis
+        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) or not axis.ptp.can_redirect:
+            reason = f"no positioning is in work (the axis is in {state_name(axis.state)}); start one"
+            axis.refuse(command, NO_POSITIONING, reason)
+        if not axis.powered:
+            axis.refuse(command, NOT_READY, "the enable was removed")
+        if axis.compensation.active:
+            axis.refuse(command, COMPENSATION_RUNS, "a position compensation is active")
+        axis.checks.soft_limits(command, target)
+
+    def _redirect(self, command: str, cycle: int, request: Request) -> str | None:
+        axis = self._axis
+        axis.ptp.redirect(cycle, request)
+        if axis.ptp.job is None:
+            return f"axis {axis.name}: {command} waits for the end of the stop"
+        axis.has_been_stopped = False
+        axis.target_window.watch()
+        return None

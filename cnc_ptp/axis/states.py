@@ -21,6 +21,7 @@ class AxisStateCode(IntEnum):
 class StatusBit(IntEnum):
     """Bits of AxisState.status_bits, numbered as in TwinCAT's axis status word."""
 
+    IN_TARGET_POSITION = 1 << 4
     PROTECTED = 1 << 5
     ERROR_DELAYED = 1 << 6
     HAS_BEEN_STOPPED = 1 << 7

@@ -6,12 +6,15 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.compensation_commands import CompensationCommands
+from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.faults import FOLLOWING_ERROR, PATH_NOT_ACCEPTED
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import StatusBit, state_name
+from cnc_ptp.axis.states import state_name
+from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock, CycleTick, Severity
@@ -21,8 +24,8 @@ from cnc_ptp.parameters import AxisParameters
 PATH_TOLERANCE = 1e-9
 """Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
 
-MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING)
-"""States that end by themselves."""
+MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
+"""States that can end by themselves."""
 
 Row = tuple[float | int, ...]
 """One cycle: the fields of AxisBlock after `count`."""
@@ -40,7 +43,9 @@ class AxisUnit(Unit):
     def __init__(self, parameters: AxisParameters, *, cycle_time: float, drive: Drive | None = None) -> None:
         """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
         super().__init__(parameters.name)
-        self._axis = Axis(parameters, cycle_time=cycle_time, report_error=self._report_error)
+        self._axis = Axis(
+            parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
+        )
         self._controller = PositionController(
             kv=parameters.kv,
             following_error_limit=parameters.following_error_limit,
@@ -56,10 +61,16 @@ class AxisUnit(Unit):
             self,
             PowerCommands(self._axis, actual_position=lambda: self._drive.position),
             PtpCommands(self._axis),
+            StopCommands(self._axis),
+            CompensationCommands(self._axis),
+            ExternalCommands(self._axis),
         )
 
     def _report_error(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.ERROR, error_id, text)
+
+    def _report_warning(self, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, Severity.WARNING, error_id, text)
 
     # commands
 
@@ -83,10 +94,13 @@ class AxisUnit(Unit):
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
         """Computes one block; follows the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
+        axis = self._axis
+        axis.begin_block(first_cycle)
         rows = self._follow(first_cycle, self._path_setpoints(first_cycle, self._owning_channel(inputs)))
         while len(rows) < count:
-            cycle, missing = first_cycle + len(rows), count - len(rows)
-            rows += self._follow(cycle, self._axis.ptp.states(cycle, missing))
+            cycle = first_cycle + len(rows)
+            axis.ptp.advance(cycle)
+            rows += self._follow(cycle, axis.ptp.states(cycle, count - len(rows)))
         return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
 
     def _follow(self, first_cycle: int, setpoints: list[State]) -> list[Row]:
@@ -99,14 +113,19 @@ class AxisUnit(Unit):
                 break
         return rows
 
-    def _cycle(self, cycle: int, setpoint: State) -> Row:
-        position, velocity, acceleration, jerk = setpoint
+    def _cycle(self, cycle: int, base: State) -> Row:
         axis, drive = self._axis, self._drive
+        setpoint = axis.superimposed(cycle, base)
+        position, velocity, acceleration, jerk = setpoint
         following_error = position - drive.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
+        if axis.superposed:
+            axis.watch_superposition(cycle, setpoint)
+        elif velocity == 0.0:
+            axis.watch_target(cycle, position, drive.position)
         command = 0.0
-        if self._loop_closed(cycle):
+        if axis.powered or axis.moving(cycle):
             if axis.error_id == 0 and self._controller.exceeds_limit(following_error):
                 self._following_error_fault(cycle, setpoint, following_error)
             command = self._controller.command_velocity(following_error)
@@ -125,27 +144,11 @@ class AxisUnit(Unit):
             0.0,
             axis.override_percent,
             axis.state,
-            self._status_bits(velocity, acceleration),
+            axis.status_bits(setpoint, drive.position),
             axis.error_id,
         )
         drive.step(command)
         return row
-
-    def _loop_closed(self, cycle: int) -> bool:
-        """The position controller acts: the axis is powered, or on a ramp after the enable was removed."""
-        return self._axis.powered or not self._axis.ptp.finished(cycle)
-
-    def _status_bits(self, velocity: float, acceleration: float) -> int:
-        bits = 0
-        if self._axis.ptp.job is not None:
-            bits |= StatusBit.HAS_JOB
-        if self._axis.has_been_stopped:
-            bits |= StatusBit.HAS_BEEN_STOPPED
-        if velocity != 0.0 and acceleration == 0.0:
-            bits |= StatusBit.CONSTANT_VELOCITY
-        if self._axis.error_id:
-            bits |= StatusBit.ERROR
-        return bits
 
     # path of the channel
 
@@ -183,6 +186,8 @@ class AxisUnit(Unit):
         if axis.state in (S.SYNCHRONIZED_MOTION, S.ERROR_STOP):
             return
         position = axis.setpoint(cycle)[0]
+        if axis.state == S.STANDSTILL:
+            axis.absorb(cycle)
         if axis.state != S.STANDSTILL:
             reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)

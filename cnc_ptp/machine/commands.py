@@ -18,7 +18,7 @@ UNKNOWN_COMMAND = 22002
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """One argument of a command. `kind`: number, integer, switch or text; `choices` limits a text."""
+    """One argument of a command. `kind`: number, integer, switch, text or rows; `choices` limits a text."""
 
     kind: str
     required: bool = True
@@ -32,6 +32,7 @@ INTEGER = Argument("integer")
 SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
+ROWS = Argument("rows")
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_NUMBER)
 SOURCE: Arguments = {"source": TEXT}
 
@@ -41,8 +42,26 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "reset": {},
         "move_absolute": {"target": NUMBER, **DYNAMICS},
         "move_relative": {"distance": NUMBER, **DYNAMICS},
+        "move_modulo": {"position": NUMBER, **DYNAMICS},
         "set_override": {"percent": NUMBER},
+        "set_override_type": {"type": INTEGER},
         "stop": {},
+        "halt": {},
+        "emergency_stop": {"deceleration": NUMBER, "jerk": NUMBER},
+        "new_target": {"target": NUMBER},
+        "new_velocity_and_target": {"velocity": NUMBER, "target": NUMBER, "activation_position": NUMBER},
+        "compensation_start": {
+            "length": NUMBER,
+            "difference": NUMBER,
+            "process_velocity": NUMBER,
+            "velocity_increase": NUMBER,
+            "acceleration": OPTIONAL_NUMBER,
+            "deceleration": OPTIONAL_NUMBER,
+        },
+        "compensation_stop": {},
+        "external_enable": {"mode": Argument("text", choices=("absolute", "relative")), "target": OPTIONAL_NUMBER},
+        "external_disable": {},
+        "external_setpoints": {"setpoints": ROWS, "file": OPTIONAL_TEXT},
         "upstream_lost": SOURCE,
     },
     "spindle": {
@@ -77,7 +96,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 INTERNAL = frozenset({"upstream_lost", "abort"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
 
-TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str}
+TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list}
 
 
 def check_command(kind: str, unit: str, command: str, arguments: Mapping[str, Any]) -> None:

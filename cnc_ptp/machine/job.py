@@ -32,7 +32,7 @@ def read_job(machine: MachineParameters, *, program: str | None, scenario: str |
         folder = Path(scenario).parent
         text = read_file("scenario", scenario)
         entries += parse_scenario(
-            text, scenario, unit_kinds(machine), lambda path: read_file("NC program", str(folder / path))
+            text, scenario, unit_kinds(machine), lambda what, path: read_file(what, str(folder / path))
         )
         for entry in entries[2 if program is not None else 0 :]:
             if entry.command.command == "load":

@@ -20,7 +20,8 @@ from cnc_ptp.machine.blocks import (
     SpindleBlock,
     StatusBit,
 )
-from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.scenario import SETPOINTS, Entry
+from cnc_ptp.machine.setpoint_file import Row, placed
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 
 NOTHING_TO_ACKNOWLEDGE = 22013
@@ -56,6 +57,7 @@ class PlcUnit(Unit):
         self._cycle_time = cycle_time
         self._end_when_idle = end_when_idle
         self._outgoing: list[Command] = []
+        self._setpoints: dict[str, deque[Row]] = {}
         self._auto_acknowledge = True
         self._pending: dict[int, HandshakeRequest] = {}
         self._life_sign_on = True
@@ -69,6 +71,10 @@ class PlcUnit(Unit):
     def input(self, command: Command) -> None:
         """A command from outside (topic, button): goes out with the next block."""
         self._outgoing.append(command)
+
+    def input_setpoints(self, axis: str, rows: Iterable[Row]) -> None:
+        """External setpoints from outside: those of a block go out with it, late ones with the next."""
+        self._setpoints.setdefault(axis, deque()).extend(rows)
 
     # commands
 
@@ -97,6 +103,7 @@ class PlcUnit(Unit):
         Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves.
         """
         self._scenario.clear()
+        self._setpoints.clear()
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
@@ -126,6 +133,7 @@ class PlcUnit(Unit):
         self._reported = inputs
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
+        self._send_setpoints(first_cycle + count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
@@ -137,7 +145,7 @@ class PlcUnit(Unit):
             first_cycle,
             count,
             life_sign=self._life_sign,
-            scenario_done=not self._scenario,
+            scenario_done=not self._scenario and not self._setpoints,
             run_done=run_done and not commands,
             run_failed=self._failed or any(error_of(block) for block in inputs.values()),
             commands=commands,
@@ -149,8 +157,21 @@ class PlcUnit(Unit):
             command = self._scenario.popleft().command
             if command.target == self.name:
                 self.command(command, first_cycle)
+            elif command.command == SETPOINTS:
+                self.input_setpoints(command.target, placed(command.arguments["setpoints"], first_cycle))
             else:
                 self._outgoing.append(command)
+
+    def _send_setpoints(self, end_cycle: int) -> None:
+        """External setpoints of the cycles before `end_cycle`, after the commands of the same block."""
+        for axis, waiting in list(self._setpoints.items()):
+            rows = []
+            while waiting and waiting[0][0] < end_cycle:
+                rows.append(waiting.popleft())
+            if rows:
+                self._outgoing.append(Command(axis, SETPOINTS, {"setpoints": rows}))
+            if not waiting:
+                del self._setpoints[axis]
 
     def _answer_requests(self, cycle: int, inputs: Mapping[str, Block]) -> None:
         for name, block in inputs.items():
@@ -165,7 +186,7 @@ class PlcUnit(Unit):
     def _run_done(self, count: int, inputs: Mapping[str, Block]) -> bool:
         """Everything has stood for the settling time; spindles that still turn are stopped first."""
         expected = set(self._kinds) - self._lost
-        idle = not self._scenario and not self._outgoing and expected <= inputs.keys()
+        idle = not (self._scenario or self._outgoing or self._setpoints) and expected <= inputs.keys()
         idle = idle and all(at_rest(block) for block in inputs.values())
         self._idle_cycles = self._idle_cycles + count if idle else 0
         if self._idle_cycles * self._cycle_time < SETTLING_TIME:
@@ -184,8 +205,10 @@ def at_rest(block: Block) -> bool:
     if isinstance(block, ChannelBlock):
         return block.done
     if isinstance(block, AxisBlock):
-        held = bool(block.status_bits[-1] & StatusBit.HAS_JOB) and block.override_percent[-1] == 0.0
-        return block.set_velocity[-1] == 0.0 and (held or block.state[-1] in STANDING_STATES)
+        bits = block.status_bits[-1]
+        held = bool(bits & StatusBit.HAS_JOB) and block.override_percent[-1] == 0.0
+        waits = held or bool(bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB)
+        return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in STANDING_STATES)
     if isinstance(block, SpindleBlock):
         return block.set_acceleration_deg_s2[-1] == 0.0
     return True

@@ -10,10 +10,16 @@ import yaml
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
-from cnc_ptp.machine.commands import COMMANDS, INTERNAL, check_command, is_finite
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, is_finite
+from cnc_ptp.machine.setpoint_file import parse_setpoints
 
 BAD_SCENARIO = 25101
+SETPOINTS = "external_setpoints"
 SWITCH_WORDS = {"on": True, "off": False}
+
+
+ReadFile = Callable[[str, str], str]
+"""Gives the text of a file: what it is ("NC program"), its path in the scenario."""
 
 
 class ScenarioError(CncError):
@@ -44,13 +50,11 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", _BOOL, list("tTfF"))
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
 
 
-def parse_scenario(
-    text: str, file: str, kinds: Mapping[str, str], read_program: Callable[[str], str] | None = None
-) -> list[Entry]:
+def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFile | None = None) -> list[Entry]:
     """The entries in the order of their time (file order within one time).
 
-    `kinds` maps the names of the machine's units to axis, spindle, channel or plc; `read_program` gives the text of an
-    NC file that a `load` names, or raises CncError. Raises ScenarioError (25101) with all faults.
+    `kinds` maps the names of the machine's units to axis, spindle, channel or plc; `read` gives the text of a
+    file that an entry names, or raises CncError. Raises ScenarioError (25101) with all faults.
     """
     try:
         root = yaml.compose(text, _Loader)
@@ -65,7 +69,7 @@ def parse_scenario(
     entries, faults = [], []
     for node in root.value:
         try:
-            entries.append(_entry(node, kinds, read_program))
+            entries.append(_entry(node, kinds, read))
         except CncError as error:
             faults.append(f"{file}:{node.start_mark.line + 1}: {error.message}")
     if faults:
@@ -73,7 +77,7 @@ def parse_scenario(
     return sorted(entries, key=lambda entry: entry.at)
 
 
-def _entry(node: yaml.Node, kinds: Mapping[str, str], read_program: Callable[[str], str] | None) -> Entry:
+def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> Entry:
     arguments = _construct(node)
     if not {"at", "to", "do"} <= arguments.keys():
         raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
@@ -86,10 +90,25 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read_program: Callable[[st
     if do in INTERNAL:
         raise CncError(BAD_SCENARIO, f"'{do}' is given by watchdogs only")
     _read_switches(kinds[to], do, arguments)
+    if do == SETPOINTS:
+        _read_setpoints(to, arguments, read)
     check_command(kinds[to], to, do, arguments)
-    if do == "load" and "text" not in arguments and read_program:
-        arguments["text"] = read_program(arguments["program"])
+    if do == "load" and "text" not in arguments and read:
+        arguments["text"] = read("NC program", arguments["program"])
     return Entry(float(at), Command(to, do, arguments))
+
+
+def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None) -> None:
+    """The rows of a file of external setpoints; an entry may also have them itself, as `setpoints`."""
+    if "setpoints" in arguments:
+        return
+    file = arguments.get("file")
+    if not isinstance(file, str):
+        raise CncError(
+            BAD_ARGUMENT, f"axis {axis}: {SETPOINTS} refused: argument 'file' is missing; nothing was changed"
+        )
+    if read:
+        arguments["setpoints"] = parse_setpoints(read("setpoint file", file), file)
 
 
 def _construct(node: yaml.Node) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.synchronisation import Synchronisation, synchronisation
 
 MODULO = 0x4
+VIRTUAL_AXIS = 16
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
 MONITORING_TYPES = (1, 2, 4)
 
@@ -28,6 +29,8 @@ class AxisParameters:
     modulo_low: float
     modulo_high: float
     drive_type: int
+    virtual: bool
+    """Has no drive (P-AXIS-00020 = 16)."""
     kv: float
     """Gain of the position controller, 1/s."""
     max_velocity: float
@@ -51,7 +54,16 @@ class AxisParameters:
     drive_time_constant: float
     override_type: int
     """PTP override: 1 reduced, 2 original, 3 and 4 the same iterated."""
+    override_steps: int
+    """Override filter: steps from 0 to 100 %, 0 = no filter …"""
+    override_interval: float
+    """… and the least time between two of them."""
     max_override_percent: float
+    external_dead_time: float
+    external_timeout: float
+    """Longest silence of external setpoints in motion."""
+    target_time: float
+    """In which the actual position must have come into the position window; 0 = not monitored."""
     powered_at_start: bool
     referenced_at_start: bool
     start_position: float
@@ -178,6 +190,7 @@ def axis_view(parameters: ParameterSet) -> AxisParameters:
         modulo_low=parameters.kernel("P-AXIS-00127", gear) if modulo else 0.0,
         modulo_high=parameters.kernel("P-AXIS-00126", gear) if modulo else 0.0,
         drive_type=int(parameters.number("P-AXIS-00020")),
+        virtual=int(parameters.number("P-AXIS-00020")) == VIRTUAL_AXIS,
         kv=parameters.kernel("P-AXIS-00099", gear),
         max_velocity=max_velocity,
         rapid_velocity=parameters.kernel("P-AXIS-00209", gear),
@@ -196,7 +209,12 @@ def axis_view(parameters: ParameterSet) -> AxisParameters:
         encoder_increment=encoder_increment(parameters, gear),
         drive_time_constant=parameters.kernel("P-SIM-00001"),
         override_type=int(parameters.number("P-MACH-00007")),
+        override_steps=int(parameters.number("P-MACH-00010")),
+        override_interval=parameters.number("P-MACH-00011") / 1000.0,
         max_override_percent=percent(parameters, "P-AXIS-00109"),
+        external_dead_time=parameters.kernel("P-MACH-00012"),
+        external_timeout=parameters.number("P-MACH-00013") / 1000.0,
+        target_time=parameters.number("P-MACH-00014") / 1000.0,
         powered_at_start=bool(parameters.number("P-SIM-00004")),
         referenced_at_start=bool(parameters.number("P-SIM-00005")),
         start_position=parameters.kernel("P-SIM-00003"),

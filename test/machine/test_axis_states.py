@@ -299,9 +299,7 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
         (
             "jump",
             {},
-            "22002 axis x: unknown command 'jump'; nothing was changed. Known: move_absolute, move_relative, "
-            "power, reset, "
-            "set_override, stop",
+            "22002 axis x: unknown command 'jump'; nothing was changed. Known: compensation_start, compensation_stop, emergency_stop, external_disable, external_enable, external_setpoints, halt, move_absolute, move_modulo, move_relative, new_target, new_velocity_and_target, power, reset, set_override, set_override_type, stop",
         ),
     ],
 )

@@ -163,8 +163,8 @@ def test_no_yaml(text: str) -> None:
 def test_load_takes_the_text_from_the_reader_unless_it_is_given() -> None:
     asked = []
 
-    def read(path: str) -> str:
-        asked.append(path)
+    def read(what: str, path: str) -> str:
+        asked.append((what, path))
         return "%P\nM30"
 
     entries = parse_scenario(
@@ -173,17 +173,14 @@ def test_load_takes_the_text_from_the_reader_unless_it_is_given() -> None:
         KINDS,
         read,
     )
-    assert [e.command.arguments["text"] for e in entries] == ["%P\nM30", "M30"] and asked == ["a.nc"]
+    assert [e.command.arguments["text"] for e in entries] == ["%P\nM30", "M30"] and asked == [("NC program", "a.nc")]
     without = parse("- {at: 0, to: channel, do: load, program: a.nc}")[0]
     assert without.command.arguments == {"program": "a.nc"}
 
 
 def test_a_program_that_cannot_be_read() -> None:
-    def read(path: str) -> str:
-        return read_file("NC program", path)
-
     with pytest.raises(ScenarioError) as caught:
-        parse_scenario("- {at: 0, to: channel, do: load, program: /no/such.nc}", "s.yaml", KINDS, read)
+        parse_scenario("- {at: 0, to: channel, do: load, program: /no/such.nc}", "s.yaml", KINDS, read_file)
     assert str(caught.value) == (
         "P-ERR-25101 s.yaml:1: NC program /no/such.nc cannot be read: No such file or directory; nothing was started\n"
         "nothing was started"

@@ -1,0 +1,171 @@
+"""Position compensation: an additional distance D within a length L of the basic motion (TX1250 2.5).
+
+The velocity of the compensation is a trapezoid over the time T = L/VP, without jerk limit. It begins with the rate r1
+and ends with r2: AK+ and AK- for D > 0, AK- and AK+ for D < 0. Its peak v solves
+
+    |D| = v·T - v²/2·(1/r1 + 1/r2)      with v <= VK and v·(1/r1 + 1/r2) <= T
+
+and where no such v exists, the largest one is taken: what cannot be reached is cut. The compensation is tied to the
+basic motion: it goes in its direction, its velocity is multiplied by h = min(1, |v|/VP), and its time stands while the
+basic motion stands. So D is reached exactly where the basic motion keeps VP or more, and less of it otherwise.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from cnc_ptp.motion import Profile
+from cnc_ptp.motion.profile import State
+
+ROUNDING = 1e-12
+"""Part of the duration that is rounding."""
+
+
+def plan_compensation(
+    length: float, difference: float, process_velocity: float, velocity_increase: float, rise: float, fall: float
+) -> Profile:
+    """Table of the compensation, counted in the direction of the basic motion; it ends at D, or at what of D it can.
+
+    `length` and `difference` in mm (deg), `process_velocity` VP and `velocity_increase` VK in mm/s, `rise` AK+ and
+    `fall` AK- in mm/s²; all but the difference > 0.
+    """
+    sign = 1.0 if difference > 0.0 else -1.0
+    first, last = (rise, fall) if difference > 0.0 else (fall, rise)
+    duration = length / process_velocity
+    slopes = 1.0 / first + 1.0 / last
+    under_root = duration * duration - 2.0 * slopes * abs(difference)
+    wanted = 2.0 * abs(difference) / (duration + sqrt(under_root)) if under_root > 0.0 else duration / slopes
+    peak = min(wanted, velocity_increase)
+    reached = abs(difference) if peak == wanted and under_root >= 0.0 else peak * (duration - 0.5 * slopes * peak)
+    return _trapezoid(sign, peak, peak / first, peak / last, duration, reached)
+
+
+def _trapezoid(sign: float, peak: float, rise: float, fall: float, duration: float, end: float) -> Profile:
+    """Rows for the times `rise` and `fall` of the ramps, out of which the rest of `duration` is at the peak."""
+    hold_end = max(rise, duration - fall)
+    rows = [
+        (0.0, 0.0, 0.0, sign * peak / rise, 0.0),
+        (rise, sign * 0.5 * peak * rise, sign * peak, 0.0, 0.0),
+        (hold_end, sign * (end - 0.5 * peak * fall), sign * peak, -sign * peak / fall, 0.0),
+        (max(duration, hold_end), sign * end, 0.0, 0.0, 0.0),
+    ]
+    return Profile(rows)
+
+
+class Compensation:
+    """The compensation of one axis, added to the basic motion cycle by cycle.
+
+    `at` must be called in the order of cycles; for the same cycle it may be called again. What has been compensated
+    stays as an offset between axis and basic motion.
+    """
+
+    def __init__(self, *, cycle_time: float) -> None:
+        """`cycle_time` in s."""
+        self._cycle_time = cycle_time
+        self._direction = 1.0
+        self._process_velocity = 1.0
+        self._profile: Profile | None = None
+        self._ran = 0
+        self._cycle = 0
+        self._base = (0.0, 0.0)
+        self.offset = 0.0
+        """Axis minus basic motion, mm (deg)."""
+
+    @property
+    def _time(self) -> float:
+        """Seconds of the table that are through."""
+        return self._ran * self._cycle_time
+
+    @property
+    def active(self) -> bool:
+        return self._profile is not None
+
+    @property
+    def engaged(self) -> bool:
+        """True while `at` changes anything."""
+        return self._profile is not None or self.offset != 0.0
+
+    def start(self, cycle: int, base: State, *, direction: float, process_velocity: float, profile: Profile) -> None:
+        """Begins at `cycle`, where the basic motion has the state `base` and goes in `direction` (+1, -1)."""
+        self._profile = profile
+        self._direction = direction
+        self._process_velocity = process_velocity
+        self._ran = 0
+        self._cycle, self._base = cycle, base[1:3]
+
+    def braking(self) -> bool:
+        """True in the last ramp of the trapezoid."""
+        return self._profile is not None and self._time >= self._profile.starts[-2]
+
+    def stop(self) -> bool:
+        """Ramps the compensation down with its last rate: D becomes what is reached then. False in its last ramp."""
+        profile = self._profile
+        if profile is None or self.braking():
+            return False
+        way, velocity, _, _ = profile.state_at(self._time)
+        rate = profile.rows[-2][3]
+        d = -velocity / rate
+        end = (d, way + 0.5 * velocity * d, 0.0, 0.0, 0.0)
+        self._profile = Profile([(0.0, way, velocity, rate, 0.0), end]) if d > 0.0 else None
+        self._ran = 0
+        return True
+
+    def end(self) -> None:
+        """The basic motion has come to its end: so does the compensation."""
+        self._profile = None
+
+    def reset(self) -> None:
+        """The offset has been taken over by the basic motion."""
+        self._profile = None
+        self.offset = 0.0
+
+    def at(self, cycle: int, base: State) -> State:
+        """Basic motion plus compensation at `cycle`."""
+        if self._profile is not None and cycle > self._cycle:
+            self._advance(cycle, base)
+        position, velocity, acceleration, jerk = base
+        position += self.offset
+        profile = self._profile
+        if profile is None:
+            return position, velocity, acceleration, jerk
+        _, v, a, _ = profile.state_at(self._time)
+        h, dh, ddh = self._follow(velocity, acceleration, jerk)
+        s = self._direction
+        return (
+            position,
+            velocity + s * v * h,
+            acceleration + s * (a * h + v * dh),
+            jerk + s * (2.0 * a * dh + v * ddh),
+        )
+
+    def _follow(self, velocity: float, acceleration: float = 0.0, jerk: float = 0.0) -> tuple[float, float, float]:
+        """h = min(1, v/VP) along the direction of the compensation, and its two derivatives."""
+        scale = self._direction / self._process_velocity
+        ratio = scale * velocity
+        if ratio >= 1.0:
+            return 1.0, 0.0, 0.0
+        if ratio < 0.0:
+            return 0.0, 0.0, 0.0
+        return ratio, scale * acceleration, scale * jerk
+
+    def _advance(self, cycle: int, base: State) -> None:
+        """Integrates the cycles since the last call: the way of the trapezoid times the mean of h."""
+        profile = self._profile
+        assert profile is not None
+        (v0, a0), self._base = self._base, base[1:3]
+        cycles, self._cycle = cycle - self._cycle, cycle
+        v1, a1 = base[1:3]
+        if v0 == 0.0 and v1 == 0.0:
+            return
+        middle = 0.5 * (v0 + v1) + 0.125 * (a0 - a1) * cycles * self._cycle_time
+        h0, hm, h1 = (self._follow(v)[0] for v in (v0, middle, v1))
+        mean = (h0 + 4.0 * hm + h1) / 6.0
+        start = self._time
+        self._ran += cycles
+        end = min(self._time, profile.duration)
+        w0, wm, w1 = (profile.state_at(t)[1] for t in (start, 0.5 * (start + end), end))
+        way = mean * (profile.state_at(end)[0] - profile.state_at(start)[0])
+        way += (end - start) / 6.0 * (w0 * (h0 - mean) + 4.0 * wm * (hm - mean) + w1 * (h1 - mean))
+        self.offset += self._direction * way
+        if self._time >= profile.duration * (1.0 - ROUNDING):
+            self._profile = None

@@ -1,0 +1,118 @@
+"""Start and stop of a position compensation. Source: TX1250 2.5."""
+
+from __future__ import annotations
+
+from math import copysign
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.compensation import plan_compensation
+from cnc_ptp.axis.faults import (
+    BAD_COMPENSATION,
+    COMPENSATION_CUT,
+    COMPENSATION_IN_STOP,
+    COMPENSATION_LOCKED,
+    NOTHING_TO_COMPENSATE,
+    VELOCITY_TOO_HIGH,
+    VIRTUAL_AXIS,
+)
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import state_name
+from cnc_ptp.motion import Profile
+
+START = "compensation_start"
+
+
+class CompensationCommands:
+    """`compensation_start` and `compensation_stop`."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._axis = axis
+
+    def do_compensation_start(
+        self,
+        cycle: int,
+        *,
+        length: float,
+        difference: float,
+        process_velocity: float,
+        velocity_increase: float,
+        acceleration: float | None = None,
+        deceleration: float | None = None,
+    ) -> str | None:
+        """Compensates `difference` D over `length` L; AK+ and AK- that are left out come from the axis.
+
+        Refusals: 23004, 23018 – 23022, 120002, 120003. The rest of the way is used where L is longer; where D cannot be
+        reached, what can be reached of it is compensated, and the answer says so.
+        """
+        axis = self._axis
+        self._check_state(cycle)
+        rise = axis.parameters.acceleration if acceleration is None else acceleration
+        fall = axis.parameters.deceleration if deceleration is None else deceleration
+        self._check_values(
+            difference,
+            length=length,
+            process_velocity=process_velocity,
+            velocity_increase=velocity_increase,
+            acceleration=rise,
+            deceleration=fall,
+        )
+        base, job = axis.ptp.state(cycle), axis.ptp.job
+        assert job is not None
+        remaining = job.target - base[0]
+        used = min(length, abs(remaining))
+        table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
+        direction = copysign(1.0, base[1] or remaining)
+        self._check_motion(job.target + axis.shift(cycle) + direction * table.end[0], job.limits.velocity, table)
+        axis.superposed = True
+        axis.compensation.start(cycle, base, direction=direction, process_velocity=process_velocity, profile=table)
+        return self._cut_warning(difference, length, table.end[0], used)
+
+    def _check_state(self, cycle: int) -> None:
+        axis = self._axis
+        if axis.parameters.virtual:
+            axis.refuse(START, VIRTUAL_AXIS, "a virtual axis cannot compensate (P-AXIS-00020)")
+        if axis.compensation.active:
+            axis.refuse(START, COMPENSATION_LOCKED, "a position compensation is active; it cannot be started again")
+        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
+            reason = f"no basic motion is in work (the axis is in {state_name(axis.state)})"
+            axis.refuse(START, NOTHING_TO_COMPENSATE, reason)
+        if axis.ptp.braking(cycle):
+            axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
+
+    def _check_values(self, difference: float, **positive: float) -> None:
+        for name, value in positive.items():
+            if not value > 0.0:
+                self._axis.refuse(START, BAD_COMPENSATION, f"{name} = {value} must be greater than 0")
+        if difference == 0.0:
+            self._axis.refuse(START, BAD_COMPENSATION, "difference = 0 must be different from 0")
+
+    def _check_motion(self, end: float, velocity: float, table: Profile) -> None:
+        """The axis must keep its velocity limit and end within its soft limits."""
+        axis = self._axis
+        peak = velocity + max(row[2] for row in table.rows)
+        highest, unit = axis.parameters.max_velocity, f"{axis.unit}/s"
+        if peak > highest:
+            reason = f"the axis would get up to {peak:g} {unit}, above the maximum {highest} {unit} (P-AXIS-00212)"
+            axis.refuse(START, VELOCITY_TOO_HIGH, reason)
+        axis.checks.soft_limits(START, end)
+
+    def _cut_warning(self, difference: float, length: float, reached: float, used: float) -> str | None:
+        axis, unit = self._axis, self._axis.unit
+        cuts = []
+        if used < length:
+            cuts.append(f"length {length:g} {unit} is more than the rest of the way; {used:g} {unit} is used")
+        if reached != difference:
+            cuts.append(
+                f"difference {difference:g} {unit} cannot be reached over {used:g} {unit}; {reached:g} {unit} is used"
+            )
+        return f"P-WARN-{COMPENSATION_CUT} axis {axis.name}: {START}: {'; '.join(cuts)}" if cuts else None
+
+    def do_compensation_stop(self, cycle: int) -> str | None:
+        """Ramps the compensation down; D becomes what has been compensated then. Not in its last ramp."""
+        axis = self._axis
+        if not axis.compensation.active:
+            return f"axis {axis.name}: compensation_stop without effect: no compensation is active"
+        axis.setpoint(cycle)  # brings the compensation up to this cycle
+        if not axis.compensation.stop():
+            return f"axis {axis.name}: compensation_stop without effect: the compensation is in its brake phase"
+        return None

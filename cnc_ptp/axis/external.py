@@ -1,0 +1,161 @@
+"""External setpoints: a generator outside moves the axis, alone or on top of its PTP motion (TX1250 2.6)."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from cnc_ptp.axis.tables import standing
+from cnc_ptp.motion import Limits, plan_to_velocity
+from cnc_ptp.motion.profile import State
+
+ABSOLUTE = "absolute"
+RELATIVE = "relative"
+
+
+class Setpoint(NamedTuple):
+    """What the axis does in `cycle`, in mm, mm/s, mm/s² (deg for rotary axes).
+
+    `direction` 0 ends the motion: that position is taken over once more, then nothing counts until -1 or +1 comes.
+    """
+
+    cycle: int
+    position: float
+    velocity: float
+    acceleration: float
+    direction: int
+
+
+class ExternalSetpoints:
+    """The contribution of external setpoints, added to the basic motion cycle by cycle.
+
+    `at` must be called in the order of cycles; for the same cycle it may be called again. Between two setpoints the
+    axis goes on with velocity and acceleration of the last one, not further than to standstill. When the setpoints end
+    in motion, the contribution comes to rest on the ramp of the axis.
+    """
+
+    def __init__(self, *, cycle_time: float, dead_time: float, limits: Limits) -> None:
+        """`cycle_time` in s; `dead_time` in s by which setpoints come late; `limits` of the axis."""
+        self._cycle_time = cycle_time
+        self._dead_time = dead_time
+        self._limits = limits
+        self._waiting: deque[Setpoint] = deque()
+        self._driving: Setpoint | None = None
+        self._period = 1
+        self._last_cycle: int | None = None
+        self._rest = standing(0.0)
+        self._rest_cycle = 0
+        self._reference = 0.0
+        self.mode: str | None = None
+        """absolute, relative, or None while disabled."""
+        self.rejected: tuple[Setpoint, float] | None = None
+        """A setpoint too far away to get there, with its distance (mm, deg); it was not taken over."""
+
+    # commands
+
+    def enable(self, cycle: int, mode: str, position: float) -> None:
+        """Setpoints count from `cycle` on, at which the axis is at `position`. When enabled already, nothing changes.
+
+        Absolute setpoints are positions of the axis, relative ones count from where the axis is now.
+        """
+        if self.mode is None:
+            contribution = self.contribution(cycle)[0]
+            self._reference = position - contribution if mode == ABSOLUTE else -contribution
+            self.mode = mode
+
+    def feed(self, setpoints: Iterable[Setpoint]) -> None:
+        """Takes setpoints in the order of their cycles."""
+        self._waiting.extend(setpoints)
+
+    def disable(self, cycle: int) -> None:
+        """The setpoint of `cycle` is taken over once more, then the contribution comes to rest."""
+        self.mode = None
+        self._waiting = deque(setpoint for setpoint in self._waiting if setpoint.cycle <= cycle)
+        if self._driving is not None and self._last_cycle is None:
+            self._last_cycle = cycle
+
+    def reset(self) -> None:
+        """The basic motion has taken over what was contributed."""
+        self.mode = self._driving = self._last_cycle = self.rejected = None
+        self._waiting.clear()
+        self._rest = standing(0.0)
+
+    # setpoints
+
+    def engaged(self, cycle: int) -> bool:
+        """True while `at` changes anything."""
+        return self.mode is not None or self.moving(cycle) or self._rest.end[0] != 0.0
+
+    def moving(self, cycle: int) -> bool:
+        """True while a setpoint drives the axis or the contribution comes to rest."""
+        return self._driving is not None or (cycle - self._rest_cycle) * self._cycle_time < self._rest.duration
+
+    def silence(self, cycle: int) -> int:
+        """Cycles for which the axis has been moving on without a new setpoint."""
+        if self._driving is None or self.contribution(cycle)[1] == 0.0:
+            return 0
+        return cycle - self._driving.cycle
+
+    def at(self, cycle: int, base: State) -> State:
+        """Basic motion plus contribution at `cycle`; takes the setpoints that have come due."""
+        self._advance(cycle)
+        position, velocity, acceleration, jerk = base
+        p, v, a, j = self.contribution(cycle)
+        return position + p, velocity + v, acceleration + a, jerk + j
+
+    def contribution(self, cycle: int) -> State:
+        """What the external setpoints add at `cycle`."""
+        if self._driving is not None:
+            return self._driven(self._driving, cycle)
+        return self._rest.state_at((cycle - self._rest_cycle) * self._cycle_time)
+
+    def _driven(self, setpoint: Setpoint, cycle: int) -> State:
+        """The setpoint brought forward to `cycle` and by the dead time, at most to where it comes to rest.
+
+        Its acceleration counts for as long as setpoints are usually apart, so that silence does not speed the axis up.
+        """
+        d = (cycle - setpoint.cycle) * self._cycle_time + self._dead_time
+        position, v, a = setpoint.position - self._reference, setpoint.velocity, setpoint.acceleration
+        if v == 0.0 and a * setpoint.direction <= 0.0:
+            return position, 0.0, a if d == 0.0 else 0.0, 0.0
+        ramp = min(d, self._period * self._cycle_time + self._dead_time)
+        if a * v < 0.0 and ramp >= -v / a:
+            return position - 0.5 * v * v / a, 0.0, 0.0, 0.0
+        return position + d * v + a * ramp * (d - 0.5 * ramp), v + a * ramp, a if d == ramp else 0.0, 0.0
+
+    def _advance(self, cycle: int) -> None:
+        while self._waiting and self._waiting[0].cycle <= cycle:
+            setpoint = self._waiting.popleft()
+            self._let_go(setpoint.cycle)
+            if setpoint.direction == 0 and self._driving is None:
+                continue
+            if self._is_too_far(setpoint):
+                self._waiting.clear()
+                return
+            if self._driving is not None:
+                self._period = setpoint.cycle - self._driving.cycle
+            self._driving = setpoint
+            self._last_cycle = setpoint.cycle if setpoint.direction == 0 else None
+        self._let_go(cycle)
+
+    def _let_go(self, cycle: int) -> None:
+        """Comes to rest after the last cycle of the setpoints: a standing one stays where it is."""
+        if self._driving is None or self._last_cycle is None or cycle <= self._last_cycle:
+            return
+        position, velocity, acceleration, _ = self._driven(self._driving, self._last_cycle)
+        if velocity == 0.0:
+            acceleration = 0.0
+        self._rest = plan_to_velocity(position, velocity, acceleration, 0.0, self._limits)
+        self._rest_cycle = self._last_cycle
+        self._driving = self._last_cycle = None
+
+    def _is_too_far(self, setpoint: Setpoint) -> bool:
+        """Rejects what the axis cannot reach with its velocity limit since the setpoint before."""
+        before = setpoint.cycle - 1 if self._driving is None else self._driving.cycle
+        cycles = max(1, setpoint.cycle - before)
+        way = self._driven(setpoint, setpoint.cycle)[0] - self.contribution(setpoint.cycle)[0]
+        if abs(way) <= self._limits.velocity * self._cycle_time * cycles * (1.0 + 1e-9):
+            return False
+        self.rejected = setpoint, way
+        return True
