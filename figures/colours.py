@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-PAPER, EDGE, GRID = "#ffffff", "#d5dbe3", "#e9edf2"
+PAPER, EDGE, GRID, BAND = "#ffffff", "#d5dbe3", "#e9edf2", "#eff5fc"
 INK, SOFT, FAINT = "#1c2430", "#566273", "#a3adba"
 
 
@@ -28,6 +28,7 @@ DARK = {
     PAPER: "#14191f",
     EDGE: "#2f3742",
     GRID: "#252c35",
+    BAND: "#1a2430",
     INK: "#e8edf3",
     SOFT: "#a9b4c2",
     FAINT: "#5d6876",

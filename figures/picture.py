@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 from matplotlib.ticker import MaxNLocator
 
-from figures.colours import BLUE, BY_AXIS, EDGE, FAINT, GREEN, GRID, INK, PAPER, RED, SOFT, YELLOW, Pair
+from cnc_ptp.machine.blocks import StatusBit
+from figures.colours import BAND, BLUE, BY_AXIS, EDGE, FAINT, GREEN, GRID, INK, PAPER, RED, SOFT, YELLOW, Pair
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureScenario
 
@@ -48,6 +50,8 @@ VELOCITY = Panel("velocity", "/s", 130.0, ("set_velocity", "actual_velocity"), G
 ACCELERATION = Panel("acceleration", "/s²", 110.0, ("set_acceleration", "actual_acceleration"), RED)
 FOLLOWING_ERROR = Panel("following error", "", 80.0, ("following_error",), YELLOW)
 PANELS = (POSITION, VELOCITY, ACCELERATION, FOLLOWING_ERROR)
+BANDS = {StatusBit.COMPENSATING: "compensating", StatusBit.EXT_SETPOINT: "external"}
+"""What is tinted, by bits of the status."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +67,7 @@ class Curve:
 def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     """The picture of a figure."""
     end = shown_cycles(run)
-    caption = textwrap.wrap(figure.caption, CAPTION_LETTERS)
+    caption = wrapped(figure.caption)
     labels = label_rows(run, end)
     label_height = LABEL_LINE * (1 + max(label.row for label in labels)) if labels else 0.0
     upper = TITLE + CAPTION_LINE * len(caption)
@@ -85,11 +89,17 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     return drawing
 
 
+def wrapped(caption: str) -> list[str]:
+    """The lines of a caption; 'J = 50000 mm/s³' and '75 %' stay together."""
+    return textwrap.wrap(re.sub(r"(?<=\d) (?=mm|deg|s\b|%)| (?==)|(?<==) ", "\u00a0", caption), CAPTION_LETTERS)
+
+
 def shown_cycles(run: FigureRun) -> int:
-    """How many cycles are shown: until everything stands, and a little longer."""
+    """How many cycles are shown: until everything stands and all is commanded, and a little longer."""
     moving = [np.flatnonzero(run.column(axis, "set_velocity")) for axis in run.columns]
-    last = max((int(cycles[-1]) for cycles in moving if len(cycles)), default=run.cycles)
-    return min(run.cycles, round(last * 1.04) + 1)
+    events = [int(cycles[-1]) for cycles in moving if len(cycles)]
+    events += [round(marker.time / run.cycle_time) for marker in run.markers]
+    return min(run.cycles, round(max(events, default=run.cycles) * 1.04) + 1)
 
 
 def draw_card(drawing: Figure, height: float) -> None:
@@ -199,6 +209,7 @@ def draw_panel(axes: Axes, panel: Panel, run: FigureRun, end: int, *, header_off
     if panel is VELOCITY:
         draw_override(axes, run, end, drawn)
     style_axes(axes, time)
+    draw_bands(axes, run, end, with_texts=panel is POSITION)
     draw_header(axes, panel, run, drawn, header_offset)
     write_values(axes, panel, drawn)
 
@@ -235,6 +246,27 @@ def draw_override(axes: Axes, run: FigureRun, end: int, drawn: list[Curve]) -> N
             color=SOFT,
             fontsize=SMALL,
         )
+
+
+def draw_bands(axes: Axes, run: FigureRun, end: int, *, with_texts: bool) -> None:
+    """A tint where the status of an axis says that something else acts on it."""
+    for axis in run.columns:
+        bits = run.column(axis, "status_bits")[:end].astype(np.int64)
+        for bit, text in BANDS.items():
+            edges = np.flatnonzero(np.diff((bits & bit) != 0, prepend=False, append=False))
+            for first, behind in edges.reshape(-1, 2):
+                begin = run.time[first]
+                axes.axvspan(begin, begin + (behind - first) * run.cycle_time, color=BAND, linewidth=0.0, zorder=0.1)
+                if with_texts:
+                    axes.annotate(
+                        text,
+                        (begin, 1.0),
+                        (5.0, -12.0),
+                        xycoords=("data", "axes fraction"),
+                        textcoords="offset points",
+                        color=SOFT,
+                        fontsize=SMALL,
+                    )
 
 
 def style_axes(axes: Axes, time: Column) -> None:

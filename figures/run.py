@@ -89,12 +89,18 @@ def _collect(figure: FigureScenario, machine: MachineParameters, ticks: list[Out
         cycle_time,
         {axis: _columns([tick[axis].block for tick in ticks]) for axis in figure.axes},
         {axis: "deg" if machine.axes[axis].rotary else "mm" for axis in figure.axes},
-        tuple(
-            Marker(record.cycle * cycle_time, _text(record))
-            for record in records
-            if record.target in figure.axes and record.cycle
-        ),
+        _markers([record for record in records if record.target in figure.axes], cycle_time),
     )
+
+
+def _markers(records: list[CommandRecord], cycle_time: float) -> tuple[Marker, ...]:
+    """What is given again and again (setpoints, block by block) is marked where it begins."""
+    markers: list[Marker] = []
+    for record in records:
+        text = _text(record)
+        if record.cycle and not (markers and markers[-1].text == text):
+            markers.append(Marker(record.cycle * cycle_time, text))
+    return tuple(markers)
 
 
 def _columns(blocks: list[object]) -> dict[str, Column]:
@@ -104,7 +110,7 @@ def _columns(blocks: list[object]) -> dict[str, Column]:
     }
 
 
-SHOWN = {"target": "", "distance": "", "position": "", "percent": " %", "length": ""}
+SHOWN = {"target": "", "distance": "", "position": "", "percent": " %", "difference": ""}
 """The argument that stands behind the name of a command, and its unit where that is not the axis'."""
 
 
@@ -112,4 +118,4 @@ def _text(record: CommandRecord) -> str:
     """`move_absolute` with its target 1000.0 becomes 'move absolute 1000'; its dynamics are in the caption."""
     arguments = json.loads(record.arguments_json)
     shown = [f"{arguments[name]:g}{unit}" for name, unit in SHOWN.items() if name in arguments]
-    return " ".join([record.command.replace("_", " "), *shown])
+    return " ".join([record.command.replace("_", " "), *shown]).replace("-", "−")

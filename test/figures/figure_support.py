@@ -62,6 +62,16 @@ def seven_phases(distance: float, velocity: float, up: float, down: float, j: fl
     return velocity, ramps + (distance - 0.5 * velocity * ramps) / velocity
 
 
+def through(phases: list[tuple[float, float]], velocity: float, acceleration: float) -> tuple[float, float, float]:
+    """Way, velocity and acceleration after phases of (duration, jerk)."""
+    way = 0.0
+    for t, j in phases:
+        way += velocity * t + acceleration * t**2 / 2.0 + j * t**3 / 6.0
+        velocity += acceleration * t + j * t**2 / 2.0
+        acceleration += j * t
+    return way, velocity, acceleration
+
+
 def largest_step(values: Column) -> float:
     """Largest change from one cycle to the next."""
     return float(np.max(np.abs(np.diff(values))))

@@ -9,9 +9,9 @@ from click.testing import CliRunner
 from figure_support import SCENARIOS, run_of
 
 from figures import __main__ as command
-from figures.colours import DARK
+from figures.colours import BAND, DARK
 from figures.external_profile import FILE, csv_text
-from figures.picture import draw, label_rows, number
+from figures.picture import draw, label_rows, number, wrapped
 from figures.run import FigureRun, Marker, run_figure
 from figures.scenario_head import ROOT, FigureError, FigureScenario, read_head
 from figures.svg import svg_text
@@ -119,6 +119,11 @@ def test_commands_of_the_set_up_are_not_marked():
     )
 
 
+def test_setpoints_that_come_block_by_block_are_marked_once():
+    texts = [marker.text for marker in run_of("ptp_external_setpoints").markers]
+    assert texts == ["external enable 600", "external setpoints", "external disable"]
+
+
 # pictures
 
 
@@ -159,7 +164,22 @@ def test_several_axes_are_named_and_have_a_colour_each(tmp_path):
     texts = texts_of(svg_text(draw(figure, run_figure(figure)), title=figure.title))
     assert texts.count("x set") == texts.count("y actual") == 3
     assert {"1", "−2"} <= set(texts)
-    assert "move absolute 1, move absolute -2" in texts
+    assert "move absolute 1, move absolute −2" in texts
+
+
+def test_a_status_is_tinted():
+    figure = read_head(SCENARIOS / "ptp_compensation_full.yaml")
+    svg = svg_text(draw(figure, run_of(figure.name)), title=figure.title)
+    assert texts_of(svg).count("compensating") == 1
+    assert svg.split("</style>")[1].count(f"fill: {BAND}") == 4  # once in each panel
+
+
+def test_caption_keeps_numbers_with_their_units():
+    words = "w" * 125
+    assert wrapped(f"{words} J = 50000 mm/s³ at 75 % and 3 s.") == [
+        words,
+        "J\u00a0=\u00a050000\u00a0mm/s³ at 75\u00a0% and 3\u00a0s.",
+    ]
 
 
 def test_labels_that_would_overlap_stand_in_rows():
