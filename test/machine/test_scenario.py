@@ -85,15 +85,19 @@ FAULTS = [
     ("- {at: 0, to: [x], do: stop}", f"unit '['x']' does not exist in the machine. {KNOWN}"),
     (
         "- {at: 0, to: x, do: [stop]}",
-        "axis x: unknown command '['stop']'; nothing was changed. Known: move_absolute, move_relative, power, reset, "
-        "set_override, stop",
+        "axis x: unknown command '['stop']'; nothing was changed. Known: compensation_start, "
+        "compensation_stop, emergency_stop, external_disable, external_enable, external_setpoints, halt, move_absolute, "
+        "move_modulo, move_relative, new_target, new_velocity_and_target, power, reset, set_override, "
+        "set_override_type, stop",
     ),
     ("- {at: 0, to: x, do: upstream_lost, source: plc}", "'upstream_lost' is given by watchdogs only"),
     ("- {at: 0, to: plc, do: abort, reason: x}", "'abort' is given by watchdogs only"),
     (
         "- {at: 0, to: x, do: fly}",
-        "axis x: unknown command 'fly'; nothing was changed. Known: move_absolute, move_relative, power, reset, "
-        "set_override, stop",
+        "axis x: unknown command 'fly'; nothing was changed. Known: compensation_start, "
+        "compensation_stop, emergency_stop, external_disable, external_enable, external_setpoints, halt, move_absolute, "
+        "move_modulo, move_relative, new_target, new_velocity_and_target, power, reset, set_override, "
+        "set_override_type, stop",
     ),
     (
         "- {at: 0, to: plc, do: fly}",
