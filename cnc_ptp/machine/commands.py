@@ -18,11 +18,15 @@ UNKNOWN_COMMAND = 22002
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """One argument of a command. `kind`: number, integer, switch, text or rows; `choices` limits a text."""
+    """One argument of a command. `kind`: number, integer, switch, text or rows; `choices` limits a text.
+
+    `positive`: only a number above 0 makes sense, so that a service can say with 0 that it is left out.
+    """
 
     kind: str
     required: bool = True
     choices: tuple[str, ...] = ()
+    positive: bool = False
 
 
 Arguments = Mapping[str, Argument]
@@ -33,7 +37,8 @@ SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
 ROWS = Argument("rows")
-DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_NUMBER)
+OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
+DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
 
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
@@ -55,8 +60,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
             "difference": NUMBER,
             "process_velocity": NUMBER,
             "velocity_increase": NUMBER,
-            "acceleration": OPTIONAL_NUMBER,
-            "deceleration": OPTIONAL_NUMBER,
+            "acceleration": OPTIONAL_POSITIVE,
+            "deceleration": OPTIONAL_POSITIVE,
         },
         "compensation_stop": {},
         "external_enable": {"mode": Argument("text", choices=("absolute", "relative")), "target": OPTIONAL_NUMBER},

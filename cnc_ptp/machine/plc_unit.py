@@ -58,6 +58,7 @@ class PlcUnit(Unit):
         self._end_when_idle = end_when_idle
         self._outgoing: list[Command] = []
         self._setpoints: dict[str, deque[Row]] = {}
+        self._arrived: dict[str, list[Row]] = {}
         self._auto_acknowledge = True
         self._pending: dict[int, HandshakeRequest] = {}
         self._life_sign_on = True
@@ -73,8 +74,15 @@ class PlcUnit(Unit):
         self._outgoing.append(command)
 
     def input_setpoints(self, axis: str, rows: Iterable[Row]) -> None:
-        """External setpoints from outside: those of a block go out with it, late ones with the next."""
+        """External setpoints with their cycles: those of a block go out with it, late ones with the next."""
         self._setpoints.setdefault(axis, deque()).extend(rows)
+
+    def input_setpoint(self, axis: str, values: Row) -> None:
+        """An external setpoint for the next block: position, velocity, acceleration, direction.
+
+        Those that come within one block are spread over the cycles of the next.
+        """
+        self._arrived.setdefault(axis, []).append(values)
 
     # commands
 
@@ -104,6 +112,7 @@ class PlcUnit(Unit):
         """
         self._scenario.clear()
         self._setpoints.clear()
+        self._arrived.clear()
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
@@ -133,6 +142,7 @@ class PlcUnit(Unit):
         self._reported = inputs
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
+        self._place_arrived(first_cycle, count)
         self._send_setpoints(first_cycle + count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
@@ -161,6 +171,13 @@ class PlcUnit(Unit):
                 self.input_setpoints(command.target, placed(command.arguments["setpoints"], first_cycle))
             else:
                 self._outgoing.append(command)
+
+    def _place_arrived(self, first_cycle: int, count: int) -> None:
+        for axis, arrived in self._arrived.items():
+            newest = arrived[-count:]
+            cycles = (first_cycle + index * count // len(newest) for index in range(len(newest)))
+            self.input_setpoints(axis, [[cycle, *values] for cycle, values in zip(cycles, newest, strict=True)])
+        self._arrived.clear()
 
     def _send_setpoints(self, end_cycle: int) -> None:
         """External setpoints of the cycles before `end_cycle`, after the commands of the same block."""
