@@ -49,6 +49,7 @@ class PowerCommands:
         elif axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
             axis.stop(cycle)
             axis.state = S.STOPPING
+            axis.has_been_stopped = True
 
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008)."""

@@ -89,6 +89,11 @@ class AxisUnit(Unit):
             axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
         return None
 
+    def remaining_distance(self, cycle: int) -> float:
+        """What is left of the positioning in work at `cycle`, mm (deg), with its sign."""
+        job = self._axis.ptp.job
+        return 0.0 if job is None else job.target - self._axis.ptp.state(cycle)[0]
+
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:

@@ -17,7 +17,7 @@ from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import PLC, build_unit, consumers_of
 from cnc_ptp.nodes import arguments, convert, process
-from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT
+from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
@@ -29,9 +29,10 @@ class PlcBridgeNode(UnitNode):
     """UnitNode of the PLC.
 
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
-    /<axis>/enable (Switch), /plc/life_sign (LifeSign). A value counts when it changes; the last one holds when messages
-    stop; `valid` = false means 100 %, no feed hold, enabled. A life sign that was seen once and then stays away for
-    P-MACH life_sign_timeout_ms sets feed hold on all channels.
+    /<axis>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of overrides and
+    switches a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
+    hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms sets feed hold on
+    all channels.
     """
 
     def __init__(
@@ -54,6 +55,8 @@ class PlcBridgeNode(UnitNode):
             self._listen(msg.Switch, unit, "feed_hold", partial(self._switch, command="feed_hold", idle=False))
         for unit in machine.axes:
             self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
+            received = partial(self._on_external_setpoint, unit)
+            self.create_subscription(msg.ExternalSetpoint, f"/{unit}/external_setpoint", received, BLOCKS)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_life_sign)
 
@@ -78,6 +81,19 @@ class PlcBridgeNode(UnitNode):
     @staticmethod
     def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
         return Command(unit, command, {"on": message.on if message.valid else idle})
+
+    def _on_external_setpoint(self, axis: str, message: msg.ExternalSetpoint) -> None:
+        """With a cycle it counts for that one, without (0) for the next block; `valid` = false ends the motion."""
+        topic = f"/{axis}/external_setpoint"
+        if not is_newer(message.sequence, self._sequence.get(topic, 0)) or not isinstance(self.unit, PlcUnit):
+            return
+        self._sequence[topic] = message.sequence
+        direction = message.direction if message.valid else 0
+        values = [message.position, message.velocity, message.acceleration, direction]
+        if message.cycle:
+            self.unit.input_setpoints(axis, [[message.cycle, *values]])
+        else:
+            self.unit.input_setpoint(axis, values)
 
     def _input(self, command: Command) -> None:
         if isinstance(self.unit, PlcUnit):

@@ -17,7 +17,7 @@ from rclpy.node import Node
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
-from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.machine.commands import COMMANDS, Argument
 from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.unit import Unit
@@ -171,15 +171,10 @@ class UnitNode(Node):
         return response
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
-        """The fields of a service request; optional numbers that are 0 or NaN count as left out."""
-        arguments = {}
-        for name, argument in COMMANDS[self.unit.kind][command].items():
-            if not hasattr(request, name):
-                continue
-            value = getattr(request, name)
-            if argument.required or (value != 0.0 and not math.isnan(value)):
-                arguments[name] = value
-        return arguments
+        """The fields of a service request without those that are left out: NaN, and 0 where only more makes sense."""
+        known = COMMANDS[self.unit.kind][command]
+        given = {name: getattr(request, name) for name in known if hasattr(request, name)}
+        return {name: value for name, value in given.items() if not is_left_out(known[name], value)}
 
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
@@ -337,3 +332,10 @@ class UnitNode(Node):
         message = DiagnosticArray(status=[status])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
+
+
+def is_left_out(argument: Argument, value: Any) -> bool:
+    """True for the values that say in a message that an optional argument is not given."""
+    if argument.required or not isinstance(value, float):
+        return False
+    return math.isnan(value) or (argument.positive and value == 0.0)
