@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass, replace
-from math import ceil, copysign
+from math import ceil, copysign, inf, isinf
 
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
@@ -34,7 +34,10 @@ REDUCTIONS = 8
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A positioning: where to, with which limits, and the velocity that its last leg can reach of them."""
+    """A positioning: where to, with which limits, and the velocity that its last leg can reach of them.
+
+    A target at ±infinity is endless motion in that direction.
+    """
 
     target: float
     limits: Limits
@@ -118,6 +121,20 @@ class PtpGenerator:
         job = self._job_from_rest(self.state(cycle)[0], target, limits)
         self._begin(cycle, job, self._table(cycle, job))
 
+    def drive_on(self, cycle: int, full_velocity: float, limits: Limits) -> None:
+        """Goes on endlessly with the velocity that is left when the acceleration is taken out; 0 ends in standstill.
+
+        `full_velocity` (mm/s, deg/s) is what 100 % override mean when it changes. Source: TX1250 3.2.3.
+        """
+        position, velocity, acceleration, _ = self.state(cycle)
+        left = velocity + acceleration * abs(acceleration) / (2.0 * limits.jerk)
+        if left * velocity <= 0.0:
+            self.finish()
+            self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, limits), limits)
+            return
+        job = Job(copysign(inf, left), limits._replace(velocity=full_velocity), full_velocity)
+        self._begin(cycle, job, plan_to_velocity(position, velocity, acceleration, left, limits))
+
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
 
@@ -187,11 +204,11 @@ class PtpGenerator:
         self._ramp_limits = None
         self._suspended = self._activation = self._due = None
 
-    def take_over(self, cycle: int, position: float, velocity: float, acceleration: float) -> None:
+    def take_over(self, cycle: int, position: float, velocity: float, acceleration: float, jerk: float = 0.0) -> None:
         """Continues from a state that another setpoint source has at `cycle`; unless it stands, a stop must follow."""
         ramp = self._ramp_limits
         self.finish()
-        self._set(cycle, Profile([(0.0, position, velocity, acceleration, 0.0)]), ramp)
+        self._set(cycle, Profile([(0.0, position, velocity, acceleration, jerk)]), ramp)
 
     # tables
 
@@ -228,6 +245,8 @@ class PtpGenerator:
 
     def _job_on_the_way(self, cycle: int, target: float, limits: Limits) -> Job:
         """The job to `target` for an axis in motion; where it stops and returns, the way back counts."""
+        if isinf(target):
+            return Job(target, limits, limits.velocity)
         position, velocity, acceleration, _ = self.state(cycle)
         leg = last_leg(plan_to_position(position, velocity, acceleration, target, limits))
         if leg[0][2] == 0.0 and leg[0][3] == 0.0:
@@ -244,6 +263,9 @@ class PtpGenerator:
         position, velocity, acceleration, _ = self.state(cycle)
         if self.override == 0.0:
             return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
+        if isinf(job.target):
+            level = copysign(self._level(job).velocity, job.target)
+            return plan_to_velocity(position, velocity, acceleration, level, job.limits)
         if velocity == 0.0 and acceleration == 0.0:
             return plan_rest_to_rest(position, job.target, self._level(job))
         return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
@@ -309,6 +331,8 @@ class PtpGenerator:
 
     def _can_reach(self, cycle: int, job: Job, velocity: float) -> bool:
         """True when the rest of the way has a stretch at `velocity`, scaled by the override."""
+        if isinf(job.target):
+            return True
         level = velocity * (self.override or 1.0)
         limits = job.limits._replace(velocity=max(level, SMALLEST_LIMIT))
         return reaches(plan_to_position(*self.state(cycle)[:3], job.target, limits), limits.velocity)

@@ -1,0 +1,155 @@
+"""Cam table slave: slave position over master position, as a cubic spline with continuous acceleration."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from math import floor
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from cnc_ptp.axis.coupling import Coupling
+from cnc_ptp.axis.faults import BAD_CAM_TABLE
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion.profile import State
+
+SMALLEST_TABLE = 3
+
+
+class CamTable:
+    """y(x) through the points of a table, and its derivatives.
+
+    `cyclic`: the table goes on after its end with the same slopes, lifted by what it ends higher than it begins.
+    Otherwise it holds its first and last value outside, where it begins and ends with slope 0.
+    """
+
+    def __init__(self, points: Sequence[Sequence[float]], *, cyclic: bool) -> None:
+        """`points`: (master, slave) in mm or deg, master ascending. Raises CncError 23052."""
+        self.cyclic = cyclic
+        x, y = _columns(points)
+        self.first, self.last = float(x[0]), float(x[-1])
+        self.length = self.last - self.first
+        self.lift = float(y[-1] - y[0])
+        slope = self.lift / self.length
+        if cyclic:  # the spline of what differs from the mean slope is periodic
+            rest = y - y[0] - slope * (x - x[0])
+            rest[-1] = rest[0]
+            spline = CubicSpline(x, rest, bc_type="periodic")
+            coefficients = spline.c.copy()
+            coefficients[2] += slope
+            coefficients[3] += y[0] + slope * (x[:-1] - x[0])
+        else:
+            coefficients = CubicSpline(x, y, bc_type="clamped").c
+        self._starts: list[float] = x[:-1].tolist()
+        self._pieces: list[list[float]] = coefficients.T.tolist()
+        self._end = float(y[-1])
+
+    def turn(self, x: float) -> int:
+        """In which repetition of a cyclic table x lies; 0 is the table itself."""
+        return floor((x - self.first) / self.length) if self.cyclic else 0
+
+    def at(self, x: float) -> tuple[float, float, float, float]:
+        """y, dy/dx, d²y/dx², d³y/dx³."""
+        turns = self.turn(x)
+        x -= turns * self.length
+        if not self.cyclic and x < self.first:
+            return self._pieces[0][3], 0.0, 0.0, 0.0
+        if not self.cyclic and x >= self.last:
+            return self._end, 0.0, 0.0, 0.0
+        index = max(0, bisect_right(self._starts, x) - 1)
+        c3, c2, c1, c0 = self._pieces[index]
+        d = x - self._starts[index]
+        y = c0 + d * (c1 + d * (c2 + d * c3)) + turns * self.lift
+        return y, c1 + d * (2.0 * c2 + 3.0 * d * c3), 2.0 * c2 + 6.0 * d * c3, 6.0 * c3
+
+
+def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]:
+    if len(points) < SMALLEST_TABLE:
+        raise CncError(BAD_CAM_TABLE, f"a cam table needs {SMALLEST_TABLE} points or more, it has {len(points)}")
+    try:
+        table = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        table = np.empty(0)
+    if table.shape != (len(points), 2) or not np.isfinite(table).all():
+        raise CncError(BAD_CAM_TABLE, "each point of a cam table needs two finite numbers, master and slave")
+    steps = np.flatnonzero(np.diff(table[:, 0]) <= 0.0)
+    if len(steps):
+        before, after = table[steps[0], 0], table[steps[0] + 1, 0]
+        raise CncError(BAD_CAM_TABLE, f"master position {after:g} comes after {before:g}; a cam table must ascend")
+    return table[:, 0], table[:, 1]
+
+
+class CamCoupling(Coupling):
+    """Slave position = slave scaling · y((master position - master offset) / master scaling) + slave offset."""
+
+    def __init__(
+        self,
+        master: str,
+        table: CamTable,
+        *,
+        master_offset: float,
+        master_scaling: float,
+        slave_scaling: float,
+        slave_offset: float | None,
+    ) -> None:
+        """Without `slave_offset` (mm, deg) it results from the positions in which the axes are coupled."""
+        super().__init__(master, slave_scaling / master_scaling)
+        self.table = table
+        self._next: CamTable | None = None
+        self._turn: int | None = None
+        self._master_offset = master_offset
+        self._master_scaling = master_scaling
+        self._slave_scaling = slave_scaling
+        self._slave_offset = slave_offset
+
+    def change_table(self, table: CamTable) -> None:
+        """The new table comes in when the master passes the seam of the cyclic table in work."""
+        self._next = table
+
+    def begins_at(self, master_position: float) -> float | None:
+        """Where the slave must stand to be coupled; None: anywhere."""
+        if self._slave_offset is None:
+            return None
+        return self._slave_scaling * self.table.at(self._x(master_position))[0] + self._slave_offset
+
+    def _x(self, master_position: float) -> float:
+        return (master_position - self._master_offset) / self._master_scaling
+
+    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+        x = self._x(states[0][0])
+        if self._slave_offset is None:
+            self._slave_offset = position - self._slave_scaling * self.table.at(x)[0]
+        if self._turn is None:
+            self._turn = self.table.turn(x)
+        return [self._state(state) for state in states]
+
+    def _state(self, master: State) -> State:
+        x = self._x(master[0])
+        turn = self.table.turn(x)
+        if turn != self._turn:
+            self._pass_seam(x, turn)
+        y, dy, ddy, dddy = self.table.at(x)
+        assert self._slave_offset is not None
+        s, (v, a, j) = self._slave_scaling, (value / self._master_scaling for value in master[1:])
+        acceleration = s * (ddy * v * v + dy * a)
+        return s * y + self._slave_offset, s * dy * v, acceleration, s * (dddy * v**3 + 3.0 * ddy * v * a + dy * j)
+
+    def _pass_seam(self, x: float, turn: int) -> None:
+        """A waiting table begins where the old one has its seam, at the same height."""
+        if self._next is None:
+            self._turn = turn
+            return
+        forward = self._turn is not None and turn > self._turn
+        seam = self.table.first + (turn if forward else turn + 1) * self.table.length
+        height = self.table.at(seam)[0]
+        new, self._next = self._next, None
+        self._master_offset += self._master_scaling * (seam - (new.first if forward else new.last))
+        start = new.at(new.first)[0] + (0.0 if forward else new.lift)
+        assert self._slave_offset is not None
+        self._slave_offset += self._slave_scaling * (height - start)
+        self.table, self._turn = new, 0 if forward else -1
+        self._turn = new.turn((x - seam) + (new.first if forward else new.last))
+
+    def change_source(self, before: float, now: float) -> None:
+        self._master_offset += now - before

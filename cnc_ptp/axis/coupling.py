@@ -1,0 +1,103 @@
+"""Couplings of a slave axis to its master: what makes slave setpoints of master setpoints (TX1250 3.2, 3.3).
+
+All run cycle by cycle on the states of the master; the slave position of the cycle in which they begin gives the offset.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+from cnc_ptp.motion.profile import State
+
+
+class Coupling(ABC):
+    """A coupling to the axis `master`; `ratio` is slave velocity over master velocity, where it is constant."""
+
+    def __init__(self, master: str, ratio: float) -> None:
+        self.master = master
+        self.ratio = ratio
+
+    @abstractmethod
+    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+        """States of the slave for the cycles of these master states; `position`: where the slave is in the first."""
+
+    @abstractmethod
+    def change_source(self, before: float, now: float) -> None:
+        """The master's position is counted otherwise from now on (`now` was `before`); the slave must not jump."""
+
+
+class LinearCoupling(Coupling):
+    """Slave position = factor · master position + offset; a new factor keeps the position continuous."""
+
+    def __init__(self, master: str, factor: float, *, difference_limit: float | None = None) -> None:
+        """`difference_limit` (mm, deg) of the actual positions makes a gantry pair of the two."""
+        super().__init__(master, factor)
+        self.difference_limit = difference_limit
+        self.offset: float | None = None
+        self._new_factor: float | None = None
+
+    def set_factor(self, factor: float) -> None:
+        """Counts from the next cycle that is computed."""
+        self._new_factor = factor
+
+    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+        """p = f·pm + offset, v = f·vm, a = f·am, j = f·jm."""
+        begin = states[0][0]
+        if self.offset is None:
+            self.offset = position - self.ratio * begin
+        if self._new_factor is not None:
+            self.offset += (self.ratio - self._new_factor) * begin
+            self.ratio, self._new_factor = self._new_factor, None
+        f, offset = self.ratio, self.offset
+        return [(f * p + offset, f * v, f * a, f * j) for p, v, a, j in states]
+
+    def change_source(self, before: float, now: float) -> None:
+        if self.offset is not None:
+            self.offset += self.ratio * (before - now)
+
+
+class CyclicCoupling(Coupling):
+    """The factor comes cyclically from the PLC and is smoothed: the slave's acceleration stays within AccBound B.
+
+    The velocity goes towards factor · vm by at most B·T a cycle; while it is there, the slave is linear with the factor.
+    Stable where B >= max|factor| · max(A+, A-) of the master: else the slave lags behind its factor. Source: TX1250 3.3.
+    """
+
+    def __init__(self, master: str, acc_bound: float, *, cycle_time: float) -> None:
+        """`acc_bound` in mm/s² (deg/s²), `cycle_time` in s; the factor is 0 until one comes."""
+        super().__init__(master, 0.0)
+        self.acc_bound = acc_bound
+        self._cycle_time = cycle_time
+        self._slave: State | None = None
+        self._master_position = 0.0
+        self._locked: float | None = 0.0
+
+    def set_factor(self, factor: float) -> None:
+        """Counts from the next cycle that is computed."""
+        self.ratio = factor
+
+    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+        slaves = []
+        for state in states:
+            if self._slave is None:
+                self._slave, self._master_position = (position, 0.0, 0.0, 0.0), state[0]
+            self._slave = self._next(self._slave, state)
+            self._master_position = state[0]
+            slaves.append(self._slave)
+        return slaves
+
+    def _next(self, slave: State, master: State) -> State:
+        factor, bound, t = self.ratio, self.acc_bound, self._cycle_time
+        position, velocity, _, _ = slave
+        wanted, acceleration = factor * master[1], factor * master[2]
+        if self._locked == factor and abs(acceleration) <= bound:
+            way = factor * (master[0] - self._master_position)
+            return position + way, wanted, acceleration, factor * master[3]
+        change = min(max(wanted - velocity, -bound * t), bound * t)
+        reached = velocity + change
+        self._locked = factor if abs(wanted - reached) <= 1e-12 * abs(wanted) else None
+        return position + 0.5 * t * (velocity + reached), reached, change / t, 0.0
+
+    def change_source(self, before: float, now: float) -> None:
+        self._master_position += now - before

@@ -1,0 +1,258 @@
+"""Coupling of an axis to a master, factors, decoupling, errors of the group. Source: TX1250 3."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.cam import CamCoupling, CamTable
+from cnc_ptp.axis.coupling import Coupling, CyclicCoupling, LinearCoupling
+from cnc_ptp.axis.faults import (
+    ACC_BOUND_UNSTABLE,
+    BAD_ACC_BOUND,
+    BAD_CAM_TABLE,
+    BAD_COUPLING_VALUE,
+    BAD_FACTOR,
+    COUPLED_TO_ITSELF,
+    COUPLING_LOOP,
+    FACTOR_KIND,
+    GROUP_ERROR,
+    MASTER_NOT_STANDING,
+    NOT_COUPLED,
+    SLAVE_NOT_STANDING,
+    UNKNOWN_MASTER,
+)
+from cnc_ptp.axis.flying_saw import FlyingSaw
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import state_name
+from cnc_ptp.axis.two_stage import Request
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import AxisParameters
+
+
+class CouplingCommands:
+    """`couple` and its kinds, `set_coupling_factor`, `set_cyclic_factor`, `decouple`; `lead` and `group_error`.
+
+    What the axis itself cannot know comes with the command: the PLC, which sees all axes, fills in `above` (the masters
+    of the master) and `master_stands`.
+    """
+
+    def __init__(self, axis: Axis, *, axes: dict[str, AxisParameters], cycle_time: float) -> None:
+        """`axes` of the machine by name, `cycle_time` in s."""
+        self._axis = axis
+        self._axes = axes
+        self._cycle_time = cycle_time
+
+    # couple
+
+    def do_couple(
+        self, cycle: int, *, master: str, factor: float, above: Sequence[str] = (), master_stands: bool = True
+    ) -> None:
+        """Slave position = `factor` · master position + offset of the coupling positions. Refusals: 23041 – 23046."""
+        self._check("couple", master, above, master_stands)
+        self._check_factor("couple", factor)
+        self._couple(cycle, LinearCoupling(master, float(factor)))
+
+    def do_couple_gantry(
+        self,
+        cycle: int,
+        *,
+        master: str,
+        difference_limit: float,
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+    ) -> None:
+        """Factor 1 with a limit (mm, deg) on how far the actual positions may leave their distance."""
+        self._check("couple_gantry", master, above, master_stands)
+        self._check_positive("couple_gantry", difference_limit=difference_limit)
+        self._couple(cycle, LinearCoupling(master, 1.0, difference_limit=float(difference_limit)))
+
+    def do_couple_cyclic(
+        self, cycle: int, *, master: str, acc_bound: float, above: Sequence[str] = (), master_stands: bool = True
+    ) -> None:
+        """The factor comes cyclically; the slave's acceleration stays within `acc_bound` (mm/s²)."""
+        self._check("couple_cyclic", master, above, master_stands)
+        if not acc_bound > 0.0:
+            self._axis.refuse("couple_cyclic", BAD_ACC_BOUND, f"acc_bound = {acc_bound} must be greater than 0")
+        self._couple(cycle, CyclicCoupling(master, float(acc_bound), cycle_time=self._cycle_time))
+
+    def do_couple_flying_saw(
+        self,
+        cycle: int,
+        *,
+        master: str,
+        factor: float,
+        master_position: float,
+        slave_position: float,
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+        **dynamics: float,
+    ) -> None:
+        """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on."""
+        command, axis = "couple_flying_saw", self._axis
+        self._check(command, master, above, True)
+        self._check_factor(command, factor)
+        limits = axis.checks.dynamics(command, dynamics)
+        axis.checks.soft_limits(command, slave_position)
+        positions = {"master_position": float(master_position), "slave_position": float(slave_position)}
+        self._couple(cycle, FlyingSaw(master, float(factor), limits=limits, **positions))
+
+    def do_couple_cam(
+        self,
+        cycle: int,
+        *,
+        master: str,
+        table: Sequence[Sequence[float]],
+        cyclic: bool = True,
+        master_offset: float = 0.0,
+        master_scaling: float = 1.0,
+        slave_scaling: float = 1.0,
+        slave_offset: float | None = None,
+        file: str = "",
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+    ) -> None:
+        """Slave position over master position from a table of points (master, slave)."""
+        command = "couple_cam"
+        self._check(command, master, above, master_stands)
+        self._check_factor(command, slave_scaling, "slave_scaling")
+        self._check_factor(command, master_scaling, "master_scaling")
+        coupling = CamCoupling(
+            master,
+            self._cam_table(command, table, cyclic),
+            master_offset=float(master_offset),
+            master_scaling=float(master_scaling),
+            slave_scaling=float(slave_scaling),
+            slave_offset=slave_offset,
+        )
+        self._couple(cycle, coupling)
+
+    def do_change_cam(self, cycle: int, *, table: Sequence[Sequence[float]], file: str = "") -> None:
+        """A new table for a cyclic cam; it comes in when the master passes the seam of the one in work."""
+        coupling = self._axis.coupling
+        if not isinstance(coupling, CamCoupling) or not coupling.table.cyclic:
+            self._axis.refuse("change_cam", FACTOR_KIND, "the axis is not coupled by a cyclic cam table")
+        coupling.change_table(self._cam_table("change_cam", table, True))
+
+    def _cam_table(self, command: str, table: Sequence[Sequence[float]], cyclic: bool) -> CamTable:
+        try:
+            return CamTable(table, cyclic=cyclic)
+        except CncError as error:
+            self._axis.refuse(command, BAD_CAM_TABLE, error.message)
+
+    def _check(self, command: str, master: str, above: Collection[str], master_stands: bool) -> None:
+        axis = self._axis
+        if master == axis.name:
+            axis.refuse(command, COUPLED_TO_ITSELF, "an axis cannot be its own master")
+        if master not in self._axes:
+            known = ", ".join(name for name in self._axes if name != axis.name) or "none"
+            axis.refuse(command, UNKNOWN_MASTER, f"there is no axis '{master}'. Known: {known}")
+        if axis.state != S.STANDSTILL:
+            reason = f"the axis is in {state_name(axis.state)}, it must be in Standstill"
+            axis.refuse(command, SLAVE_NOT_STANDING, reason)
+        if axis.name in above:
+            chain = " -> ".join([master, *above][: [*above].index(axis.name) + 2])
+            axis.refuse(command, COUPLING_LOOP, f"{master} is a slave of the axis already ({chain})")
+        if not master_stands:
+            axis.refuse(command, MASTER_NOT_STANDING, f"the master {master} moves; both axes must stand")
+
+    def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:
+        if factor == 0.0:
+            self._axis.refuse(command, BAD_FACTOR, f"{name} = 0 must be different from 0")
+
+    def _check_positive(self, command: str, **values: float) -> None:
+        for name, value in values.items():
+            if not value > 0.0:
+                self._axis.refuse(command, BAD_COUPLING_VALUE, f"{name} = {value} must be greater than 0")
+
+    def _couple(self, cycle: int, coupling: Coupling) -> None:
+        axis = self._axis
+        axis.absorb(cycle)
+        axis.coupling = coupling
+        axis.has_been_stopped = False
+        axis.state = S.SYNCHRONIZED_MOTION
+
+    # factors
+
+    def do_set_coupling_factor(self, cycle: int, *, factor: float) -> None:
+        """A new factor of a linear slave: the position stays continuous, the velocity steps."""
+        coupling = self._coupled("set_coupling_factor")
+        if not isinstance(coupling, LinearCoupling) or coupling.difference_limit is not None:
+            self._axis.refuse("set_coupling_factor", FACTOR_KIND, "the coupling of the axis has no factor to set")
+        self._check_factor("set_coupling_factor", factor)
+        coupling.set_factor(float(factor))
+
+    def do_set_cyclic_factor(self, cycle: int, *, factor: float) -> str | None:
+        """The factor of a cyclic slave; a warning when AccBound is below the stability bound for it."""
+        axis, coupling = self._axis, self._coupled("set_cyclic_factor")
+        if not isinstance(coupling, CyclicCoupling):
+            axis.refuse("set_cyclic_factor", FACTOR_KIND, "the axis is not coupled cyclically")
+        coupling.set_factor(float(factor))
+        master = self._axes[coupling.master]
+        bound = abs(factor) * max(master.acceleration, master.deceleration)
+        if bound <= coupling.acc_bound:
+            return None
+        return (
+            f"P-WARN-{ACC_BOUND_UNSTABLE} axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is below "
+            f"|factor|·max(A+, A-) = {bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag behind"
+        )
+
+    def _coupled(self, command: str) -> Coupling:
+        axis = self._axis
+        if axis.coupling is None or axis.state != S.SYNCHRONIZED_MOTION:
+            axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state_name(axis.state)})")
+        return axis.coupling
+
+    # decouple
+
+    def do_decouple(self, cycle: int, *, target: float | None = None, velocity: float | None = None) -> str | None:
+        """Ends the coupling. A moving slave goes on as a master with its velocity, or to `target`, or at `velocity`.
+
+        `target` in mm (deg), in or against the direction of travel; `velocity` > 0 in mm/s (deg/s).
+        Refusals: 23003, 23004, 23011, 23047, 120002, 120003.
+        """
+        axis, command = self._axis, "decouple"
+        coupling = axis.coupling
+        if coupling is None or axis.state not in (S.SYNCHRONIZED_MOTION, S.ERROR_STOP):
+            axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state_name(axis.state)})")
+        if velocity is not None:
+            axis.checks.positive(command, {"velocity": velocity})
+            axis.checks.velocity(command, velocity)
+        if target is not None:
+            axis.checks.soft_limits(command, target)
+        if axis.state == S.ERROR_STOP:
+            axis.coupling = None
+            return None
+        return self._go_on(cycle, target, velocity)
+
+    def _go_on(self, cycle: int, target: float | None, velocity: float | None) -> str | None:
+        axis = self._axis
+        former = axis.former_target_velocity()
+        axis.coupling = None
+        axis.absorb(cycle)
+        _, speed, acceleration, _ = axis.ptp.state(cycle)
+        if speed == 0.0 and acceleration == 0.0:
+            axis.state = axis.rest_state()
+            return None if target is None and velocity is None else f"axis {axis.name}: decouple: the axis stands"
+        limits = axis.own_limits._replace(velocity=velocity or max(former, abs(speed)))
+        axis.ptp.drive_on(cycle, limits.velocity, limits)
+        axis.state = S.CONTINUOUS_MOTION if axis.ptp.job else S.STOPPING
+        if target is not None and axis.ptp.job is not None:
+            axis.state = S.DISCRETE_MOTION
+            axis.target_window.watch()
+            axis.ptp.redirect(cycle, Request(float(target)))
+        elif velocity is not None and axis.ptp.job is not None:
+            axis.ptp.set_override(cycle, axis.ptp.override)
+        return None
+
+    # the group
+
+    def do_lead(self, cycle: int, *, slave: str, on: bool) -> None:
+        """The PLC: `slave` is coupled to this axis, or is not any more."""
+        (self._axis.slaves.add if on else self._axis.slaves.discard)(slave)
+
+    def do_group_error(self, cycle: int, *, source: str, error: int) -> None:
+        """The PLC: an error of `source` reaches this axis of its group."""
+        axis = self._axis
+        if axis.state not in (S.ERROR_STOP, S.DISABLED):
+            axis.fault(cycle, GROUP_ERROR, f"axis {source} of its group has error {error}")
