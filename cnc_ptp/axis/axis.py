@@ -83,8 +83,8 @@ class Axis:
 
     def shift(self, cycle: int) -> float:
         """Where the axis is beside its basic motion for good, mm (deg): targets of the axis lie there too."""
-        external = self.external.contribution(cycle)[0] if self.external.mode is None else 0.0
-        return self.compensation.offset + external
+        self.setpoint(cycle)
+        return self.compensation.offset + self.external.zero(cycle)
 
     def moving(self, cycle: int) -> bool:
         return not self.ptp.finished(cycle) or (self.superposed and self.external.moving(cycle))
@@ -106,7 +106,12 @@ class Axis:
         self.superposed = False
 
     def stop(self, cycle: int, *, locks: bool = True) -> None:
-        """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP."""
+        """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP.
+
+        A target that the external setpoints were to reach counts no more.
+        """
+        self.setpoint(cycle)  # brings compensation and external setpoints up to this cycle
+        self.target_window.target = None
         self.ptp.stop(cycle, self.own_limits, locks=locks)
         self.compensation.stop()
         self.external.disable(cycle)
@@ -198,8 +203,11 @@ class Axis:
             reason = f"{where} negative soft limit {low} {self.unit} (P-AXIS-00177)"
             self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason)
 
-    def watch_target(self, cycle: int, set_position: float, actual_position: float) -> None:
-        """For a cycle in which the setpoint stands."""
+    def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
+        set_position, velocity, _, _ = setpoint
+        if velocity != 0.0 or self.ptp.job is not None:
+            self.target_window.moves()
+            return
         if not self.target_window.overdue(cycle, set_position, actual_position):
             return
         distance = abs(self.target_window.error(set_position, actual_position))

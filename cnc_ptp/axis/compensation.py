@@ -18,7 +18,7 @@ from cnc_ptp.motion import Profile
 from cnc_ptp.motion.profile import State
 
 ROUNDING = 1e-12
-"""Part of the duration that is rounding."""
+"""Part of a value that is rounding."""
 
 
 def plan_compensation(
@@ -34,19 +34,21 @@ def plan_compensation(
     duration = length / process_velocity
     slopes = 1.0 / first + 1.0 / last
     under_root = duration * duration - 2.0 * slopes * abs(difference)
-    wanted = 2.0 * abs(difference) / (duration + sqrt(under_root)) if under_root > 0.0 else duration / slopes
-    peak = min(wanted, velocity_increase)
-    reached = abs(difference) if peak == wanted and under_root >= 0.0 else peak * (duration - 0.5 * slopes * peak)
-    return _trapezoid(sign, peak, peak / first, peak / last, duration, reached)
+    wanted = 2.0 * abs(difference) / (duration + sqrt(max(0.0, under_root)))
+    if under_root >= -ROUNDING * duration * duration and wanted <= velocity_increase * (1.0 + ROUNDING):
+        return _trapezoid(sign, wanted, first, last, duration, abs(difference))
+    peak = min(velocity_increase, duration / slopes)
+    return _trapezoid(sign, peak, first, last, duration, peak * (duration - 0.5 * slopes * peak))
 
 
-def _trapezoid(sign: float, peak: float, rise: float, fall: float, duration: float, end: float) -> Profile:
-    """Rows for the times `rise` and `fall` of the ramps, out of which the rest of `duration` is at the peak."""
+def _trapezoid(sign: float, peak: float, first: float, last: float, duration: float, end: float) -> Profile:
+    """Rows for ramps of the rates `first` and `last`, between which the rest of `duration` is at the peak."""
+    rise, fall = peak / first, peak / last
     hold_end = max(rise, duration - fall)
     rows = [
-        (0.0, 0.0, 0.0, sign * peak / rise, 0.0),
+        (0.0, 0.0, 0.0, sign * first, 0.0),
         (rise, sign * 0.5 * peak * rise, sign * peak, 0.0, 0.0),
-        (hold_end, sign * (end - 0.5 * peak * fall), sign * peak, -sign * peak / fall, 0.0),
+        (hold_end, sign * (end - 0.5 * peak * fall), sign * peak, -sign * last, 0.0),
         (max(duration, hold_end), sign * end, 0.0, 0.0, 0.0),
     ]
     return Profile(rows)
@@ -79,11 +81,6 @@ class Compensation:
     @property
     def active(self) -> bool:
         return self._profile is not None
-
-    @property
-    def engaged(self) -> bool:
-        """True while `at` changes anything."""
-        return self._profile is not None or self.offset != 0.0
 
     def start(self, cycle: int, base: State, *, direction: float, process_velocity: float, profile: Profile) -> None:
         """Begins at `cycle`, where the basic motion has the state `base` and goes in `direction` (+1, -1)."""

@@ -15,9 +15,12 @@ from cnc_ptp.axis.faults import (
     VELOCITY_TOO_HIGH,
     VIRTUAL_AXIS,
 )
+from cnc_ptp.axis.ptp import Job
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
-from cnc_ptp.motion import Profile
+from cnc_ptp.motion import Profile, plan_to_velocity
+from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
+from cnc_ptp.motion.profile import State
 
 START = "compensation_start"
 
@@ -41,8 +44,8 @@ class CompensationCommands:
     ) -> str | None:
         """Compensates `difference` D over `length` L; AK+ and AK- that are left out come from the axis.
 
-        Refusals: 23004, 23018 – 23022, 120002, 120003. The rest of the way is used where L is longer; where D cannot be
-        reached, what can be reached of it is compensated, and the answer says so.
+        Refusals: 23004, 23013, 23018 – 23022, 120002, 120003. The rest of the way is used where L is longer; where D
+        cannot be reached, what can be reached of it is compensated, and the answer says so.
         """
         axis = self._axis
         self._check_state(cycle)
@@ -56,13 +59,13 @@ class CompensationCommands:
             acceleration=rise,
             deceleration=fall,
         )
-        base, job = axis.ptp.state(cycle), axis.ptp.job
-        assert job is not None
+        base, job = self._basic_motion(cycle)
         remaining = job.target - base[0]
         used = min(length, abs(remaining))
         table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
         direction = copysign(1.0, base[1] or remaining)
-        self._check_motion(job.target + axis.shift(cycle) + direction * table.end[0], job.limits.velocity, table)
+        self._check_velocity(max(job.limits.velocity, abs(base[1])), process_velocity, table)
+        axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
         axis.superposed = True
         axis.compensation.start(cycle, base, direction=direction, process_velocity=process_velocity, profile=table)
         return self._cut_warning(difference, length, table.end[0], used)
@@ -79,22 +82,38 @@ class CompensationCommands:
         if axis.ptp.braking(cycle):
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
 
+    def _basic_motion(self, cycle: int) -> tuple[State, Job]:
+        """State and job of the basic motion; refused while it stops behind its target in order to return."""
+        axis = self._axis
+        base, job = axis.ptp.state(cycle), axis.ptp.job
+        assert job is not None
+        stop = plan_to_velocity(*base[:3], 0.0, job.limits).end[0]
+        if copysign(1.0, base[1]) * (stop - job.target) > 1e-9 * max(1.0, abs(job.target)) and base[1] != 0.0:
+            axis.refuse(START, COMPENSATION_IN_STOP, "the axis stops in order to return to its target")
+        return base, job
+
     def _check_values(self, difference: float, **positive: float) -> None:
         for name, value in positive.items():
             if not value > 0.0:
                 self._axis.refuse(START, BAD_COMPENSATION, f"{name} = {value} must be greater than 0")
+            if not SMALLEST_LIMIT <= value <= LARGEST_LIMIT:
+                reason = f"{name} = {value} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}"
+                self._axis.refuse(START, BAD_COMPENSATION, reason)
         if difference == 0.0:
             self._axis.refuse(START, BAD_COMPENSATION, "difference = 0 must be different from 0")
+        for name in ("acceleration", "deceleration"):
+            self._axis.checks.acceleration(START, name, positive[name])
 
-    def _check_motion(self, end: float, velocity: float, table: Profile) -> None:
-        """The axis must keep its velocity limit and end within its soft limits."""
+    def _check_velocity(self, velocity: float, process_velocity: float, table: Profile) -> None:
+        """The axis must keep its velocity limit, also backwards: there the most is v·(w/VP - 1) for the peak w > VP."""
         axis = self._axis
-        peak = velocity + max(row[2] for row in table.rows)
+        forwards = velocity + max(row[2] for row in table.rows)
+        excess = max(-row[2] for row in table.rows) / process_velocity - 1.0
+        peak = max(forwards, excess * min(velocity, process_velocity))
         highest, unit = axis.parameters.max_velocity, f"{axis.unit}/s"
         if peak > highest:
             reason = f"the axis would get up to {peak:g} {unit}, above the maximum {highest} {unit} (P-AXIS-00212)"
             axis.refuse(START, VELOCITY_TOO_HIGH, reason)
-        axis.checks.soft_limits(START, end)
 
     def _cut_warning(self, difference: float, length: float, reached: float, used: float) -> str | None:
         axis, unit = self._axis, self._axis.unit

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import NamedTuple
 
 from cnc_ptp.axis.tables import standing
-from cnc_ptp.motion import Limits, plan_to_velocity
+from cnc_ptp.motion import Limits, Profile, plan_to_velocity
+from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.motion.profile import State
 
 ABSOLUTE = "absolute"
@@ -25,6 +27,39 @@ class Setpoint(NamedTuple):
     velocity: float
     acceleration: float
     direction: int
+
+
+def read_setpoint(row: object) -> Setpoint:
+    """A setpoint from five numbers. Raises ValueError with the reason why they are none."""
+    names = ", ".join(Setpoint._fields)
+    if not isinstance(row, (list, tuple)):
+        raise ValueError(f"a setpoint needs {names}; {row!r} is no list of them")
+    if len(row) != len(Setpoint._fields):
+        raise ValueError(f"a setpoint needs {names}; {list(row)} has {len(row)} values")
+    for name, value in zip(Setpoint._fields, row, strict=True):
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not is_number or not -LARGEST_STATE <= value <= LARGEST_STATE:
+            raise ValueError(f"{name} = {value!r} is not a number within ±{LARGEST_STATE:g}")
+    cycle, position, velocity, acceleration, direction = row
+    if cycle < 0 or cycle != int(cycle):
+        raise ValueError(f"cycle = {cycle} is not a whole number from 0 on")
+    if direction not in (-1, 0, 1):
+        raise ValueError(f"setpoint of cycle {int(cycle)}: direction = {direction} is none of -1, 0, 1")
+    return Setpoint(int(cycle), float(position), float(velocity), float(acceleration), int(direction))
+
+
+def read_setpoints(rows: Iterable[object]) -> list[Setpoint]:
+    """Setpoints from rows of five numbers, in ascending cycles. Raises ValueError with the first reason against it."""
+    setpoints = [read_setpoint(row) for row in rows]
+    for before, setpoint in pairwise(setpoints):
+        check_order(before.cycle, setpoint)
+    return setpoints
+
+
+def check_order(before: int, setpoint: Setpoint) -> None:
+    """Raises ValueError when `setpoint` does not come after the cycle `before`."""
+    if setpoint.cycle <= before:
+        raise ValueError(f"setpoint of cycle {setpoint.cycle}: comes after cycle {before}; cycles must ascend")
 
 
 class ExternalSetpoints:
@@ -64,9 +99,25 @@ class ExternalSetpoints:
             self._reference = position - contribution if mode == ABSOLUTE else -contribution
             self.mode = mode
 
+    def carry(self, position: float) -> None:
+        """The contribution alone places the axis, the basic motion stands at 0: setpoints come out to the bit."""
+        self._rest = standing(position)
+
+    def takes(self, cycle: int) -> bool:
+        """True for setpoints that come at `cycle` while enabled, or with the command that disables."""
+        return self.mode is not None or self._last_cycle == cycle
+
+    @property
+    def newest_cycle(self) -> int:
+        """Cycle of the newest setpoint that waits or drives the axis; -1 without one."""
+        if self._waiting:
+            return self._waiting[-1].cycle
+        return -1 if self._driving is None else self._driving.cycle
+
     def feed(self, setpoints: Iterable[Setpoint]) -> None:
-        """Takes setpoints in the order of their cycles."""
-        self._waiting.extend(setpoints)
+        """Takes setpoints in the order of their cycles; once disabled, none after the last cycle."""
+        last = self._last_cycle if self.mode is None else None
+        self._waiting.extend(setpoint for setpoint in setpoints if last is None or setpoint.cycle <= last)
 
     def disable(self, cycle: int) -> None:
         """The setpoint of `cycle` is taken over once more, then the contribution comes to rest."""
@@ -83,10 +134,6 @@ class ExternalSetpoints:
 
     # setpoints
 
-    def engaged(self, cycle: int) -> bool:
-        """True while `at` changes anything."""
-        return self.mode is not None or self.moving(cycle) or self._rest.end[0] != 0.0
-
     def moving(self, cycle: int) -> bool:
         """True while a setpoint drives the axis or the contribution comes to rest."""
         return self._driving is not None or (cycle - self._rest_cycle) * self._cycle_time < self._rest.duration
@@ -96,6 +143,13 @@ class ExternalSetpoints:
         if self._driving is None or self.contribution(cycle)[1] == 0.0:
             return 0
         return cycle - self._driving.cycle
+
+    def zero(self, cycle: int) -> float:
+        """What stays of the contribution: without relative setpoints, or when it has come to rest after the end."""
+        if self.mode is not None:
+            return -self._reference if self.mode == RELATIVE else self.contribution(cycle)[0]
+        rest = self._rest if self._driving is None else self._to_rest(self._driving, cycle)
+        return rest.end[0]
 
     def at(self, cycle: int, base: State) -> State:
         """Basic motion plus contribution at `cycle`; takes the setpoints that have come due."""
@@ -111,12 +165,14 @@ class ExternalSetpoints:
         return self._rest.state_at((cycle - self._rest_cycle) * self._cycle_time)
 
     def _driven(self, setpoint: Setpoint, cycle: int) -> State:
-        """The setpoint brought forward to `cycle` and by the dead time, at most to where it comes to rest.
+        """The setpoint (its position is that of the contribution) brought forward to `cycle` and by the dead time.
+
+        It goes at most to where it comes to rest.
 
         Its acceleration counts for as long as setpoints are usually apart, so that silence does not speed the axis up.
         """
         d = (cycle - setpoint.cycle) * self._cycle_time + self._dead_time
-        position, v, a = setpoint.position - self._reference, setpoint.velocity, setpoint.acceleration
+        position, v, a = setpoint.position, setpoint.velocity, setpoint.acceleration
         if v == 0.0 and a * setpoint.direction <= 0.0:
             return position, 0.0, a if d == 0.0 else 0.0, 0.0
         ramp = min(d, self._period * self._cycle_time + self._dead_time)
@@ -125,37 +181,34 @@ class ExternalSetpoints:
         return position + d * v + a * ramp * (d - 0.5 * ramp), v + a * ramp, a if d == ramp else 0.0, 0.0
 
     def _advance(self, cycle: int) -> None:
+        """Takes the setpoints that have come due; one that comes late counts from now on, brought forward."""
+        self._let_go(cycle)
         while self._waiting and self._waiting[0].cycle <= cycle:
             setpoint = self._waiting.popleft()
-            self._let_go(setpoint.cycle)
             if setpoint.direction == 0 and self._driving is None:
                 continue
-            if self._is_too_far(setpoint):
+            driving = setpoint._replace(position=setpoint.position - self._reference)
+            way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
+            if abs(way) > self._limits.velocity * self._cycle_time * (1.0 + 1e-9):
+                self.rejected = setpoint, way
                 self._waiting.clear()
                 return
             if self._driving is not None:
                 self._period = setpoint.cycle - self._driving.cycle
-            self._driving = setpoint
-            self._last_cycle = setpoint.cycle if setpoint.direction == 0 else None
-        self._let_go(cycle)
+            self._driving = driving
+            self._last_cycle = cycle if setpoint.direction == 0 or self.mode is None else None
 
     def _let_go(self, cycle: int) -> None:
-        """Comes to rest after the last cycle of the setpoints: a standing one stays where it is."""
+        """Comes to rest after the last cycle of the setpoints."""
         if self._driving is None or self._last_cycle is None or cycle <= self._last_cycle:
             return
-        position, velocity, acceleration, _ = self._driven(self._driving, self._last_cycle)
-        if velocity == 0.0:
-            acceleration = 0.0
-        self._rest = plan_to_velocity(position, velocity, acceleration, 0.0, self._limits)
+        self._rest = self._to_rest(self._driving, self._last_cycle)
         self._rest_cycle = self._last_cycle
         self._driving = self._last_cycle = None
 
-    def _is_too_far(self, setpoint: Setpoint) -> bool:
-        """Rejects what the axis cannot reach with its velocity limit since the setpoint before."""
-        before = setpoint.cycle - 1 if self._driving is None else self._driving.cycle
-        cycles = max(1, setpoint.cycle - before)
-        way = self._driven(setpoint, setpoint.cycle)[0] - self.contribution(setpoint.cycle)[0]
-        if abs(way) <= self._limits.velocity * self._cycle_time * cycles * (1.0 + 1e-9):
-            return False
-        self.rejected = setpoint, way
-        return True
+    def _to_rest(self, driving: Setpoint, cycle: int) -> Profile:
+        """The ramp to rest from `cycle` on; a standing setpoint stays where it is."""
+        position, velocity, acceleration, _ = self._driven(driving, cycle)
+        if velocity == 0.0:
+            acceleration = 0.0
+        return plan_to_velocity(position, velocity, acceleration, 0.0, self._limits)

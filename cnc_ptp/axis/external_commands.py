@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
-from math import isfinite
 
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.external import ABSOLUTE, Setpoint
+from cnc_ptp.axis.external import ABSOLUTE, Setpoint, check_order, read_setpoints
 from cnc_ptp.axis.faults import (
     BAD_SETPOINT,
     EXTERNAL_BESIDE_MOTION,
@@ -40,17 +38,28 @@ class ExternalCommands:
         axis = self._axis
         self._check_state(mode)
         position = axis.setpoint(cycle)[0]
-        goal = target if target is None or mode == ABSOLUTE else position + target
+        goal = target if target is None or mode == ABSOLUTE else self._relative_goal(cycle, target)
         if goal is not None:
             axis.checks.soft_limits(ENABLE, goal)
         if axis.state == S.STANDSTILL:
             axis.absorb(cycle)
+            if mode == ABSOLUTE:
+                axis.ptp.take_over(cycle, 0.0, 0.0, 0.0)
+                axis.external.carry(position)
             axis.state = S.CONTINUOUS_MOTION
             axis.has_been_stopped = False
         axis.external.enable(cycle, mode, position)
         axis.superposed = True
         axis.target_window.watch(goal)
         return None
+
+    def _relative_goal(self, cycle: int, target: float) -> float:
+        """Where the axis ends when the relative setpoints end at `target`; they count from where they were enabled."""
+        axis = self._axis
+        external = axis.external
+        begin = external.zero(cycle) if external.mode else external.contribution(cycle)[0]
+        end = axis.ptp.state(cycle)[0] if axis.ptp.job is None else axis.ptp.job.target
+        return end + axis.compensation.offset + begin + target
 
     def _check_state(self, mode: str) -> None:
         axis = self._axis
@@ -83,32 +92,27 @@ class ExternalCommands:
         Refused (23032) as a whole when one is not in order.
         """
         axis = self._axis
-        if axis.external.mode is None:
+        if not axis.external.takes(cycle):
             return (
                 f"P-WARN-{EXTERNAL_IGNORED} axis {axis.name}: {SETPOINTS} ignored: external setpoints are not enabled"
             )
-        packets = [self._checked(row) for row in setpoints]
-        for before, packet in pairwise(packets):
-            if packet.cycle <= before.cycle:
-                self._refuse(packet.cycle, f"comes after cycle {before.cycle}; cycles must ascend")
+        try:
+            packets = read_setpoints(setpoints)
+            if packets:
+                check_order(axis.external.newest_cycle, packets[0])
+        except ValueError as error:
+            axis.refuse(SETPOINTS, BAD_SETPOINT, str(error))
+        for packet in packets:
+            self._check_limits(packet)
         axis.external.feed(packets)
         return None
 
-    def _checked(self, row: Sequence[float]) -> Setpoint:
-        if len(row) != len(Setpoint._fields):
-            names = ", ".join(Setpoint._fields)
-            self._axis.refuse(SETPOINTS, BAD_SETPOINT, f"a setpoint needs {names}; {list(row)} has {len(row)} values")
-        for name, value in zip(Setpoint._fields, row, strict=True):
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
-                self._axis.refuse(SETPOINTS, BAD_SETPOINT, f"{name} = {value!r} is not a finite number")
-        packet = Setpoint(int(row[0]), float(row[1]), float(row[2]), float(row[3]), int(row[4]))
+    def _check_limits(self, packet: Setpoint) -> None:
         parameters, unit = self._axis.parameters, self._axis.unit
-        if packet.direction not in (-1, 0, 1):
-            self._refuse(packet.cycle, f"direction = {packet.direction} is none of -1, 0, 1")
-        if abs(packet.velocity) > parameters.max_velocity:
-            limit = f"{parameters.max_velocity} {unit}/s (P-AXIS-00212)"
-            self._refuse(packet.cycle, f"velocity {packet.velocity} {unit}/s is above the maximum {limit}")
-        return packet
-
-    def _refuse(self, cycle: int, reason: str) -> None:
-        self._axis.refuse(SETPOINTS, BAD_SETPOINT, f"setpoint of cycle {cycle}: {reason}")
+        for name, value, most, source in (
+            ("velocity", packet.velocity, parameters.max_velocity, f"{unit}/s (P-AXIS-00212)"),
+            ("acceleration", packet.acceleration, parameters.max_acceleration, f"{unit}/s² (P-AXIS-00008)"),
+        ):
+            if abs(value) > most:
+                reason = f"{name} {value} {source.split()[0]} is above the maximum {most} {source}"
+                self._axis.refuse(SETPOINTS, BAD_SETPOINT, f"setpoint of cycle {packet.cycle}: {reason}")

@@ -12,6 +12,7 @@ class TargetWindow:
         self._cycles = cycles
         self._has_target = False
         self._watching = False
+        self._has_moved = False
         self._standing_since: int | None = None
         self.target: float | None = None
         """Where the motion was to end; None: wherever the setpoint comes to rest."""
@@ -19,12 +20,18 @@ class TargetWindow:
     def watch(self, target: float | None = None) -> None:
         """A motion begins."""
         self._has_target = self._watching = True
+        self._has_moved = False
         self._standing_since = None
         self.target = target
 
     def forget(self) -> None:
         """A fault ended the motion: there is no target any more."""
         self._has_target = self._watching = False
+
+    def moves(self) -> None:
+        """The setpoint has not come to its end in this cycle."""
+        self._has_moved = True
+        self._standing_since = None
 
     def error(self, set_position: float, actual_position: float) -> float:
         """Distance between the axis and its target, mm (deg)."""
@@ -35,8 +42,8 @@ class TargetWindow:
         return self._has_target and abs(self.error(set_position, actual_position)) <= self._window
 
     def overdue(self, cycle: int, set_position: float, actual_position: float) -> bool:
-        """For a standing setpoint: True once when the axis should have been in its window by `cycle`."""
-        if not self._watching:
+        """For a setpoint at its end: True once when the axis should have been in its window by `cycle`."""
+        if not (self._watching and self._has_moved):
             return False
         if self._standing_since is None:
             self._standing_since = cycle

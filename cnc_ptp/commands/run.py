@@ -8,10 +8,8 @@ from cnc_ptp.commands.console import RUN_FAILED, print_faults
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.supervisor import Job, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 
@@ -29,8 +27,6 @@ def run(
     keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     read_job(parameters, program=program, scenario=scenario)
-    if record is not None:
-        require_writable(record)
     job = Job(machine, program, scenario, duration, record, free_run)
     with RunProgress() as progress:
 
@@ -39,8 +35,7 @@ def run(
             progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
 
         if composed:
-            with process.priority(not free_run):
-                monitor, failures = run_composed(parameters, job, show=show)
+            monitor, failures = run_composed(parameters, job, show=show)
         else:
             supervisor = Supervisor(parameters, job, show=show)
             monitor, failures = supervisor.run(), supervisor.failures

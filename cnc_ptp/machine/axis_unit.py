@@ -127,8 +127,7 @@ class AxisUnit(Unit):
             axis.advance_state(cycle)
         if axis.superposed:
             axis.watch_superposition(cycle, setpoint)
-        elif velocity == 0.0:
-            axis.watch_target(cycle, position, drive.position)
+        axis.watch_target(cycle, setpoint, drive.position)
         command = 0.0
         if axis.powered or axis.moving(cycle):
             if axis.error_id == 0 and self._controller.exceeds_limit(following_error):

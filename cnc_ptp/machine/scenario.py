@@ -8,6 +8,7 @@ from typing import Any
 
 import yaml
 
+from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, is_finite
@@ -101,6 +102,7 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
 def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None) -> None:
     """The rows of a file of external setpoints; an entry may also have them itself, as `setpoints`."""
     if "setpoints" in arguments:
+        _check_setpoints(axis, arguments["setpoints"])
         return
     file = arguments.get("file")
     if not isinstance(file, str):
@@ -109,6 +111,13 @@ def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None)
         )
     if read:
         arguments["setpoints"] = parse_setpoints(read("setpoint file", file), file)
+
+
+def _check_setpoints(axis: str, rows: object) -> None:
+    try:
+        read_setpoints(rows if isinstance(rows, list) else [])
+    except ValueError as error:
+        raise CncError(BAD_ARGUMENT, f"axis {axis}: {SETPOINTS} refused: {error}; nothing was changed") from None
 
 
 def _construct(node: yaml.Node) -> dict[str, Any]:

@@ -23,7 +23,8 @@ from cnc_ptp.motion.ramp import NEGLIGIBLE, brake, brake_term, ramp, stop_way
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
 
 WAY_ROUNDING = 1e-13
-PLACE_ROUNDING = 4e-15
+PLACE_ROUNDING = 4.5e-16
+"""Part of the stop way, and of each of the two places, that is rounding when an axis that brakes is planned again."""
 
 
 def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits, *, direct: bool = False) -> Profile:
@@ -52,10 +53,16 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
 
 
 def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
-    """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target."""
-    rows, t, p, _ = integrate(0.0, p, v, ramp(v, a, 0.0, limits))
-    back = rest_to_rest(p, target, limits)
-    return Profile(rows + [(t + row[0], *row[1:]) for row in back.rows])
+    """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target.
+
+    Ways are counted from p, so that the way back keeps its digits far away from zero.
+    """
+    rows, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits))
+    back = rest_to_rest(stop, target - p, limits)
+    table = [(t0, p + x, v0, a0, j0) for t0, x, v0, a0, j0 in rows]
+    table += [(t + t0, p + x, v0, a0, j0) for t0, x, v0, a0, j0 in back.rows]
+    table[-1] = (t + back.duration, target, 0.0, 0.0, 0.0)
+    return Profile(table)
 
 
 def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail: list[Piece]) -> Profile:

@@ -38,7 +38,7 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
             consumers = consumers_of(parameters, name, recorders=recorders)
             return node_class(parameters, name, consumers=consumers, free_run=free_run, **options)
 
-        sys.exit(process.run_node(make, real_time=not free_run))
+        sys.exit(process.run_node(make))
 
     command.params.extend(more)
     return lambda: call(command)

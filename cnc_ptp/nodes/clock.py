@@ -20,8 +20,6 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 POLL = 0.02
 START_DELAY = 0.1
 """Seconds between the last ready node and the first tick: writers and readers find each other in both directions."""
-OBSERVER_PATIENCE = 2.0
-"""Seconds for which a free run waits for a recorder; units have the watchdog time."""
 SECOND_CLOCK = 26109
 FAREWELL = 0.3
 """Seconds between the last tick and the end of the clock, so that the last messages arrive."""
@@ -107,6 +105,8 @@ class ClockNode(Node):
         if self._plc.get_publisher_count() and self._publisher.get_subscription_count() >= len(
             self._expected - {MONITOR}
         ):
+            if not self._free_run:
+                process.take_priority()
             self._start_ns = time.time_ns()
             self._started_at = time.monotonic() + START_DELAY
 
@@ -148,7 +148,8 @@ class ClockNode(Node):
         self._open -= silent
 
     def _patience(self, name: str) -> float:
-        return self._watchdog if name in self._units else max(self._watchdog, OBSERVER_PATIENCE)
+        begun = self._first_cycle > self._count and name in self._units
+        return self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         if message.run_done:
@@ -181,7 +182,6 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
         done=lambda node: node.done,
         wait=lambda node: node.wait_time(),
         after=lambda node: node.advance(),
-        real_time=not free_run,
     )
     sys.exit(status)
 

@@ -19,7 +19,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of, only_run
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
@@ -29,8 +29,11 @@ def run_composed(
     machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]
 ) -> tuple[RunMonitor, list[str]]:
     """Runs the job in this process; `show` is called about 20 times a second. Returns what went wrong besides."""
-    process.initialise()
-    claim = process.claim_domain()
+    with only_run(job):
+        return _run(machine, job, show)
+
+
+def _run(machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None]) -> tuple[RunMonitor, list[str]]:
     monitor = RunMonitor(machine)
     recorders = 1 if job.record else 0
     clock = ClockNode(
@@ -60,7 +63,6 @@ def run_composed(
         process.spin(nodes, done=lambda: done() or stopped(end, nodes), wait=clock.wait_time, after=after)
     except CncError as error:
         failures.append(f"{error}; the run ends")
-    claim.close()
     end.restore()
     if end.given:
         failures.append(end.text("everything was stopped on its ramps"))

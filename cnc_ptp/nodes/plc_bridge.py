@@ -161,7 +161,7 @@ def command(
             free_run=free_run,
         )
 
-    sys.exit(process.run_node(make, real_time=not free_run))
+    sys.exit(process.run_node(make))
 
 
 def main() -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import socket
 import sys
-from collections.abc import Callable, Iterator, MutableMapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, MutableMapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,9 @@ PRIORITY = 5
 """Of 1 ... 99: above all ordinary programs, below what the kernel runs at 50."""
 SPIN_TIMEOUT = 0.1
 """Seconds after which a spinning process looks whether it was told to end."""
+START_PATIENCE = 2.0
+"""Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
+other's start, and nothing has moved yet."""
 PATIENCE = 3.0
 """Seconds that a process which was told to end may take to bring its work to an end."""
 
@@ -50,23 +53,15 @@ def set_environment(environment: MutableMapping[str, str], rmw: str) -> None:
     environment[PROFILE] = str(Path(__file__).with_name("localhost.xml"))
 
 
-@contextmanager
-def priority(real_time: bool) -> Iterator[None]:
-    """Real-time scheduling for what this thread does and for the threads that it starts, where the system allows it.
+def take_priority() -> None:
+    """Real-time scheduling for the threads of this process, where the system allows it.
 
-    Root may, and users to whom limits.conf gives rtprio; nodes then keep their time beside other busy programs.
+    Root may, and users to whom limits.conf gives rtprio; a node then keeps its time beside other busy programs. Threads
+    and processes that come later do not inherit it.
     """
-    if not real_time:
-        yield
-        return
-    before, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
-    with suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
-    try:
-        yield
-    finally:
-        with suppress(PermissionError):
-            os.sched_setscheduler(0, before, parameters)
+    for thread in os.listdir("/proc/self/task"):
+        with suppress(PermissionError, ProcessLookupError):
+            os.sched_setscheduler(int(thread), os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
 
 
 def initialise() -> None:
@@ -138,29 +133,26 @@ def run_node(
     settled: Callable[[Any], bool] = lambda node: True,
     wait: Callable[[Any], float] = lambda node: SPIN_TIMEOUT,
     after: Callable[[Any], None] = lambda node: None,
-    real_time: bool = False,
 ) -> int:
     """Makes a node and spins it until `done(node)`, or until a signal came and the node has `settled`.
 
-    `real_time`: with the priority of a node that keeps time.
     Returns the exit status: 0 done, 1 an error during the work, 2 refused start, 128 + n ended by signal n.
     """
     end = EndRequest()
-    with priority(real_time):
-        try:
-            initialise()
-            node = make()
-        except CncError as error:
-            print(error, file=sys.stderr)
-            rclpy.try_shutdown()
-            return WRONG_INPUT
+    try:
+        initialise()
+        node = make()
+    except CncError as error:
+        print(error, file=sys.stderr)
+        rclpy.try_shutdown()
+        return WRONG_INPUT
 
-        def is_over() -> bool:
-            return done(node) or (end.given and (settled(node) or end.over(PATIENCE)))
+    def is_over() -> bool:
+        return done(node) or (end.given and (settled(node) or end.over(PATIENCE)))
 
-        try:
-            spin([node], done=is_over, wait=lambda: wait(node), after=lambda: after(node))
-        except CncError as error:
-            print(error, file=sys.stderr)
-            return FAILED
+    try:
+        spin([node], done=is_over, wait=lambda: wait(node), after=lambda: after(node))
+    except CncError as error:
+        print(error, file=sys.stderr)
+        return FAILED
     return SIGNALLED + end.number if end.given else 0

@@ -206,7 +206,7 @@ def command(machine: str, output: str, free_run: bool) -> None:
     def make() -> RecorderNode:
         return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
 
-    sys.exit(process.run_node(make, settled=lambda node: node.settled, real_time=not free_run))
+    sys.exit(process.run_node(make, settled=lambda node: node.settled))
 
 
 def main() -> None:

@@ -8,14 +8,19 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+
+import rclpy
 
 from cnc_ptp import msg, srv
 from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.machine.blocks import Event, Severity
+from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
+from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import EVENT, EVENTS, MONITOR, RECORDER
 from cnc_ptp.parameters import MachineParameters
 
@@ -61,8 +66,10 @@ class Supervisor:
 
     def run(self) -> RunMonitor:
         """Runs the job to its end; `failures` then says what went wrong with processes."""
-        process.initialise()
-        claim = process.claim_domain()
+        with only_run(self._job):
+            return self._run()
+
+    def _run(self) -> RunMonitor:
         monitor = RunMonitor(self._machine)
         self._event_publisher = monitor.create_publisher(msg.Event, EVENT, EVENTS)
         self._stop_all = monitor.create_client(srv.Execute, f"/{PLC}/stop_all")
@@ -76,7 +83,6 @@ class Supervisor:
             self._end_all()
             for number, handler in previous.items():
                 signal.signal(number, handler)
-            claim.close()
         return monitor
 
     # processes
@@ -106,11 +112,11 @@ class Supervisor:
         yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *free_run, *recorders]
         duration = ["--duration", str(job.duration)] if job.duration is not None else []
         wait_for = [word for name in observers_of(job) for word in ("--wait-for", name)]
-        yield "clock", ["clock", job.machine, *duration, *free_run, *wait_for]
+        yield CLOCK, ["clock", job.machine, *duration, *free_run, *wait_for]
 
     def _over(self) -> bool:
         """True when the run has come to its end, in order or after a fault."""
-        if self._processes["clock"].poll() == 0:
+        if self._processes[CLOCK].poll() == 0:
             return True
         self._note_interrupt()
         self._note_deaths()
@@ -134,7 +140,7 @@ class Supervisor:
     def _note_deaths(self) -> None:
         for name, child in self._processes.items():
             status = child.poll()
-            if status is None or name in self._dead:
+            if status is None or name in self._dead or (name == CLOCK and status == 0):
                 continue
             self._dead.add(name)
             text = f"node '{name}' (process {child.pid}) {how_ended(status)} during the run; {self._what_follows()}"
@@ -184,6 +190,22 @@ class Supervisor:
                 except subprocess.TimeoutExpired:
                     child.kill()
                     child.wait()
+
+
+@contextmanager
+def only_run(job: Job) -> Iterator[None]:
+    """ROS with its domain for this run alone; only then is the recording touched.
+
+    Raises CncError 26107, 26108 (process) and 26113 (recorder).
+    """
+    process.initialise()
+    try:
+        with process.claim_domain():
+            if job.record is not None:
+                require_writable(job.record)
+            yield
+    finally:
+        rclpy.try_shutdown()
 
 
 def observers_of(job: Job) -> list[str]:

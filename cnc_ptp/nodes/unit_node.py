@@ -22,7 +22,7 @@ from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
-from cnc_ptp.nodes import convert
+from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.parameters import declare_parameters
 from cnc_ptp.nodes.topics import (
@@ -141,6 +141,8 @@ class UnitNode(Node):
                 "nodes must be there before the clock starts",
             )
             return
+        if not self._running and message.scheduled_monotonic_ns:
+            process.take_priority()
         self._running = True
         self._heard[CLOCK] = time.monotonic()
         self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
@@ -262,8 +264,10 @@ class UnitNode(Node):
             return
         if now - self._said > self._watchdog / 4.0:
             self._say(self._gate.next_cycle)
+        begun = self._gate.next_cycle > self._count
+        patience = self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
         for source in self._gate.missing():
-            if now - self._heard[source] > self._watchdog:
+            if now - self._heard[source] > patience:
                 self._lose(source, None)
         self._compute_ready_blocks()
 

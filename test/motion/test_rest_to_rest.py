@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from motion_checker import Motions, assert_all, assert_motions, over_acceleration, over_velocity, steps
+from motion_problems import Problem, random_problems
+from ruckig_peer import RuckigPeer
 
 from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_rest_to_rest_batch, reachable_velocity
 
@@ -87,14 +90,47 @@ def test_no_distance_takes_no_time():
     assert profile.state_at(0.5) == (3.0, 0.0, 0.0, 0.0)
 
 
-def test_random_problems_over_eight_decades(check_table, check_limits, draw_limits):
-    draw = random.Random(20)
-    for _ in range(2000):
-        limits = draw_limits(draw, symmetric=draw.random() < 0.5)
-        start, target = draw.uniform(-1e3, 1e3), draw.uniform(-1.0, 1.0) * 10 ** draw.uniform(-3, 5)
-        profile = plan_rest_to_rest(start, target, limits)
-        check_table(profile, (start, 0.0, 0.0), (target, 0.0, 0.0), limits)
-        check_limits(profile, limits)
+def many(seed: int, count: int) -> list[Problem]:
+    """Rest to rest over eight decades, near zero and at ±1e5."""
+    return random_problems(seed, count, ("rest",))
+
+
+def test_many_problems_over_eight_decades_one_by_one():
+    problems = many(20, 5000)
+    profiles = [plan_rest_to_rest(problem.position, problem.target, problem.limits) for problem in problems]
+    assert_motions(problems, profiles)
+
+
+def test_twenty_thousand_problems_in_one_call():
+    problems = many(22, 20_000)
+    columns = np.array([(problem.position, problem.target, *problem.limits) for problem in problems]).T
+    batch = plan_rest_to_rest_batch(*columns)
+    starts = np.array([columns[0], np.zeros(len(batch)), np.zeros(len(batch))])
+    motions = Motions(batch.rows.transpose(0, 2, 1), starts, columns[2:])
+    assert (motions.d >= 0.0).all()
+    assert (batch.rows[1, 7] == columns[1]).all()
+    for found in (*steps(motions), over_velocity(motions), over_acceleration(motions)):
+        assert_all(found, "batch", problems)
+
+
+def test_never_slower_than_ruckig_with_the_smaller_ramp_on_both_sides():
+    """TX1250 2.1 reduces V by A = min(A+, A-): equal to the optimum where A+ = A-, never slower where not."""
+    peer, compared = RuckigPeer(), 0
+    for problem in many(23, 5000):
+        limits = problem.limits
+        both = min(limits.acceleration, limits.deceleration)
+        duration = plan_rest_to_rest(problem.position, problem.target, limits).duration
+        way = problem.target - problem.position
+        if way == 0.0:
+            continue
+        peer.scale(duration, abs(way))
+        theirs = peer.to_position(way, 0.0, 0.0, limits._replace(acceleration=both, deceleration=both))
+        if theirs is not None:
+            compared += 1
+            assert duration <= theirs * (1 + 1e-9), problem
+            if limits.acceleration == limits.deceleration:
+                assert duration >= theirs * (1 - 1e-9), problem
+    assert compared > 4000
 
 
 scales = st.floats(min_value=1e-3, max_value=1e5)

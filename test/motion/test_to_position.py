@@ -1,29 +1,20 @@
-"""Position targets from any state: examples of TX1250 2.2 and 2.3, seeded problems, and Ruckig's durations.
-
-CNC_PTP_RANDOM_PROBLEMS sets how many problems are compared (20,000; set it to some hundred thousand before a release).
-"""
+"""Position targets from any state: examples of TX1250 2.2 and 2.3, and what once went wrong (many: test_many_problems)."""
 
 from __future__ import annotations
 
 import math
-import os
 import random
 from itertools import pairwise
 
 import pytest
-import ruckig
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from motion_checker import assert_motions
+from motion_problems import Problem
 
 from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_to_position, plan_to_velocity, stop_way, to_position
 
 LIMITS = Limits(2000.0, 5000.0, 5000.0, 50000.0)
-COUNT = int(os.environ.get("CNC_PTP_RANDOM_PROBLEMS", "20000"))
-
-
-def case(p, v, a, target, limits):
-    """A failing problem as a line that can be pasted."""
-    return f"plan_to_position({p!r}, {v!r}, {a!r}, {target!r}, {limits!r})"
 
 
 def test_from_rest_it_is_the_closed_form():
@@ -98,32 +89,6 @@ def test_a_rise_of_acceleration_from_motion_is_left_in_time(check_table, check_l
             check_limits(profile, limits)
 
 
-@pytest.mark.parametrize("direct", [False, True])
-def test_random_problems_keep_limits_and_end_exactly(direct, check_table, check_limits, draw_limits, draw_start):
-    draw = random.Random(40)
-    for _ in range(4000):
-        limits = draw_limits(draw, symmetric=draw.random() < 0.3)
-        p, v, a = draw_start(draw, limits)
-        target = p + draw.uniform(-1.0, 1.0) * 10 ** draw.uniform(-3, 5)
-        profile = plan_to_position(p, v, a, target, limits, direct=direct)
-        check_table(profile, (p, v, a), (target, 0.0, 0.0), limits)
-        check_limits(profile, limits)
-
-
-def test_random_states_above_the_limits_are_left_and_end_exactly(check_table, draw_limits, draw_start):
-    draw = random.Random(41)
-    for _ in range(4000):
-        limits = draw_limits(draw, symmetric=draw.random() < 0.3)
-        p, v, a = draw_start(draw, limits)
-        v, a = v * draw.choice([1.0, 3.0]), a * draw.choice([1.0, 4.0])
-        target = p + draw.uniform(-1.0, 1.0) * 10 ** draw.uniform(-3, 5)
-        profile = plan_to_position(p, v, a, target, limits)
-        check_table(profile, (p, v, a), (target, 0.0, 0.0), limits)
-        reached = max(limits.velocity, abs(v), abs(v + a * abs(a) / (2.0 * limits.jerk)))
-        assert max(abs(row[2]) for row in profile.rows) <= reached * (1 + 1e-9)
-        assert max(abs(row[3]) for row in profile.rows) <= max(abs(a), *limits[1:3]) * (1 + 1e-9)
-
-
 scales = st.floats(min_value=1e-3, max_value=1e5)
 values = st.floats(min_value=-1e5, max_value=1e5)
 
@@ -136,21 +101,6 @@ def test_any_problem_has_a_table_that_ends_exactly(p, v, a, target, velocity, up
     assert profile.rows[0][0] == 0.0
     assert all(math.isfinite(value) for row in profile.rows for value in row)
     assert all(row[0] <= following[0] for row, following in pairwise(profile.rows))
-
-
-def test_planning_again_from_any_sample_lands_at_the_same_end_at_the_same_time(draw_start):
-    draw = random.Random(42)
-    for _ in range(1000):
-        acceleration = 10 ** draw.uniform(2, 4)
-        limits = Limits(10 ** draw.uniform(1, 3), acceleration, acceleration, 10 ** draw.uniform(3, 6))
-        p, v, a = draw_start(draw, limits)
-        target = draw.uniform(-1e3, 1e3)
-        profile = plan_to_position(p, v, a, target, limits, direct=True)
-        for _ in range(5):
-            t = draw.uniform(0.0, 1.0) * profile.duration
-            again = plan_to_position(*profile.state_at(t)[:3], target, limits, direct=True)
-            assert again.end == profile.end
-            assert t + again.duration == pytest.approx(profile.duration, rel=1e-7)
 
 
 def test_planning_again_while_braking_does_not_reverse_far_from_zero():
@@ -167,60 +117,71 @@ def test_planning_again_while_braking_does_not_reverse_far_from_zero():
             assert min(math.copysign(1.0, way) * row[2] for row in again.rows) >= -1e-9 * limits.velocity
 
 
-def test_solvers_stay_in_their_brackets_at_a_vanishing_slope():
-    """The slope is 0 where √q = 0 in the free equation and a = -A- in the bounded one; a target behind ends it."""
+def test_solvers_stay_in_their_brackets_where_the_target_is_behind():
+    """The slope is 0 where √q = 0 in the free equation and a = -A- in the bounded one."""
     assert to_position._solve_free(2.0, 2.0, -4.0, -8.0) == 2.0
     assert to_position._solve_bounded(-3.0, -3.0, 9.0, 0.0, 3.0) == -3.0
     assert to_position._leave_at_constant_acceleration(10.0, 5.0, 4.0, -90.0, 8.0, 100.0) == 508.0
 
 
-def peer():
-    """Ruckig's duration of a problem; None where it raises. Posed from 0: far from 0 its own rounding shows."""
-    planner, trajectory, problem = ruckig.Ruckig(1), ruckig.Trajectory(1), ruckig.InputParameter(1)
-    problem.target_velocity, problem.target_acceleration = [0.0], [0.0]
+PAST = {
+    "leaving point not reached in 60 Newton steps, step of position 7e-5 of the way": Problem(
+        0.0,
+        0.0,
+        -0.004644632025428232,
+        0.0,
+        Limits(35224.241414081844, 66709.65470592925, 66709.65470592925, 63839.36898215635),
+        True,
+    ),
+    "the same after rounding: a way back of a picometre": Problem(
+        0.0,
+        -2.731150932245394e-12,
+        1.521607089217735e-12,
+        0.0,
+        Limits(12737.11940664139, 523.3738047744405, 523.3738047744405, 9.795116938093683),
+        True,
+    ),
+    "cruise 1e-7 above V after a start 1e8 above it": Problem(
+        0.0,
+        0.11418593258170709,
+        3238.5067031502203,
+        71.50610957613628,
+        Limits(0.003043109583820121, 10954.210331265249, 10954.210331265249, 8.943880753561379),
+        True,
+    ),
+    "cruise of 1e15 s beside a start acceleration 1e5 above the bound": Problem(
+        416.1349222757789,
+        0.0,
+        378.30507672719625,
+        228.01824629729197,
+        Limits(0.03360424366498038, 0.009020640709298302, 2063.10452295828, 0.0010770412879645998),
+        True,
+    ),
+    "way back of 1e-3 mm at 1e5 mm counted in absolute places": Problem(
+        100000.0,
+        0.0,
+        -0.015719136781629627,
+        100000.00225707072,
+        Limits(1000.0, 38.88882160285633, 38.88882160285633, 7.800176105915662),
+        False,
+    ),
+}
 
-    def duration(p, v, a, target, limits, forwards=True):
-        up, down = (limits[1], limits[2]) if forwards else (limits[2], limits[1])
-        problem.current_position, problem.current_velocity, problem.current_acceleration = [p], [v], [a]
-        problem.target_position, problem.max_velocity, problem.max_jerk = [target], [limits.velocity], [limits.jerk]
-        problem.max_acceleration, problem.min_acceleration = [up], [-down]
-        try:
-            planner.calculate(problem, trajectory)
-        except ruckig.RuckigError:
-            return None
-        return trajectory.duration
 
-    return duration
+@pytest.mark.parametrize("name", PAST)
+def test_what_once_went_wrong(name):
+    assert_motions([PAST[name]], [PAST[name].plan()])
 
 
-def test_never_slower_than_ruckig_with_equal_ramps(draw_limits, draw_start):
-    """Equal ramps, start within the limits, with and without reversal: the semantics coincide, so do the durations."""
-    draw, ruckig_duration, compared = random.Random(43), peer(), 0
-    while compared < COUNT:
-        limits = draw_limits(draw, symmetric=True)
-        p, v, a = draw_start(draw, limits)
-        target = p + draw.uniform(-1.0, 1.0) * 10 ** draw.uniform(-3, 5)
-        theirs = ruckig_duration(0.0, v, a, target - p, limits)
-        if theirs is None:
-            continue
-        compared += 1
-        ours = plan_to_position(p, v, a, target, limits, direct=True).duration
-        assert ours <= theirs * (1 + 1e-9), case(p, v, a, target, limits)
+def test_a_stop_and_return_far_from_zero_takes_as_long_as_at_zero():
+    problem = PAST["way back of 1e-3 mm at 1e5 mm counted in absolute places"]
+    near = problem._replace(position=0.0, target=problem.target - problem.position)
+    assert problem.plan().duration == pytest.approx(near.plan().duration, rel=1e-14)
 
 
-def test_never_slower_than_ruckig_with_unequal_ramps_and_no_reversal(draw_limits, draw_start):
-    """A+ against A- of one direction is Ruckig's max against min acceleration as long as the axis moves that way."""
-    draw, ruckig_duration, compared = random.Random(44), peer(), 0
-    while compared < COUNT:
-        limits = draw_limits(draw, symmetric=False)
-        p, v, a = draw_start(draw, limits)
-        target = p + draw.uniform(-1.0, 1.0) * 10 ** draw.uniform(-3, 5)
-        s = math.copysign(1.0, target - p - stop_way(v, a, limits.deceleration, limits.jerk))
-        if s * v < 0.0 or (s * a < 0.0 and s * v < a * a / (2.0 * limits.jerk)):
-            continue
-        theirs = ruckig_duration(0.0, v, a, target - p, limits, forwards=s > 0.0)
-        if theirs is None:
-            continue
-        compared += 1
-        ours = plan_to_position(p, v, a, target, limits).duration
-        assert ours <= theirs * (1 + 1e-9), case(p, v, a, target, limits)
+def test_a_brake_that_is_planned_again_steps_by_a_few_units_in_the_last_place():
+    """A gap of 4e-15 of the place was once taken for rounding: 0.8 nm at 100 m. Now it is a motion of its own."""
+    limits = Limits(100.0, 1000.0, 1000.0, 10000.0)
+    for gap in (3e-10, -3e-10):
+        problem = Problem(1e5, 50.0, 0.0, 1e5 + stop_way(50.0, 0.0, 1000.0, 10000.0) + gap, limits, True)
+        assert_motions([problem], [problem.plan()])
