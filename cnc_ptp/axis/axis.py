@@ -7,8 +7,10 @@ from typing import NoReturn
 
 from cnc_ptp.axis.checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
+from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import ExternalSetpoints
 from cnc_ptp.axis.faults import (
+    GROUP_ERROR,
     SETPOINT_TOO_FAR,
     SETPOINTS_STOPPED,
     SOFT_LIMIT_NEGATIVE,
@@ -60,11 +62,18 @@ class Axis:
         self.target_window = TargetWindow(
             window=parameters.position_window, cycles=round(parameters.target_time / cycle_time)
         )
+        self.coupling: Coupling | None = None
+        """To the master; it stays until a reset when an error has put the axis on its own ramp."""
+        self.slaves: set[str] = set()
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0
         self.has_been_stopped = False
         self.override_percent = 100.0
+        self._master_velocity = 0.0
+        self._master_has_job = False
+        self._propagation_delay = round(parameters.error_propagation_delay / cycle_time)
+        self._propagated_at = 0
         self._longest_silence = round(parameters.external_timeout / cycle_time)
         self._report_error = report_error
         self._report_warning = report_warning
@@ -122,6 +131,48 @@ class Axis:
         self.override_percent = float(percent) if self.ptp.override else 0.0
         return acts
 
+    # couplings
+
+    @property
+    def on_path(self) -> bool:
+        """True while a channel moves the axis."""
+        return self.state == S.SYNCHRONIZED_MOTION and self.coupling is None
+
+    @property
+    def coupled(self) -> bool:
+        """True while the axis follows a master."""
+        return self.state == S.SYNCHRONIZED_MOTION and self.coupling is not None
+
+    @property
+    def has_job(self) -> bool:
+        return self._master_has_job if self.coupled else self.ptp.job is not None
+
+    def follow_master(self, target_velocity: float, has_job: bool) -> None:
+        """What the master says about its motion besides its setpoints."""
+        self._master_velocity, self._master_has_job = target_velocity, has_job
+
+    def target_velocity(self) -> float:
+        """Velocity (mm/s, deg/s) of the motion in work at 100 % override; of a slave |ratio| times its master's."""
+        if self.coupling is not None:
+            return abs(self.coupling.ratio) * self._master_velocity
+        return self.ptp.target_velocity
+
+    def give_up_coupling(self, cycle: int, error_id: int, reason: str) -> None:
+        """A coupling that cannot begin; the axis has not moved yet."""
+        assert self.coupling is not None
+        text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands, it is not coupled"
+        self.coupling = None
+        self.state = self.rest_state()
+        self._report_warning(cycle, error_id, text)
+
+    def couples_actual(self) -> bool:
+        """Slaves follow the actual values: of a main master without enable, of an axis with a delayed error."""
+        if not self.parameters.couple_to_actual:
+            return False
+        if self.error_id:
+            return self.parameters.error_propagation_delayed
+        return self.state == S.DISABLED and self.coupling is None
+
     # states
 
     def begin_block(self, cycle: int) -> None:
@@ -155,11 +206,13 @@ class Axis:
             self.ptp.finish()
         self.state = state
 
-    def status_bits(self, setpoint: State, actual_position: float) -> int:
+    def status_bits(self, cycle: int, setpoint: State, actual_position: float) -> int:
         position, velocity, acceleration, _ = setpoint
         bits = 0
-        if self.ptp.job is not None:
+        if self.has_job:
             bits |= StatusBit.HAS_JOB
+        if self.coupling is not None:
+            bits |= StatusBit.PROTECTED
         if self.has_been_stopped:
             bits |= StatusBit.HAS_BEEN_STOPPED
         if velocity != 0.0 and acceleration == 0.0:
@@ -169,16 +222,25 @@ class Axis:
             bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0
         if self.error_id:
             bits |= StatusBit.ERROR
+            bits |= StatusBit.ERROR_DELAYED if cycle < self._propagated_at else 0
         if velocity == 0.0 and self.ptp.job is None and self.target_window.reached(position, actual_position):
             bits |= StatusBit.IN_TARGET_POSITION
         return bits
 
     # monitoring
 
-    def watch_superposition(self, cycle: int, setpoint: State) -> None:
-        """External setpoints that jump or stay away, and soft limits that nothing has checked beforehand."""
+    def watch(self, cycle: int, setpoint: State) -> None:
+        """What nothing has checked beforehand: soft limits, external setpoints that jump or stay away."""
         if self.error_id:
             return
+        if self.superposed:
+            self._watch_superposition(cycle, setpoint)
+        elif self.coupling is not None or self.state == S.CONTINUOUS_MOTION:
+            self._watch_soft_limits(cycle, setpoint)
+
+    def _watch_superposition(self, cycle: int, setpoint: State) -> None:
+        if self.coupled and not self._master_has_job and setpoint[1] == 0.0:
+            self.compensation.end()
         rejected, silence = self.external.rejected, self.external.silence(cycle)
         if rejected is not None:
             packet, way = rejected
@@ -191,17 +253,18 @@ class Axis:
             timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
             self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves")
         else:
-            self._watch_soft_limits(cycle, *setpoint[:2])
+            self._watch_soft_limits(cycle, setpoint)
 
-    def _watch_soft_limits(self, cycle: int, position: float, velocity: float) -> None:
+    def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
+        position, velocity = setpoint[:2]
         low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
         where = f"set position {position} {self.unit} is beyond the"
         if position > high and velocity > 0.0:
             reason = f"{where} positive soft limit {high} {self.unit} (P-AXIS-00178)"
-            self.fault(cycle, SOFT_LIMIT_POSITIVE, reason)
+            self.fault(cycle, SOFT_LIMIT_POSITIVE, reason, setpoint)
         elif position < low and velocity < 0.0:
             reason = f"{where} negative soft limit {low} {self.unit} (P-AXIS-00177)"
-            self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason)
+            self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason, setpoint)
 
     def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
         set_position, velocity, _, _ = setpoint
@@ -224,10 +287,18 @@ class Axis:
     def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
         raise self.checks.refusal(command, error_id, reason)
 
-    def fault(self, cycle: int, error_id: int, reason: str) -> None:
-        """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop."""
+    def fault(self, cycle: int, error_id: int, reason: str, setpoint: State | None = None) -> None:
+        """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.
+
+        `setpoint` within a block, where another source than the own generator has given it.
+        """
         self.error_id = error_id
+        if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
+            self.ptp.take_over(cycle, *setpoint[:3])
+            self._end_superposition()
         self.absorb(cycle)
+        if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):
+            self._propagated_at = cycle + self._propagation_delay
         self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
         self.state = S.ERROR_STOP

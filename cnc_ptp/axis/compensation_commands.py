@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign
+from math import copysign, inf, isfinite
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.compensation import plan_compensation
@@ -65,7 +65,8 @@ class CompensationCommands:
         table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
         direction = copysign(1.0, base[1] or remaining)
         self._check_velocity(max(job.limits.velocity, abs(base[1])), process_velocity, table)
-        axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
+        if isfinite(job.target):
+            axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
         axis.superposed = True
         axis.compensation.start(cycle, base, direction=direction, process_velocity=process_velocity, profile=table)
         return self._cut_warning(difference, length, table.end[0], used)
@@ -76,17 +77,26 @@ class CompensationCommands:
             axis.refuse(START, VIRTUAL_AXIS, "a virtual axis cannot compensate (P-AXIS-00020)")
         if axis.compensation.active:
             axis.refuse(START, COMPENSATION_LOCKED, "a position compensation is active; it cannot be started again")
-        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
+        if axis.coupled:
+            return
+        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:
             reason = f"no basic motion is in work (the axis is in {state_name(axis.state)})"
             axis.refuse(START, NOTHING_TO_COMPENSATE, reason)
         if axis.ptp.braking(cycle):
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
 
     def _basic_motion(self, cycle: int) -> tuple[State, Job]:
-        """State and job of the basic motion; refused while it stops behind its target in order to return."""
+        """State and job of the basic motion; refused while it stops behind its target in order to return.
+
+        The basic motion of a slave has no target of its own; it must move, so that there is a direction.
+        """
         axis = self._axis
         base, job = axis.ptp.state(cycle), axis.ptp.job
-        assert job is not None
+        if job is None:
+            if base[1] == 0.0:
+                axis.refuse(START, NOTHING_TO_COMPENSATE, "the basic motion of the slave stands")
+            velocity = axis.target_velocity()
+            return base, Job(copysign(inf, base[1]), axis.own_limits._replace(velocity=velocity), velocity)
         stop = plan_to_velocity(*base[:3], 0.0, job.limits).end[0]
         if copysign(1.0, base[1]) * (stop - job.target) > 1e-9 * max(1.0, abs(job.target)) and base[1] != 0.0:
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis stops in order to return to its target")

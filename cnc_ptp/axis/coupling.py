@@ -1,6 +1,6 @@
 """Couplings of a slave axis to its master: what makes slave setpoints of master setpoints (TX1250 3.2, 3.3).
 
-All run cycle by cycle on the states of the master; the slave position of the cycle in which they begin gives the offset.
+All run cycle by cycle on the states of the master; where the slave is in the first cycle gives the offset.
 """
 
 from __future__ import annotations
@@ -60,8 +60,8 @@ class LinearCoupling(Coupling):
 class CyclicCoupling(Coupling):
     """The factor comes cyclically from the PLC and is smoothed: the slave's acceleration stays within AccBound B.
 
-    The velocity goes towards factor · vm by at most B·T a cycle; while it is there, the slave is linear with the factor.
-    Stable where B >= max|factor| · max(A+, A-) of the master: else the slave lags behind its factor. Source: TX1250 3.3.
+    Its velocity goes towards factor · vm by at most B·T a cycle; while it is there, the slave is linear in the master.
+    Stable where B >= max|factor| · max(A+, A-) of the master, else it lags behind its factor. Source: TX1250 3.3.
     """
 
     def __init__(self, master: str, acc_bound: float, *, cycle_time: float) -> None:

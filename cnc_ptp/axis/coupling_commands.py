@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.cam import CamCoupling, CamTable
@@ -37,7 +37,7 @@ class CouplingCommands:
     of the master) and `master_stands`.
     """
 
-    def __init__(self, axis: Axis, *, axes: dict[str, AxisParameters], cycle_time: float) -> None:
+    def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
         """`axes` of the machine by name, `cycle_time` in s."""
         self._axis = axis
         self._axes = axes
@@ -193,8 +193,9 @@ class CouplingCommands:
         if bound <= coupling.acc_bound:
             return None
         return (
-            f"P-WARN-{ACC_BOUND_UNSTABLE} axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is below "
-            f"|factor|·max(A+, A-) = {bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag behind"
+            f"P-WARN-{ACC_BOUND_UNSTABLE} axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is "
+            f"below |factor|·max(A+, A-) = {bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag "
+            "behind"
         )
 
     def _coupled(self, command: str) -> Coupling:
@@ -227,7 +228,7 @@ class CouplingCommands:
 
     def _go_on(self, cycle: int, target: float | None, velocity: float | None) -> str | None:
         axis = self._axis
-        former = axis.former_target_velocity()
+        former = axis.target_velocity()
         axis.coupling = None
         axis.absorb(cycle)
         _, speed, acceleration, _ = axis.ptp.state(cycle)

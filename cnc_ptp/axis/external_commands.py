@@ -68,7 +68,8 @@ class ExternalCommands:
         if not axis.powered:
             axis.refuse(ENABLE, EXTERNAL_NOT_ENABLED, "the axis is not enabled; power it on")
         if axis.state == S.SYNCHRONIZED_MOTION:
-            axis.refuse(ENABLE, EXTERNAL_COUPLED, "the channel path moves the axis")
+            leader = "the channel path moves" if axis.coupling is None else f"{axis.coupling.master} is the master of"
+            axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{leader} the axis")
         if axis.state == S.STOPPING:
             axis.refuse(ENABLE, NOT_READY, f"the axis is in {state_name(axis.state)}")
         if axis.external.mode not in (None, mode):

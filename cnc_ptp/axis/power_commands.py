@@ -45,7 +45,8 @@ class PowerCommands:
         if axis.state == S.STANDSTILL:
             axis.state = S.DISABLED
         elif axis.state == S.SYNCHRONIZED_MOTION:
-            axis.fault(cycle, ENABLE_REMOVED, "the enable was removed during path motion")
+            what = "path motion" if axis.on_path else "synchronous motion"
+            axis.fault(cycle, ENABLE_REMOVED, f"the enable was removed during {what}")
         elif axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
             axis.stop(cycle)
             axis.state = S.STOPPING
@@ -60,4 +61,5 @@ class PowerCommands:
             axis.refuse("reset", STILL_MOVING, "the axis still moves on its error ramp; wait for standstill")
         axis.error_id = 0
         axis.ptp.finish()
+        axis.coupling = None
         axis.state = axis.rest_state()

@@ -106,6 +106,11 @@ class PtpGenerator:
         return self.job is None or self._in_brake_phase(cycle, self.job)
 
     @property
+    def target_velocity(self) -> float:
+        """Velocity (mm/s, deg/s) of the job in work at 100 % override; 0.0 without one."""
+        return 0.0 if self.job is None else self._full_velocity(self.job)
+
+    @property
     def can_redirect(self) -> bool:
         """True while there is a positioning, or a stop of one, that can be led to a new target."""
         return self.job is not None or self._stopped_job is not None
@@ -255,8 +260,10 @@ class PtpGenerator:
 
     def _level(self, job: Job) -> Limits:
         """Limits with the velocity of the override; below what tables can be made for, the smallest of these."""
-        full = job.limits.velocity if self.override_type in (2, 4) else job.reduced_velocity
-        return job.limits._replace(velocity=max(full * self.override, SMALLEST_LIMIT))
+        return job.limits._replace(velocity=max(self._full_velocity(job) * self.override, SMALLEST_LIMIT))
+
+    def _full_velocity(self, job: Job) -> float:
+        return job.limits.velocity if self.override_type in (2, 4) else job.reduced_velocity
 
     def _table(self, cycle: int, job: Job) -> Profile:
         """The way to the target at the velocity of the override; with override 0 the way to standstill."""

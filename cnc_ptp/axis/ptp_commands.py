@@ -11,6 +11,7 @@ from cnc_ptp.axis.faults import (
     NO_MODULO_AXIS,
     NO_POSITIONING,
     NOT_READY,
+    SLAVE_LOCKED,
     START_BESIDE_EXTERNAL,
 )
 from cnc_ptp.axis.modulo import modulo_target
@@ -18,6 +19,7 @@ from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
 from cnc_ptp.axis.two_stage import Request
 
+REDIRECTABLE = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION, S.STOPPING)
 OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
@@ -55,6 +57,9 @@ class PtpCommands:
         if axis.external.mode is not None:
             reason = "external setpoints are enabled; a PTP start beside them is not permitted"
             axis.refuse(command, START_BESIDE_EXTERNAL, reason)
+        if axis.coupled and axis.coupling is not None:
+            reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
+            axis.refuse(command, SLAVE_LOCKED, reason)
         if axis.state != S.STANDSTILL:
             axis.refuse(command, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill")
         limits = axis.checks.dynamics(command, dynamics)
@@ -123,7 +128,7 @@ class PtpCommands:
 
     def _check_redirection(self, command: str, target: float) -> None:
         axis = self._axis
-        if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) or not axis.ptp.can_redirect:
+        if axis.state not in REDIRECTABLE or not axis.ptp.can_redirect:
             reason = f"no positioning is in work (the axis is in {state_name(axis.state)}); start one"
             axis.refuse(command, NO_POSITIONING, reason)
         if not axis.powered:
@@ -137,6 +142,7 @@ class PtpCommands:
         axis.ptp.redirect(cycle, request)
         if axis.ptp.job is None:
             return f"axis {axis.name}: {command} waits for the end of the stop"
+        axis.state = S.DISCRETE_MOTION
         axis.has_been_stopped = False
         axis.target_window.watch()
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import EMERGENCY_TOO_WEAK, IN_BRAKE_PHASE, NOT_READY
+from cnc_ptp.axis.faults import EMERGENCY_TOO_WEAK, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
 from cnc_ptp.motion import Limits
@@ -27,7 +27,7 @@ class StopCommands:
 
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
-        self._refuse_on_path(command)
+        self._refuse_synchronous(command)
         if axis.state == S.STOPPING and axis.ptp.drop_suspended():
             return f"axis {axis.name}: {command} takes the new target back; the axis stops"
         if axis.state not in MOVING:
@@ -36,10 +36,15 @@ class StopCommands:
         self._stopped(locks)
         return None
 
-    def _refuse_on_path(self, command: str) -> None:
-        if self._axis.state == S.SYNCHRONIZED_MOTION:
+    def _refuse_synchronous(self, command: str) -> None:
+        """What follows a channel or a master is stopped there."""
+        axis = self._axis
+        if axis.coupled and axis.coupling is not None:
+            master = axis.coupling.master
+            axis.refuse(command, SLAVE_LOCKED, f"the axis is a slave of {master}; stop {master} or decouple the axis")
+        if axis.on_path:
             reason = "the channel path moves the axis; use feed_hold or reset of the channel"
-            self._axis.refuse(command, NOT_READY, reason)
+            axis.refuse(command, NOT_READY, reason)
 
     def _stopped(self, locks: bool) -> None:
         if locks:
@@ -52,7 +57,7 @@ class StopCommands:
         Refusals: 23003, 23005, 23013, 23016 (not larger), 23017 (brake phase, natural or by a stop).
         """
         axis, command = self._axis, "emergency_stop"
-        self._refuse_on_path(command)
+        self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
         if axis.state == S.STOPPING or (axis.state == S.DISCRETE_MOTION and axis.ptp.braking(cycle)):

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import ClassVar
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.compensation_commands import CompensationCommands
+from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
-from cnc_ptp.axis.faults import FOLLOWING_ERROR, PATH_NOT_ACCEPTED
+from cnc_ptp.axis.faults import FOLLOWING_ERROR
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.drive import Drive, SimulatedDrive
 from cnc_ptp.control.position_controller import PositionController
-from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock, CycleTick, Severity
+from cnc_ptp.machine.axis_sources import MasterSource, PathSource
+from cnc_ptp.machine.blocks import AxisBlock, Block, CycleTick, Severity
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import AxisParameters
-
-PATH_TOLERANCE = 1e-9
-"""Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
 
 MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
 """States that can end by themselves."""
@@ -40,8 +38,15 @@ class AxisUnit(Unit):
 
     kind: ClassVar[str] = "axis"
 
-    def __init__(self, parameters: AxisParameters, *, cycle_time: float, drive: Drive | None = None) -> None:
-        """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
+    def __init__(
+        self,
+        parameters: AxisParameters,
+        *,
+        cycle_time: float,
+        drive: Drive | None = None,
+        axes: Mapping[str, AxisParameters] | None = None,
+    ) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `axes` of the machine."""
         super().__init__(parameters.name)
         self._axis = Axis(
             parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
@@ -57,6 +62,9 @@ class AxisUnit(Unit):
             encoder_increment=parameters.encoder_increment,
             start_position=parameters.start_position,
         )
+        known = axes or {parameters.name: parameters}
+        self._path = PathSource(self._axis)
+        self._master = MasterSource(self._axis, axes=known, cycle_time=cycle_time)
         self._commands = (
             self,
             PowerCommands(self._axis, actual_position=lambda: self._drive.position),
@@ -64,6 +72,7 @@ class AxisUnit(Unit):
             StopCommands(self._axis),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
+            CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
         )
 
     def _report_error(self, cycle: int, error_id: int, text: str) -> None:
@@ -71,6 +80,11 @@ class AxisUnit(Unit):
 
     def _report_warning(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.WARNING, error_id, text)
+
+    @property
+    def master(self) -> str | None:
+        """The axis whose block of the same cycles is needed before this one's can be computed."""
+        return self._axis.coupling.master if self._axis.coupled and self._axis.coupling is not None else None
 
     # commands
 
@@ -85,7 +99,8 @@ class AxisUnit(Unit):
         axis = self._axis
         if axis.state in (S.ERROR_STOP, S.DISABLED):
             return None
-        if source in ("plc", "clock") or axis.state == S.SYNCHRONIZED_MOTION:
+        leads = axis.coupling.master == source if axis.coupling is not None else axis.on_path
+        if source in ("plc", "clock") or leads:
             axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
         return None
 
@@ -101,12 +116,19 @@ class AxisUnit(Unit):
         first_cycle, count = tick
         axis = self._axis
         axis.begin_block(first_cycle)
-        rows = self._follow(first_cycle, self._path_setpoints(first_cycle, self._owning_channel(inputs)))
+        if axis.coupled:
+            rows = self._follow(first_cycle, self._master.setpoints(first_cycle, inputs))
+        else:
+            rows = self._follow(first_cycle, self._path.setpoints(first_cycle, inputs))
         while len(rows) < count:
             cycle = first_cycle + len(rows)
             axis.ptp.advance(cycle)
             rows += self._follow(cycle, axis.ptp.states(cycle, count - len(rows)))
-        return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
+        columns: Iterable[Any] = map(list, zip(*rows, strict=True))
+        block = AxisBlock(first_cycle, count, *columns)
+        block.master = axis.coupling.master if axis.coupling is not None else ""
+        block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
+        return block
 
     def _follow(self, first_cycle: int, setpoints: list[State]) -> list[Row]:
         """The cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
@@ -125,8 +147,8 @@ class AxisUnit(Unit):
         following_error = position - drive.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
-        if axis.superposed:
-            axis.watch_superposition(cycle, setpoint)
+        axis.watch(cycle, setpoint)
+        self._master.watch_gantry(cycle, setpoint, drive.position)
         axis.watch_target(cycle, setpoint, drive.position)
         command = 0.0
         if axis.powered or axis.moving(cycle):
@@ -148,74 +170,14 @@ class AxisUnit(Unit):
             0.0,
             axis.override_percent,
             axis.state,
-            axis.status_bits(setpoint, drive.position),
+            axis.status_bits(cycle, setpoint, drive.position),
             axis.error_id,
         )
         drive.step(command)
         return row
 
-    # path of the channel
-
-    def _owning_channel(self, inputs: Mapping[str, Block]) -> ChannelBlock | None:
-        for block in inputs.values():
-            if isinstance(block, ChannelBlock) and block.path_active and self.name in block.axes:
-                return block
-        return None
-
-    def _path_setpoints(self, first_cycle: int, channel: ChannelBlock | None) -> list[State]:
-        """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
-        if channel is None:
-            self._leave_path(first_cycle)
-            return []
-        start = channel.axes.index(self.name) * channel.count
-        part = slice(start, start + channel.count)
-        setpoints = list(
-            zip(
-                channel.set_position[part],
-                channel.set_velocity[part],
-                channel.set_acceleration[part],
-                channel.set_jerk[part],
-                strict=True,
-            )
-        )
-        self._enter_path(first_cycle, setpoints[0][0])
-        if self._axis.state != S.SYNCHRONIZED_MOTION:
-            return []
-        self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
-        return setpoints
-
-    def _enter_path(self, cycle: int, begin: float) -> None:
-        """The channel moves the axis from now on; a fault unless it stands at `begin`, the path's first setpoint."""
-        axis = self._axis
-        if axis.state in (S.SYNCHRONIZED_MOTION, S.ERROR_STOP):
-            return
-        position = axis.setpoint(cycle)[0]
-        if axis.state == S.STANDSTILL:
-            axis.absorb(cycle)
-        if axis.state != S.STANDSTILL:
-            reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
-            axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
-        elif abs(begin - position) > PATH_TOLERANCE:
-            reason = f"the path of the channel begins at {begin} {axis.unit}, the axis stands at {position} {axis.unit}"
-            axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
-        else:
-            axis.state = S.SYNCHRONIZED_MOTION
-
-    def _leave_path(self, cycle: int) -> None:
-        axis = self._axis
-        if axis.state != S.SYNCHRONIZED_MOTION:
-            return
-        axis.state = S.STANDSTILL
-        if axis.setpoint(cycle)[1] != 0.0:
-            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
-
     def _following_error_fault(self, cycle: int, setpoint: State, following_error: float) -> None:
         axis = self._axis
-        if axis.state == S.SYNCHRONIZED_MOTION:
-            axis.ptp.take_over(cycle, *setpoint[:3])
         limit = axis.parameters.following_error_limit
-        axis.fault(
-            cycle,
-            FOLLOWING_ERROR,
-            f"following error {following_error:.4f} {axis.unit} exceeds {limit} {axis.unit} (P-AXIS-00168)",
-        )
+        reason = f"following error {following_error:.4f} {axis.unit} exceeds {limit} {axis.unit} (P-AXIS-00168)"
+        axis.fault(cycle, FOLLOWING_ERROR, reason, setpoint)

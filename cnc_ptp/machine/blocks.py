@@ -175,6 +175,9 @@ class AxisBlock:
     state: list[int]
     status_bits: list[int]
     error_id: list[int]
+    master: str = ""
+    target_velocity: float = 0.0
+    couples_actual: bool = False
 
 
 @dataclass(slots=True)

@@ -40,6 +40,10 @@ ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
+OPTIONAL_SWITCH = Argument("switch", required=False)
+CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
+COUPLING: Arguments = {"master": TEXT, "above": Argument("rows", required=False), "master_stands": OPTIONAL_SWITCH}
+"""A master, and what the PLC fills in: the masters of the master, and whether it stands."""
 
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "axis": {
@@ -67,6 +71,31 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "external_enable": {"mode": Argument("text", choices=("absolute", "relative")), "target": OPTIONAL_NUMBER},
         "external_disable": {},
         "external_setpoints": {"setpoints": ROWS, "file": OPTIONAL_TEXT},
+        "couple": {"factor": NUMBER, **COUPLING},
+        "couple_gantry": {"difference_limit": NUMBER, **COUPLING},
+        "couple_cyclic": {"acc_bound": NUMBER, **COUPLING},
+        "couple_flying_saw": {
+            "factor": NUMBER,
+            "master_position": NUMBER,
+            "slave_position": NUMBER,
+            **DYNAMICS,
+            **COUPLING,
+        },
+        "couple_cam": {
+            **CAM,
+            "cyclic": OPTIONAL_SWITCH,
+            "master_offset": OPTIONAL_NUMBER,
+            "master_scaling": OPTIONAL_NUMBER,
+            "slave_scaling": OPTIONAL_NUMBER,
+            "slave_offset": OPTIONAL_NUMBER,
+            **COUPLING,
+        },
+        "change_cam": CAM,
+        "set_coupling_factor": {"factor": NUMBER},
+        "set_cyclic_factor": {"factor": NUMBER},
+        "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_NUMBER},
+        "lead": {"slave": TEXT, "on": SWITCH},
+        "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,
     },
     "spindle": {
@@ -98,7 +127,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "upstream_lost": SOURCE,
     },
 }
-INTERNAL = frozenset({"upstream_lost", "abort"})
+COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
+"""Commands that make a slave of an axis."""
+INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list}

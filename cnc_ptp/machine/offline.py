@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from cnc_ptp.machine.blocks import (
     AxisBlock,
@@ -60,28 +60,43 @@ class OfflineMachine:
 
     def tick(self) -> Outputs:
         """Computes the next block of all units."""
-        return self._compute(UnitRunner.run)
+        return self._compute(with_commands=True)
 
     def replay_tick(self, commands: Mapping[str, Iterable[Command]]) -> Outputs:
         """Computes the next block of all units with the commands of a recording, by unit."""
         for name, of_unit in commands.items():
             for command in of_unit:
                 self._runners[name].command(command)
-        return self._compute(UnitRunner.replay)
+        return self._compute(with_commands=False)
 
-    def _compute(self, run: Callable[[UnitRunner, CycleTick, Mapping[str, Block]], Block]) -> Outputs:
+    def _compute(self, *, with_commands: bool) -> Outputs:
+        """One block of every unit. A coupled axis comes after its master, whatever the order of the machine is."""
         tick = CycleTick(self._first_cycle, self._count)
         before, self._blocks = self._blocks, {}
-        outputs: Outputs = {}
+        waiting: dict[str, Mapping[str, Block]] = {}
         for name, runner in self._runners.items():
             needs = self._wiring[name]
             inputs = {unit: self._blocks[unit] for unit in needs.upstream if unit in self._blocks}
             inputs |= {unit: before[unit] for unit in needs.feedback if unit in before}
-            block = run(runner, tick, inputs)
-            self._blocks[name] = block
-            outputs[name] = Output(runner.unit, block)
+            if with_commands:
+                runner.apply(tick, inputs)
+            if runner.master is None:
+                self._blocks[name] = runner.compute(tick, inputs)
+            else:
+                waiting[name] = inputs
+        self._compute_slaves(tick, waiting)
         self._first_cycle += self._count
-        return outputs
+        return {name: Output(runner.unit, self._blocks[name]) for name, runner in self._runners.items()}
+
+    def _compute_slaves(self, tick: CycleTick, waiting: dict[str, Mapping[str, Block]]) -> None:
+        while waiting:
+            ready = [name for name in waiting if self._runners[name].master in self._blocks]
+            for name in ready:
+                master = self._runners[name].master
+                inputs = waiting.pop(name)
+                if master is not None:
+                    inputs = {**inputs, master: self._blocks[master]}
+                self._blocks[name] = self._runners[name].compute(tick, inputs)
 
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Ticks until the PLC ends the run, or for `cycles` cycles (rounded up to whole blocks).
@@ -120,4 +135,5 @@ class OfflineMachine:
 
 
 def on_path(block: Block) -> bool:
+    """True for an axis that a channel or a master moves: that one speaks for it."""
     return isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION

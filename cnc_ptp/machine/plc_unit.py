@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.axis_groups import AxisGroups
 from cnc_ptp.machine.blocks import (
     AxisBlock,
     AxisStateCode,
@@ -23,6 +24,7 @@ from cnc_ptp.machine.blocks import (
 from cnc_ptp.machine.scenario import SETPOINTS, Entry
 from cnc_ptp.machine.setpoint_file import Row, placed
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
+from cnc_ptp.parameters import AxisParameters
 
 NOTHING_TO_ACKNOWLEDGE = 22013
 CANNOT_GO_ON = 22014
@@ -46,16 +48,21 @@ class PlcUnit(Unit):
         name: str,
         *,
         kinds: Mapping[str, str],
+        axes: Mapping[str, AxisParameters] | None = None,
         scenario: Iterable[Entry] = (),
         cycle_time: float,
         end_when_idle: bool = True,
     ) -> None:
-        """`kinds`: unit name -> axis, spindle, channel. `cycle_time` in s. `end_when_idle`: the run ends by itself."""
+        """`kinds`: unit name -> axis, spindle, channel; `axes`: parameters by name. `cycle_time` in s.
+
+        `end_when_idle`: the run ends by itself.
+        """
         super().__init__(name)
         self._kinds = {unit: kind for unit, kind in kinds.items() if kind != "plc"}
         self._scenario = deque(scenario)
         self._cycle_time = cycle_time
         self._end_when_idle = end_when_idle
+        self._groups = AxisGroups(axes or {}, cycle_time=cycle_time)
         self._outgoing: list[Command] = []
         self._setpoints: dict[str, deque[Row]] = {}
         self._arrived: dict[str, list[Row]] = {}
@@ -140,6 +147,7 @@ class PlcUnit(Unit):
         """Computes one block from the units' blocks before."""
         first_cycle, count = tick
         self._reported = inputs
+        self._outgoing += self._groups.report(first_cycle, inputs)
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
         self._place_arrived(first_cycle, count)
@@ -147,7 +155,7 @@ class PlcUnit(Unit):
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
-        commands, self._outgoing = self._outgoing, []
+        commands, self._outgoing = self._groups.complete(self._outgoing), []
         for command in commands:
             self._commands_sent += 1
             command.id = self._commands_sent
@@ -224,6 +232,8 @@ def at_rest(block: Block) -> bool:
     if isinstance(block, AxisBlock):
         bits = block.status_bits[-1]
         held = bool(bits & StatusBit.HAS_JOB) and block.override_percent[-1] == 0.0
+        if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
+            return block.set_velocity[-1] == 0.0  # a slave: its master says whether there is more to come
         waits = held or bool(bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB)
         return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in STANDING_STATES)
     if isinstance(block, SpindleBlock):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from cnc_ptp.axis.states import state_name
+from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import (
     AxisStateCode,
     Block,
@@ -41,14 +42,24 @@ class UnitRunner:
 
     def run(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
         """Applies the commands that `inputs` carry for this unit, then computes the block."""
+        self.apply(tick, inputs)
+        return self.compute(tick, inputs)
+
+    @property
+    def master(self) -> str | None:
+        """The axis whose block of the same tick `compute` needs besides; known once the commands are applied."""
+        unit = self.unit
+        return unit.master if isinstance(unit, AxisUnit) and unit.master not in unit.lost else None
+
+    def apply(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
+        """Applies the commands that `inputs` carry for this unit."""
         self.next_cycle = tick.first_cycle
         for command in commands_for(self.unit.name, inputs):
             self.unit.command(command, tick.first_cycle)
         self._watch_life_sign(tick, inputs)
-        return self.replay(tick, inputs)
 
-    def replay(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
-        """Computes the block without looking for commands: these come from the recording.
+    def compute(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+        """Computes the block; all commands for it have been given.
 
         Lost sources stay lost; a unit without a clock is alone.
         """

@@ -62,7 +62,7 @@ def build_unit(
     cycle_time = machine.cycle_time_us * 1e-6
     kinds = unit_kinds(machine)
     if kinds[name] == "axis":
-        return AxisUnit(machine.axes[name], cycle_time=cycle_time)
+        return AxisUnit(machine.axes[name], cycle_time=cycle_time, axes=machine.axes)
     if kinds[name] == "spindle":
         return SpindleUnit(machine.spindles[name], cycle_time=cycle_time)
     if kinds[name] == "channel":
@@ -73,7 +73,14 @@ def build_unit(
             cycle_time=cycle_time,
             request_numbers=count(1 + list(machine.channels).index(name), len(machine.channels)),
         )
-    return PlcUnit(name, kinds=kinds, scenario=scenario, cycle_time=cycle_time, end_when_idle=end_when_idle)
+    return PlcUnit(
+        name,
+        kinds=kinds,
+        axes=machine.axes,
+        scenario=scenario,
+        cycle_time=cycle_time,
+        end_when_idle=end_when_idle,
+    )
 
 
 def build_units(

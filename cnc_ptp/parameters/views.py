@@ -64,6 +64,14 @@ class AxisParameters:
     """Longest silence of external setpoints in motion."""
     target_time: float
     """In which the actual position must have come into the position window; 0 = not monitored."""
+    error_propagation_delayed: bool
+    """An error reaches the other axes of the master/slave group only after error_propagation_delay."""
+    error_propagation_delay: float
+    couple_to_actual: bool
+    """Slaves follow the actual values of this axis while it has no enable or a delayed error."""
+    velocity_window: float
+    """An actual velocity below it is 0 for slaves."""
+    velocity_filter_time: float
     powered_at_start: bool
     referenced_at_start: bool
     start_position: float
@@ -215,6 +223,11 @@ def axis_view(parameters: ParameterSet) -> AxisParameters:
         external_dead_time=parameters.kernel("P-MACH-00012"),
         external_timeout=parameters.number("P-MACH-00013") / 1000.0,
         target_time=parameters.number("P-MACH-00014") / 1000.0,
+        error_propagation_delayed=bool(parameters.number("P-MACH-00015")),
+        error_propagation_delay=parameters.number("P-MACH-00016") / 1000.0,
+        couple_to_actual=bool(parameters.number("P-MACH-00017")),
+        velocity_window=parameters.kernel("P-MACH-00018"),
+        velocity_filter_time=parameters.kernel("P-MACH-00019"),
         powered_at_start=bool(parameters.number("P-SIM-00004")),
         referenced_at_start=bool(parameters.number("P-SIM-00005")),
         start_position=parameters.kernel("P-SIM-00003"),

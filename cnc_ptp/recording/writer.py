@@ -223,7 +223,7 @@ class Recording:
 
     def axis_block(self, name: str, block: AxisBlock) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`."""
-        self._block_and_states(name, block, block.count)
+        self._block_and_states(name, block, (block.count, block.master))
 
     def spindle_block(self, name: str, block: SpindleBlock) -> None:
         self._block_and_states(name, block, block.count)

@@ -59,7 +59,7 @@ class UnitBench:
         end = self.cycle + cycles
         while self.cycle < end:
             tick = CycleTick(self.cycle, min(self.count, end - self.cycle))
-            self.blocks.append(self.runner.replay(tick, inputs or {}))
+            self.blocks.append(self.runner.compute(tick, inputs or {}))
             self.events += [event for event in self.unit.take_events() if event.severity]
 
     def column(self, name: str) -> list[Any]:

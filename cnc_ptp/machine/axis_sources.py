@@ -1,0 +1,161 @@
+"""Where an axis gets its basic motion from besides its own generator: the path of a channel, a master axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.coupling import Coupling, LinearCoupling
+from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, PATH_NOT_ACCEPTED, SAW_TOO_LATE
+from cnc_ptp.axis.ptp import State
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import StatusBit, state_name
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock
+from cnc_ptp.parameters import AxisParameters
+
+PATH_TOLERANCE = 1e-9
+"""Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
+
+
+class PathSource:
+    """The channel that has the axis on its path."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._axis = axis
+
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+        """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
+        channel = self._owning_channel(inputs)
+        if channel is None:
+            self._leave(first_cycle)
+            return []
+        start = channel.axes.index(self._axis.name) * channel.count
+        part = slice(start, start + channel.count)
+        setpoints = list(
+            zip(
+                channel.set_position[part],
+                channel.set_velocity[part],
+                channel.set_acceleration[part],
+                channel.set_jerk[part],
+                strict=True,
+            )
+        )
+        self._enter(first_cycle, setpoints[0][0])
+        if self._axis.state != S.SYNCHRONIZED_MOTION:
+            return []
+        self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
+        return setpoints
+
+    def _owning_channel(self, inputs: Mapping[str, Block]) -> ChannelBlock | None:
+        for block in inputs.values():
+            if isinstance(block, ChannelBlock) and block.path_active and self._axis.name in block.axes:
+                return block
+        return None
+
+    def _enter(self, cycle: int, begin: float) -> None:
+        """The channel moves the axis from now on; a fault unless it stands at `begin`, the path's first setpoint."""
+        axis = self._axis
+        if axis.state == S.ERROR_STOP or axis.on_path:
+            return
+        position = axis.setpoint(cycle)[0]
+        if axis.state != S.STANDSTILL:
+            reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
+            axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
+        elif abs(begin - position) > PATH_TOLERANCE:
+            reason = f"the path of the channel begins at {begin} {axis.unit}, the axis stands at {position} {axis.unit}"
+            axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
+        else:
+            axis.absorb(cycle)
+            axis.state = S.SYNCHRONIZED_MOTION
+
+    def _leave(self, cycle: int) -> None:
+        axis = self._axis
+        if not axis.on_path:
+            return
+        axis.state = S.STANDSTILL
+        if axis.setpoint(cycle)[1] != 0.0:
+            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
+
+
+class MasterSource:
+    """The master of a coupled axis: its set values, or its actual values where these are the ones to follow."""
+
+    def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
+        """`axes` of the machine by name, `cycle_time` in s."""
+        self._axis = axis
+        self._axes = axes
+        self._cycle_time = cycle_time
+        self._coupling: Coupling | None = None
+        self._actual = False
+        self._velocity = 0.0
+        self._first_cycle = 0
+        self._gantry: list[float] | None = None
+        self._gantry_distance: float | None = None
+
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+        """The setpoints of the coupling; none when the axis is not coupled or cannot follow."""
+        axis = self._axis
+        coupling = axis.coupling
+        self._gantry = None
+        if coupling is None or axis.state != S.SYNCHRONIZED_MOTION:
+            return []
+        block = inputs.get(coupling.master)
+        if not isinstance(block, AxisBlock):
+            return []
+        if coupling is not self._coupling:
+            self._coupling, self._actual, self._gantry_distance = coupling, block.couples_actual, None
+        axis.follow_master(block.target_velocity, bool(block.status_bits[-1] & StatusBit.HAS_JOB))
+        states = self._states(coupling, block)
+        try:
+            setpoints = coupling.follow(axis.ptp.state(first_cycle)[0], states)
+        except CncError as error:
+            axis.give_up_coupling(first_cycle, SAW_TOO_LATE, error.message)
+            return []
+        self._prepare_gantry(coupling, first_cycle, block)
+        axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
+        return setpoints
+
+    def _states(self, coupling: Coupling, block: AxisBlock) -> list[State]:
+        if block.couples_actual != self._actual:
+            sources = block.set_position[0], block.actual_position[0]
+            before, now = sources if block.couples_actual else sources[::-1]
+            coupling.change_source(before, now)
+            self._actual, self._velocity = block.couples_actual, block.actual_velocity[0]
+        if not self._actual:
+            return list(
+                zip(block.set_position, block.set_velocity, block.set_acceleration, block.set_jerk, strict=True)
+            )
+        velocities = [self._filtered(coupling.master, velocity) for velocity in block.actual_velocity]
+        return [(p, v, 0.0, 0.0) for p, v in zip(block.actual_position, velocities, strict=True)]
+
+    def _filtered(self, master: str, velocity: float) -> float:
+        """Actual velocity of the master: 0 within its velocity window, through a first-order filter."""
+        parameters = self._axes[master]
+        if abs(velocity) < parameters.velocity_window:
+            velocity = 0.0
+        share = self._cycle_time / (self._cycle_time + parameters.velocity_filter_time)
+        self._velocity += (velocity - self._velocity) * share
+        return self._velocity
+
+    def _prepare_gantry(self, coupling: Coupling, first_cycle: int, block: AxisBlock) -> None:
+        if isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None:
+            self._first_cycle = first_cycle
+            self._gantry = list(block.actual_position)
+
+    def watch_gantry(self, cycle: int, setpoint: State, actual_position: float) -> None:
+        """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
+        if self._gantry is None:
+            return
+        axis, coupling = self._axis, self._axis.coupling
+        assert isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None
+        distance = actual_position - self._gantry[cycle - self._first_cycle]
+        if self._gantry_distance is None:
+            self._gantry_distance = distance
+        difference = abs(distance - self._gantry_distance)
+        if difference > coupling.difference_limit:
+            reason = (
+                f"the actual positions of {axis.name} and its gantry master {coupling.master} differ by "
+                f"{difference:g} {axis.unit}, more than {coupling.difference_limit:g} {axis.unit}"
+            )
+            axis.fault(cycle, GANTRY_DIFFERENCE, reason, setpoint)
