@@ -100,12 +100,12 @@ class AxisUnit(Unit):
         """Computes one block; follows the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
         axis = self._axis
-        axis.begin_block(first_cycle)
+        axis.advance(first_cycle)
         rows = self._follow(first_cycle, self._path_setpoints(first_cycle, self._owning_channel(inputs)))
         while len(rows) < count:
             cycle = first_cycle + len(rows)
-            axis.ptp.advance(cycle)
-            rows += self._follow(cycle, axis.ptp.states(cycle, count - len(rows)))
+            axis.advance(cycle)
+            rows += self._follow(cycle, axis.basic_motion(cycle, count - len(rows)))
         return AxisBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
 
     def _follow(self, first_cycle: int, setpoints: list[State]) -> list[Row]:
