@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 import ruckig
@@ -23,14 +24,14 @@ ROUNDS = 3
 
 
 def problems(count: int, *, moving: bool) -> list[Problem]:
-    """Seeded problems of a machine axis; `moving` starts anywhere within the limits."""
+    """Seeded problems of a machine axis; `moving` starts in either direction, up to 1.5 times the limits."""
     draw = random.Random(7)
     found = []
     for _ in range(count):
         acceleration = 10 ** draw.uniform(2, 4)
         limits = Limits(10 ** draw.uniform(1, 3.5), acceleration, acceleration, 10 ** draw.uniform(3, 5))
-        v = draw.uniform(0.0, 0.7) * limits.velocity if moving else 0.0
-        a = draw.uniform(-0.5, 0.5) * min(acceleration, (limits.jerk * limits.velocity * 0.3) ** 0.5) if moving else 0.0
+        v = draw.uniform(-1.5, 1.5) * limits.velocity if moving else 0.0
+        a = draw.uniform(-1.5, 1.5) * min(acceleration, (limits.jerk * limits.velocity) ** 0.5) if moving else 0.0
         found.append((draw.uniform(-500.0, 500.0), v, a, draw.uniform(-1500.0, 1500.0), limits))
     return found
 
@@ -97,22 +98,31 @@ def against_ruckig(
 
 
 def plans(effort: Effort, peer: RuckigPeer) -> Iterator[Figure]:
-    """Planning, one by one and in one call."""
+    """Planning, one by one and in one call. From any state also by a direct reversal, as Ruckig does it."""
     rest = problems(effort.scaled(300), moving=False)
     moving = [each for each in problems(effort.scaled(300), moving=True) if peer.solves(each)]
-    theirs = calls(peer.plan, rest)
+    theirs, theirs_moving = calls(peer.plan, rest), calls(peer.plan, moving)
     closed_form = calls(plan_rest_to_rest, [(p, target, limits) for p, _, _, target, limits in rest])
-    yield from against_ruckig(effort, "plan rest to rest", closed_form, theirs, goal=8.0)
+    yield from against_ruckig(effort, "plan from rest", closed_form, theirs, goal=8.0)
     yield from against_ruckig(effort, "plan to position, at rest", calls(plan_to_position, rest), theirs)
-    to_position, moving_peer = calls(plan_to_position, moving), calls(peer.plan, moving)
-    yield from against_ruckig(effort, "plan to position, moving", to_position, moving_peer, goal=30.0)
+    any_state = calls(plan_to_position, moving)
+    yield from against_ruckig(effort, "plan from any state", any_state, theirs_moving, goal=30.0)
+    direct = calls(partial(plan_to_position, direct=True), moving)
+    yield from against_ruckig(effort, "plan from any state, direct reversal", direct, theirs_moving, goal=30.0)
     ramps = calls(plan_to_velocity, [(p, v, a, 0.0, limits) for p, v, a, _, limits in moving])
     yield Figure("plan to velocity 0", medians_of(ROUNDS * effort.runs, [ramps])[0], "µs")
+    yield from many_in_one_call(effort, theirs)
+
+
+def many_in_one_call(effort: Effort, theirs: Measure) -> Iterator[Figure]:
+    """10,000 motions from rest in one call: µs a plan, and how many of them fit into one plan of Ruckig."""
     many = problems(effort.scaled(10_000), moving=False)
     columns = np.array([(p, target, *limits) for p, _, _, target, limits in many]).T.copy()
     batch = calls(plan_rest_to_rest_batch, [tuple(columns)])
-    name = f"plan rest to rest, {len(many):,} in one call"
-    yield from against_ruckig(effort, name, lambda: batch() / len(many), theirs)
+    name = f"plan from rest, {len(many):,} in one call"
+    value, peer_value = medians_of(ROUNDS * effort.runs, [lambda: batch() / len(many), theirs])
+    yield Figure(name, value, "µs", peer=RUCKIG, peer_value=peer_value)
+    yield Figure("the same, times as fast as Ruckig with its inputs", peer_value / value, "×", goal=3.0)
 
 
 def evaluation(effort: Effort, peer: RuckigPeer) -> Iterator[Figure]:

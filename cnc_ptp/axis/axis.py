@@ -175,11 +175,17 @@ class Axis:
 
     # states
 
-    def begin_block(self, cycle: int) -> None:
-        """What waits for the first cycle of a block: the override filter."""
+    def advance(self, cycle: int) -> None:
+        """Carries out what is due at `cycle`: an override that waits in the filter, changes of the basic motion."""
         percent = self.override_filter.due(cycle)
         if percent is not None:
             self.set_override(cycle, percent)
+        self.ptp.advance(cycle)
+
+    def basic_motion(self, cycle: int, count: int) -> list[State]:
+        """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them."""
+        due = self.override_filter.due_cycle
+        return self.ptp.states(cycle, count if due is None else max(1, min(count, due - cycle)))
 
     def rest_state(self) -> S:
         """Where an axis without error comes to rest."""

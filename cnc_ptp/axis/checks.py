@@ -9,12 +9,14 @@ from cnc_ptp.axis.faults import (
     ACCELERATION_TOO_HIGH,
     BAD_DYNAMICS,
     JERK_RESCALED,
+    OUT_OF_RANGE,
     SOFT_LIMIT_NEGATIVE,
     SOFT_LIMIT_POSITIVE,
     VELOCITY_TOO_HIGH,
 )
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
+from cnc_ptp.motion.limits import LARGEST_STATE, SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
 
 
@@ -49,6 +51,8 @@ class MotionChecks:
         for name, value in values.items():
             if not value > 0.0:
                 raise self.refusal(command, BAD_DYNAMICS, f"{name} = {value} must be greater than 0")
+            if value < SMALLEST_LIMIT:
+                raise self.refusal(command, BAD_DYNAMICS, f"{name} = {value} must be at least {SMALLEST_LIMIT:g}")
 
     def velocity(self, command: str, velocity: float) -> None:
         """Raises 23004 above the maximum and 23011 above the reference velocity."""
@@ -89,7 +93,7 @@ class MotionChecks:
         return limits._replace(jerk=highest), warning
 
     def soft_limits(self, command: str, target: float) -> None:
-        """Raises 120002 and 120003 for a target outside; the start position may be anywhere."""
+        """Raises 120002 and 120003 for a target outside, 23002 for one out of all range; the start may be anywhere."""
         low, high = self._parameters.soft_limit_negative, self._parameters.soft_limit_positive
         unit = self._unit
         if target > high:
@@ -98,3 +102,6 @@ class MotionChecks:
         if target < low:
             reason = f"target {target} {unit} lies beyond the negative soft limit {low} {unit} (P-AXIS-00177)"
             raise self.refusal(command, SOFT_LIMIT_NEGATIVE, reason)
+        if abs(target) > LARGEST_STATE:
+            reason = f"target {target} {unit} is not within ±{LARGEST_STATE:g} {unit}"
+            raise self.refusal(command, OUT_OF_RANGE, reason)

@@ -20,6 +20,11 @@ class OverrideFilter:
         self._waiting = round(0.01 * percent * self._steps) * 100.0 / self._steps
         return self.due(cycle)
 
+    @property
+    def due_cycle(self) -> int | None:
+        """The cycle at which a waiting override is to be used, if one waits."""
+        return None if self._waiting is None else self._passed_cycle + self._interval
+
     def due(self, cycle: int) -> float | None:
         """The percentage that has waited for the interval to end at `cycle`, if any."""
         if self._waiting is None or cycle - self._passed_cycle < self._interval:

@@ -42,6 +42,7 @@ class PowerCommands:
     def _switch_off(self, cycle: int) -> None:
         axis = self._axis
         axis.powered = False
+        axis.ptp.drop_suspended()
         if axis.state == S.STANDSTILL:
             axis.state = S.DISABLED
         elif axis.state == S.SYNCHRONIZED_MOTION:

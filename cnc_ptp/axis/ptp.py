@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil, copysign, inf, isinf
 
@@ -14,9 +16,9 @@ from cnc_ptp.motion import (
     plan_rest_to_rest,
     plan_to_position,
     plan_to_velocity,
-    reachable_velocity,
 )
-from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
+from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state
+from cnc_ptp.motion.profile import Row
 
 State = tuple[float, float, float, float]
 """Position mm, velocity mm/s, acceleration mm/s², jerk mm/s³ (deg for rotary axes)."""
@@ -36,7 +38,8 @@ REDUCTIONS = 8
 class Job:
     """A positioning: where to, with which limits, and the velocity that its last leg can reach of them.
 
-    A target at ±infinity is endless motion in that direction.
+    The velocity of the limits is the one that the user asked for; it may become reachable with a new target. A target at
+    ±infinity is endless motion in that direction.
     """
 
     target: float
@@ -165,7 +168,7 @@ class PtpGenerator:
         ramp = self._ramp_limits or limits
         if at_least:
             ramp = Limits(*map(max, ramp, limits))
-        brakes = self.job is not None and self._in_brake_phase(cycle, self.job)
+        brakes = self.braking(cycle) and self._profile.end[1:] == (0.0, 0.0)
         self._stopped_job, self.job = self.job or self._stopped_job, None
         self._suspended = self._activation = self._due = None
         self._stop_locks = locks
@@ -177,10 +180,14 @@ class PtpGenerator:
         """New target, with or without a new velocity, for the positioning in work (TX1250 2.3, 2.4).
 
         A pending activation is deleted. During a stop the request waits until the axis stands.
+        Raises CncError 23001 and 23002 for a velocity or target that no table can be made for; nothing is changed then.
         """
+        check_state(target=request.target)
+        if request.velocity is not None:
+            check_limit("velocity", request.velocity)
         if self.job is None and self._stop_locks:
             self._suspended = request
-            self._due = self._origin + ceil(self._profile.duration / self._cycle_time)
+            self._due = self._end_cycle()
         else:
             self._carry_out(cycle, request)
 
@@ -228,6 +235,11 @@ class PtpGenerator:
         if self._activation is not None:
             self._due = self._crossing(cycle, self._activation)
 
+    def _end_cycle(self) -> int:
+        """The first cycle at which the table in work is through."""
+        cycle = self._origin + ceil(self._profile.duration / self._cycle_time)
+        return cycle if self.finished(cycle) else cycle + 1
+
     def _ends_at(self, job: Job) -> bool:
         """The table in work leads to the target; the one of override 0 does not."""
         return bool(self._profile.end[0] == job.target)
@@ -244,9 +256,7 @@ class PtpGenerator:
         return abs(ahead - job.target) <= tolerance
 
     def _job_from_rest(self, position: float, target: float, limits: Limits) -> Job:
-        symmetric = min(limits.acceleration, limits.deceleration)
-        reached = reachable_velocity(abs(target - position), symmetric, limits.jerk)
-        return Job(target, limits, min(limits.velocity, reached))
+        return self._job_of(target, limits, plan_rest_to_rest(position, target, limits).rows)
 
     def _job_on_the_way(self, cycle: int, target: float, limits: Limits) -> Job:
         """The job to `target` for an axis in motion; where it stops and returns, the way back counts."""
@@ -256,6 +266,9 @@ class PtpGenerator:
         leg = last_leg(plan_to_position(position, velocity, acceleration, target, limits))
         if leg[0][2] == 0.0 and leg[0][3] == 0.0:
             return self._job_from_rest(leg[0][1], target, limits)
+        return self._job_of(target, limits, leg)
+
+    def _job_of(self, target: float, limits: Limits, leg: Sequence[Row]) -> Job:
         return Job(target, limits, min(limits.velocity, peak_velocity(leg)))
 
     def _level(self, job: Job) -> Limits:
@@ -320,8 +333,9 @@ class PtpGenerator:
         """Takes the new velocity, or what comes nearest to it on the rest of the way; else the old table stays."""
         reached = self._nearest_reached(cycle, job, velocity)
         if reached is not None:
-            changed = self._job_on_the_way(cycle, job.target, job.limits._replace(velocity=reached))
-            self._begin(cycle, changed, self._table(cycle, changed))
+            reduced = self._job_on_the_way(cycle, job.target, job.limits._replace(velocity=reached))
+            wanted = replace(reduced, limits=job.limits._replace(velocity=velocity))
+            self._begin(cycle, wanted, self._table(cycle, reduced))
 
     def _nearest_reached(self, cycle: int, job: Job, velocity: float) -> float | None:
         """`velocity` if the rest of the way has a stretch at it, else by bisection towards the old one; None if not."""
@@ -346,7 +360,7 @@ class PtpGenerator:
 
     def _crossing(self, cycle: int, activation: Activation) -> int | None:
         """The first cycle at which the table in work is at or past the activation position, None when it never is."""
-        end = max(cycle, self._origin + ceil(self._profile.duration / self._cycle_time))
+        end = max(cycle, min(self._end_cycle(), cycle + sys.maxsize))
 
         def passed(at: int) -> bool:
             return activation.direction * (self.state(at)[0] - activation.position) >= 0.0

@@ -90,9 +90,9 @@ class PtpCommands:
             reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
             axis.refuse("set_override", BAD_OVERRIDE, reason)
         used = axis.override_filter.take(cycle, percent)
-        if used is None or axis.set_override(cycle, used) or axis.state != S.DISCRETE_MOTION:
+        if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None
-        reason = "brake phase or level out of reach"
+        reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
         return f"axis {axis.name}: override {percent} % does not change the motion in work ({reason})"
 
     def do_set_override_type(self, cycle: int, *, type: int) -> None:

@@ -66,7 +66,8 @@ class StopCommands:
         axis.checks.emergency_deceleration(command, deceleration)
         start = axis.own_limits if axis.ptp.job is None else axis.ptp.job.limits
         self._require_stronger(start, deceleration, jerk)
-        ramp, warning = axis.checks.rescaled_jerk(command, start._replace(deceleration=deceleration, jerk=jerk))
+        emergency = Limits(start.velocity, deceleration, deceleration, jerk)
+        ramp, warning = axis.checks.rescaled_jerk(command, emergency)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)

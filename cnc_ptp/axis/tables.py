@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from cnc_ptp.motion import Profile
@@ -15,10 +15,8 @@ def standing(position: float) -> Profile:
 
 
 def reaches(profile: Profile, velocity: float) -> bool:
-    """True when the table holds a stretch at `velocity` (mm/s, either direction) without acceleration."""
-    return any(
-        abs(abs(v) - velocity) <= 1e-9 * velocity and abs(a) <= 1e-9 * abs(v) + 1e-12 for _, _, v, a, _ in profile.rows
-    )
+    """True when the table holds `velocity` (mm/s, either direction) without acceleration, be it for one instant."""
+    return any(abs(level - velocity) <= 1e-9 * velocity for level in _levels(profile.rows))
 
 
 def last_leg(profile: Profile) -> Sequence[Row]:
@@ -31,9 +29,14 @@ def last_leg(profile: Profile) -> Sequence[Row]:
 
 
 def peak_velocity(rows: Sequence[Row]) -> float:
-    """Largest |v| (mm/s) of these rows; within a row it lies where the acceleration passes zero, v - a²/(2j)."""
-    peak = max(abs(row[2]) for row in rows)
-    for (t, _, v, a, j), following in pairwise(rows):
-        if a * j < 0.0 and -a / j < following[0] - t:
-            peak = max(peak, abs(v - 0.5 * a * a / j))
-    return peak
+    """Largest |v| (mm/s) of these rows."""
+    return max(max(abs(row[2]) for row in rows), *_levels(rows), 0.0)
+
+
+def _levels(rows: Sequence[Row]) -> Iterator[float]:
+    """|v| wherever the acceleration is zero: at the begin of a row, or within it, where v - a²/(2j)."""
+    for (t, _, v, a, j), following in pairwise((*rows, rows[-1])):
+        if abs(a) <= 1e-9 * abs(v) + 1e-12:
+            yield abs(v)
+        elif a * j < 0.0 and -a / j < following[0] - t:
+            yield abs(v - 0.5 * a * a / j)

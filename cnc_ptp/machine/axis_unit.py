@@ -115,15 +115,15 @@ class AxisUnit(Unit):
         """Computes one block; follows the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
         axis = self._axis
-        axis.begin_block(first_cycle)
+        axis.advance(first_cycle)
         if axis.coupled:
             rows = self._follow(first_cycle, self._master.setpoints(first_cycle, inputs))
         else:
             rows = self._follow(first_cycle, self._path.setpoints(first_cycle, inputs))
         while len(rows) < count:
             cycle = first_cycle + len(rows)
-            axis.ptp.advance(cycle)
-            rows += self._follow(cycle, axis.ptp.states(cycle, count - len(rows)))
+            axis.advance(cycle)
+            rows += self._follow(cycle, axis.basic_motion(cycle, count - len(rows)))
         columns: Iterable[Any] = map(list, zip(*rows, strict=True))
         block = AxisBlock(first_cycle, count, *columns)
         block.master = axis.coupling.master if axis.coupling is not None else ""

@@ -63,21 +63,22 @@ class Profile:
         return p + d * (v + d * (0.5 * a + d * (j / 6.0))), v + d * (a + d * (0.5 * j)), a + d * j, j
 
     def sample(self, times: ArrayLike) -> NDArray[np.float64]:
-        """States at many times: times (n,) in seconds -> array (4, n) of p, v, a, j; equals state_at to the bit."""
-        t = np.maximum(np.asarray(times, dtype=np.float64), 0.0)
+        """States at many times: times (n,) in seconds -> array (4, n) of p, v, a, j; equals state_at to the bit.
+
+        The rows of each time are gathered once; p, v, a then grow in place from their highest coefficients.
+        """
+        t = np.maximum(times, 0.0)
         columns = self._columns
         if columns is None:
-            columns = np.array(self.rows, dtype=np.float64).T.copy()
+            start, p, v, a, j = np.array(self.rows, dtype=np.float64).T
+            columns = np.array((j / 6.0, 0.5 * j, j, j, 0.5 * a, a, a, v, v, p, start))
             object.__setattr__(self, "_columns", columns)
-        index = columns[0].searchsorted(t, side="right") - 1
-        start, p, v, a, j = columns.take(index, axis=1)
-        d = t - start
-        out = np.empty((4, len(t)))
-        out[0] = p + d * (v + d * (0.5 * a + d * (j / 6.0)))
-        out[1] = v + d * (a + d * (0.5 * j))
-        out[2] = a + d * j
-        out[3] = j
-        return out
+        out = columns.take(columns[-1, 1:].searchsorted(t, side="right"), axis=1)
+        d = t - out[10]
+        for state, following in ((out[:3], out[4:7]), (out[:2], out[7:9]), (out[0], out[9])):
+            state *= d
+            state += following
+        return out[:4]
 
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise AttributeError(f"a Profile is immutable: {name} cannot be set")

@@ -101,10 +101,8 @@ def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Pi
                 head.append((d, a, j))
                 return head, brake(v + d * (a + d * (0.5 * j)), top, deceleration, jerk)
         elif j == 0.0 and a > 0.0:
-            q = _leave_at_constant_acceleration(x, v, a, way, deceleration, jerk)
-            held = (q - (v * jerk + 0.5 * a * a)) / (jerk * a)
+            held = _time_at_constant_acceleration(x, v, a, way, deceleration, jerk)
             if held <= d:
-                held = max(0.0, held)
                 head.append((held, a, 0.0))
                 return head, brake(v + held * a, a, deceleration, jerk)
         head.append((d, a, j))
@@ -114,20 +112,33 @@ def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Pi
     return head, [(max(0.0, cruise) / velocity, 0.0, 0.0), *brake(velocity, 0.0, deceleration, jerk)]
 
 
-def _leave_at_constant_acceleration(
-    x: float, v: float, a: float, way: float, deceleration: float, jerk: float
-) -> float:
-    """q at which a piece of constant a > 0, begun at x with v, must be left to stop at `way`."""
+def _time_at_constant_acceleration(x: float, v: float, a: float, way: float, deceleration: float, jerk: float) -> float:
+    """Seconds after which a piece of constant a > 0, begun at x with v, must be left to stop at `way`.
+
+    Solved for the change of q (and of m = q + a√q, of √q), because beside q it may be small. D is constant at q < 0.
+    """
     q = v * jerk + 0.5 * a * a
-    rest = jerk * jerk * (way - x) + 0.5 * q * (q / a - a) + a * a * a / 6.0
-    if rest <= 0.0:
-        return q
-    m = sqrt(2.0 * a * rest)
-    w = 2.0 * m / (a + sqrt(a * a + 4.0 * m))
-    if w <= deceleration:
-        return w * w
-    m = 2.0 * rest / (a + deceleration)
-    return 2.0 * m / (1.0 + sqrt(1.0 + 4.0 * m / (a * deceleration)))
+    ahead = jerk * jerk * (way - x) - a * (q - a * a / 6.0)
+    before = 0.0
+    if q < 0.0:
+        ahead += 0.5 * q * (q / a + a)
+        before, q = -q, 0.0
+    free = ahead - brake_term(q, deceleration)
+    if free <= 0.0:
+        return before / (jerk * a)
+    top = sqrt(q)
+    m = top * (top + a)
+    m_left = sqrt(m * m + 2.0 * a * free)
+    root = sqrt(a * a + 4.0 * m_left)
+    top_left = 0.5 * (root - a)
+    if top_left <= deceleration:
+        rise = 4.0 * a * free * (top_left + top) / ((m_left + m) * (root + 2.0 * top + a))
+    else:
+        bounded = ahead - 0.5 * q * (deceleration + q / deceleration)
+        k = 1.0 / a + 1.0 / deceleration
+        slope = q * k + 0.5 * (a + deceleration)
+        rise = 2.0 * bounded / (slope + sqrt(slope * slope + 2.0 * k * bounded))
+    return (before + rise) / (jerk * a)
 
 
 def _leave_at_rising_acceleration(

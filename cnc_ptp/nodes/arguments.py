@@ -16,9 +16,6 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 NAME = click.argument("name")
-FREE_RUN = click.option(
-    "--free-run", is_flag=True, help="Report every block, so that the clock runs as fast as all can."
-)
 RECORDERS = click.option(
     "--recorders", default=0, show_default=True, help="Recorders that must have found the blocks first."
 )
@@ -30,13 +27,12 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @click.command(help=f"Runs the {what} NAME of MACHINE as a ROS node.")
     @MACHINE
     @NAME
-    @FREE_RUN
     @RECORDERS
-    def command(machine: str, name: str, free_run: bool, recorders: int, **options: Any) -> None:
+    def command(machine: str, name: str, recorders: int, **options: Any) -> None:
         def make() -> Any:
             parameters = read_machine(machine)
             consumers = consumers_of(parameters, name, recorders=recorders)
-            return node_class(parameters, name, consumers=consumers, free_run=free_run, **options)
+            return node_class(parameters, name, consumers=consumers, **options)
 
         sys.exit(process.run_node(make))
 

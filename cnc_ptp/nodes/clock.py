@@ -14,7 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
-from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, TICK, block_topic
+from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 POLL = 0.02
@@ -28,7 +28,8 @@ FAREWELL = 0.3
 class ClockNode(Node):
     """The clock of the graph.
 
-    Publishes /clock/tick (CycleTick). Subscriptions: /heartbeat (BlockReport), /plc/block (PlcBlock, for the end).
+    Publishes /clock/tick (CycleTick). Subscriptions: /clock/report, /heartbeat (BlockReport), /plc/block (PlcBlock, for
+    the end).
     Starts when every expected node has said that it is ready; ends when the PLC ends the run or after `duration`.
     A node that is silent for the watchdog time no longer holds up a free run. While a free run waits, /heartbeat says
     that the clock lives.
@@ -63,7 +64,8 @@ class ClockNode(Node):
         self._said = 0.0
         self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
-        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_report, BLOCKS)
+        self.create_subscription(msg.BlockReport, REPORT, self._on_report, BLOCKS)
+        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
 
     @property
@@ -141,6 +143,10 @@ class ClockNode(Node):
                 self._open.discard(message.source)
                 self.advance()
 
+    def _on_heartbeat(self, message: msg.BlockReport) -> None:
+        if message.source in self._heard:
+            self._heard[message.source] = time.monotonic()
+
     def _drop_silent_nodes(self) -> None:
         now = time.monotonic()
         silent = {name for name in self._open if now - self._heard[name] > self._patience(name)}
@@ -169,7 +175,7 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 @arguments.MACHINE
 @click.option("--duration", type=click.FloatRange(0.0, 1e7), help="Seconds; without it the run ends by itself.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
-@arguments.FREE_RUN
+@click.option("--free-run", is_flag=True, help="As fast as all nodes report their blocks.")
 def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:
     """Runs the clock of MACHINE as a ROS node."""
 

@@ -43,7 +43,7 @@ def _run(machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None
     recorder = None
     if job.record:
         machine_yaml = read_file("machine file", job.machine)
-        recorder = RecorderNode(machine, job.record, machine_yaml, free_run=job.free_run)
+        recorder = RecorderNode(machine, job.record, machine_yaml)
         nodes.append(recorder)
     next_show = 0.0
 
@@ -87,11 +87,7 @@ def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[
         if kind == PLC:
             entries = read_job(machine, program=job.program, scenario=job.scenario)
             idle_ends = job.duration is None
-            nodes.append(
-                PlcBridgeNode(
-                    machine, scenario=entries, end_when_idle=idle_ends, consumers=consumers, free_run=job.free_run
-                )
-            )
+            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, consumers=consumers))
         else:
-            nodes.append(UNIT_NODES[kind](machine, name, consumers=consumers, free_run=job.free_run))
+            nodes.append(UNIT_NODES[kind](machine, name, consumers=consumers))
     return nodes

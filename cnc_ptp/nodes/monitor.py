@@ -12,7 +12,7 @@ from cnc_ptp import msg
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, HEARTBEAT, MONITOR, PLC_INPUT, block_topic
+from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, MONITOR, PLC_INPUT, REPORT, block_topic
 from cnc_ptp.parameters import MachineParameters
 
 READY_PERIOD = 0.05
@@ -47,7 +47,7 @@ class RunMonitor(Node):
         self.diagnostics: dict[str, dict[str, str]] = {}
         self.standing: dict[str, bool] = {}
         self._needed = []
-        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         for channel in list(machine.channels)[:1]:
             self._need(msg.ChannelBlock, block_topic(channel), self._on_channel)
@@ -63,7 +63,7 @@ class RunMonitor(Node):
         if self.progress.cycle:
             self._ready_timer.cancel()
         elif all(subscription.get_publisher_count() for subscription in self._needed):
-            self._heartbeat_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
+            self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 
     def watch_standstill(self, axes: list[str]) -> None:
         """Follows from now on whether `axes` stand (`standing`)."""

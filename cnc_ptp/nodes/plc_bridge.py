@@ -144,11 +144,8 @@ def without_text(entry: Entry) -> Entry:
 @click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 @click.option("--stay", is_flag=True, help="Go on when everything stands, instead of ending the run.")
-@arguments.FREE_RUN
 @arguments.RECORDERS
-def command(
-    machine: str, program: str | None, scenario: str | None, stay: bool, free_run: bool, recorders: int
-) -> None:
+def command(machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int) -> None:
     """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
 
     def make() -> PlcBridgeNode:
@@ -158,7 +155,6 @@ def command(
             scenario=read_job(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
             consumers=consumers_of(parameters, PLC, recorders=recorders),
-            free_run=free_run,
         )
 
     sys.exit(process.run_node(make))

@@ -70,7 +70,8 @@ def initialise() -> None:
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
-        raise CncError(NO_ROS, f"ROS does not start: {error}; nothing was started") from None
+        reason, _, _place_in_its_source = str(error).partition(", at /")
+        raise CncError(NO_ROS, f"ROS does not start: {reason}; nothing was started") from None
     domain = rclpy.get_default_context().get_domain_id()
     if domain > HIGHEST_DOMAIN:
         rclpy.try_shutdown()

@@ -27,9 +27,9 @@ from cnc_ptp.nodes.topics import (
     DIAGNOSTICS,
     EVENT,
     EVENTS,
-    HEARTBEAT,
     PLC_INPUT,
     RECORDER,
+    REPORT,
     TICK,
     block_topic,
 )
@@ -48,24 +48,24 @@ class RecorderNode(Node):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics.
-    Publishes /heartbeat: ready, and in free run every tick that is recorded completely; /events: blocks that did not
+    Publishes /clock/report: ready, and in free run every tick that is recorded completely; /events: blocks that did not
     arrive. A block that comes twice is recorded once.
     """
 
-    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
+    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str) -> None:
         super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
         self._machine_yaml = machine_yaml
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
-        self._free_run = free_run
+        self._free_run = False
         self._recording: Recording | None = None
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
         self._received: dict[int, int] = {}
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._heard = time.monotonic()
-        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
         self.failure: CncError | None = None
         """Why nothing more can be written."""
@@ -106,15 +106,16 @@ class RecorderNode(Node):
         if self._recording is not None:
             self._ready_timer.cancel()
         elif all(subscription.get_publisher_count() for subscription in self._needed):
-            self._say(-1)
+            self._report(-1)
 
-    def _say(self, first_cycle: int) -> None:
-        self._heartbeat_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
+    def _report(self, first_cycle: int) -> None:
+        self._report_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
     def _on_tick(self, message: msg.CycleTick) -> None:
         self._heard = time.monotonic()
         if self._recording is None:
             start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+            self._free_run = not message.scheduled_monotonic_ns
             self._recording = Recording(self._path, self._machine_yaml, start_ns, self._cycle_ns)
             for record in self._early:
                 record()
@@ -156,7 +157,7 @@ class RecorderNode(Node):
         self._received[first_cycle] = received
         if received == len(self._units):
             del self._received[first_cycle]
-            self._say(first_cycle)
+            self._report(first_cycle)
 
     def _on_event(self, message: msg.Event) -> None:
         self._single(lambda: self._recorded.event(convert.message_to_event(message)))
@@ -199,12 +200,11 @@ def require_writable(path: str) -> None:
 @click.command()
 @arguments.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
-@arguments.FREE_RUN
-def command(machine: str, output: str, free_run: bool) -> None:
+def command(machine: str, output: str) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
+        return RecorderNode(read_machine(machine), output, read_file("machine file", machine))
 
     sys.exit(process.run_node(make, settled=lambda node: node.settled))
 

@@ -102,14 +102,14 @@ class Supervisor:
         recorders = ["--recorders", "1"] if job.record else []
         program = ["--program", job.program] if job.program else []
         if job.record:
-            yield RECORDER, ["recorder", job.machine, job.record, *free_run]
+            yield RECORDER, ["recorder", job.machine, job.record]
         for name, kind in unit_kinds(self._machine).items():
             if kind != "plc":
                 first = program if name == next(iter(self._machine.channels), None) else []
-                yield name, [MODULES[kind], job.machine, name, *first, *free_run, *recorders]
+                yield name, [MODULES[kind], job.machine, name, *first, *recorders]
         scenario = ["--scenario", job.scenario] if job.scenario else []
         stay = ["--stay"] if job.duration is not None else []
-        yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *free_run, *recorders]
+        yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *recorders]
         duration = ["--duration", str(job.duration)] if job.duration is not None else []
         wait_for = [word for name in observers_of(job) for word in ("--wait-for", name)]
         yield CLOCK, ["clock", job.machine, *duration, *free_run, *wait_for]
@@ -132,8 +132,11 @@ class Supervisor:
     def _not_started_in_time(self) -> bool:
         if self._monitor.progress.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
             return False
+        there = self._monitor.get_node_names()
+        absent = ", ".join(name for name in self._processes if name not in there) or "none"
         self.failures.append(
-            f"P-ERR-{NOT_READY} the nodes did not find each other within {START_TIMEOUT:.0f} s; the run ends"
+            f"P-ERR-{NOT_READY} the nodes did not find each other within {START_TIMEOUT:g} s "
+            f"(not there: {absent}); the run ends"
         )
         return True
 

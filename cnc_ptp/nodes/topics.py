@@ -24,6 +24,7 @@ MONITOR = "run_monitor"
 """Nodes besides the units that say when they are ready."""
 
 TICK = "/clock/tick"
+REPORT = "/clock/report"
 HEARTBEAT = "/heartbeat"
 EVENT = "/events"
 COMMAND = "/commands"

@@ -34,6 +34,7 @@ from cnc_ptp.nodes.topics import (
     EVENTS,
     HEARTBEAT,
     PLC_INPUT,
+    REPORT,
     SERVICES,
     TICK,
     block_topic,
@@ -55,16 +56,15 @@ class UnitNode(Node):
     """Runs one unit of the machine as a ROS node of the unit's name.
 
     Subscriptions: /clock/tick (CycleTick), /<unit>/block of every upstream and feedback unit, /heartbeat (BlockReport).
-    Publishers: /<name>/block, /events, /commands, /heartbeat, /diagnostics (1 Hz).
+    Publishers: /<name>/block, /events, /commands, /clock/report, /heartbeat, /diagnostics (1 Hz).
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
     """
 
-    def __init__(self, machine: MachineParameters, unit: Unit, *, consumers: int, free_run: bool = False) -> None:
-        """`consumers`: nodes that must find this one's blocks before it is ready. `free_run`: report each block."""
+    def __init__(self, machine: MachineParameters, unit: Unit, *, consumers: int) -> None:
+        """`consumers`: nodes that must find this one's blocks before it is ready."""
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
-        self._free_run = free_run
         self._consumers = consumers
         self._watchdog = machine.watchdog_ms / 1000.0
         self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
@@ -105,6 +105,7 @@ class UnitNode(Node):
         self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), BLOCKS)
         self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
         self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
+        self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
 
@@ -127,7 +128,7 @@ class UnitNode(Node):
             return
         found = self._block_publisher.get_subscription_count() >= self._consumers
         if found and all(subscription.get_publisher_count() for subscription in self._needed):
-            self._say(-1)
+            self._report(-1)
 
     # what arrives
 
@@ -214,8 +215,8 @@ class UnitNode(Node):
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
             self._lateness.add((time.monotonic_ns() - scheduled) // 1000)
-        if self._free_run:
-            self._say(tick.first_cycle)
+        else:
+            self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
         if isinstance(plc, PlcBlock) and plc.run_done:
             self._gate.close()
@@ -263,7 +264,7 @@ class UnitNode(Node):
             self._tick_alone()
             return
         if now - self._said > self._watchdog / 4.0:
-            self._say(self._gate.next_cycle)
+            self._say()
         begun = self._gate.next_cycle > self._count
         patience = self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
         for source in self._gate.missing():
@@ -293,9 +294,14 @@ class UnitNode(Node):
             self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
             self._compute_ready_blocks()
 
-    def _say(self, first_cycle: int) -> None:
+    def _report(self, first_cycle: int) -> None:
+        """To the clock: ready (-1), or in free run a block that is computed."""
+        self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
+
+    def _say(self) -> None:
+        """To all: this node lives."""
         self._said = time.monotonic()
-        self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
+        self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=self._gate.next_cycle))
 
     @contextmanager
     def _working(self) -> Iterator[None]:
@@ -311,7 +317,7 @@ class UnitNode(Node):
         busy_for = 0.0
         while self.context.ok():
             if self._busy and 0.0 < busy_for < LONGEST_COMMAND:
-                self._say(self._gate.next_cycle)
+                self._say()
             busy_for = busy_for + period if self._busy else 0.0
             time.sleep(period)
 

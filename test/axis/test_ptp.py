@@ -38,7 +38,7 @@ def test_a_target_out_of_all_range() -> None:
     with pytest.raises(CncError) as caught:
         ptp.start(0, 1e13, LIMITS)
     assert str(caught.value) == (
-        "P-ERR-23002 motion value distance = 10000000000000.0 must be between -1e+12 and 1e+12; the motion is refused"
+        "P-ERR-23002 motion value target = 10000000000000.0 must be between -1e+12 and 1e+12; the motion is refused"
     )
     assert ptp.job is None
 

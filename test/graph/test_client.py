@@ -262,7 +262,7 @@ def test_cancelled_move_stops_on_its_ramp(client):
     status, result = client.result_of(goal)
     assert status == GoalStatus.STATUS_CANCELED and not result.success
     assert 0.0 < result.position < 40.0
-    assert result.message == f"the axis stands at {result.position}, target 0.0"
+    assert result.message == f"the axis was stopped at {result.position}"
     client.shows("x", "state", AxisStateCode.STANDSTILL)
 
 
@@ -358,15 +358,18 @@ def test_parameters(client):
     assert plc.integer_value == 200
 
 
-def test_a_second_run_on_the_domain_is_refused(client, ros_domain, recording):
-    """Even one that would record to the same file."""
-    size = recording.stat().st_size
-    error = run("run", MILL, "--duration", "1", "--record", recording, expect=2).stderr
-    assert recording.stat().st_size >= size > 0
+@pytest.mark.parametrize(("options", "content"), [([], b"of yesterday"), (["--composed"], None)], ids=str)
+def test_a_second_run_on_the_domain_is_refused(client, ros_domain, options, content, tmp_path):
+    """It leaves the file that it was to write as it is, or does not make it."""
+    file = tmp_path / "second.mcap"
+    if content:
+        file.write_bytes(content)
+    error = run("run", MILL, "--duration", "1", "--record", file, *options, expect=2).stderr
     assert error == (
         f"P-ERR-26107 a run is under way on ROS domain {ros_domain} of this machine; nothing was started. "
         "Wait for its end, or set ROS_DOMAIN_ID to another number\n"
     )
+    assert (file.read_bytes() if content else file.exists()) == (content or False)
 
 
 def test_a_node_that_comes_too_late_ends(client):

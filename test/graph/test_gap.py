@@ -1,5 +1,7 @@
 """A clock that leaves out a tick, and other faults of what arrives: the axis stops by itself, no cycle is left out."""
 
+import time
+
 import numpy as np
 import pytest
 import rclpy
@@ -13,6 +15,8 @@ from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, EVENT, EVENTS, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 
+WATCHDOG = 0.2
+"""s, of ptp.yaml"""
 MOVE = {"target": 100.0, "velocity": 200.0}
 
 
@@ -138,6 +142,24 @@ def test_silence_of_the_clock_ends_in_a_controlled_stop(bench):
     bench.wait_for_standstill()
     check_smooth(bench.outside)
     assert bench.outside.records[-1].arguments_json == '{"source": "clock"}'
+
+
+def test_a_first_block_may_take_long(bench):
+    """Processes that have just started are slow, and nothing has moved yet: the watchdog waits ten times as long."""
+    bench.outside.tick(0)
+    late = time.monotonic() + 3.0 * WATCHDOG
+    bench.spin_until(lambda: time.monotonic() > late)
+    assert bench.outside.blocks == [] and errors(bench.outside) == []
+    bench.outside.plc_block(0)
+    bench.spin_until(lambda: len(bench.outside.blocks) == 1)
+    assert errors(bench.outside) == []
+
+
+def test_a_first_block_that_does_not_come_is_lost(bench, monkeypatch):
+    monkeypatch.setattr(process, "START_PATIENCE", 0.0)
+    bench.outside.tick(0)
+    bench.spin_until(lambda: bench.outside.blocks)
+    assert [(event.error_id, event.cycle) for event in bench.outside.events if event.severity == 2] == [(26101, 0)]
 
 
 def test_a_sign_of_life_keeps_a_waiting_axis_from_stopping(bench):

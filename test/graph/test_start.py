@@ -1,4 +1,4 @@
-"""Starting and ending: by hand without supervisor, composed, with a full disk, on a domain that does not exist."""
+"""Starting and ending: by hand without supervisor, composed, with a full disk."""
 
 import signal
 import subprocess
@@ -75,17 +75,6 @@ def test_full_disk(one_axis):
 def test_full_disk_in_a_composed_run(one_axis):
     done = run("run", one_axis, "--composed", "--record", "/dev/full", expect=1)
     assert "failed: P-ERR-26007 recording /dev/full: cannot be written" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("domain", "reason"),
-    [("1000", "ROS_DOMAIN_ID = 1000 is not within 0 ... 232"), ("two", "ROS_DOMAIN_ID is not an integral number")],
-)
-def test_no_such_domain(one_axis, domain, reason, monkeypatch):
-    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
-    error = run("run", one_axis, "--composed", expect=2).stderr
-    assert error.startswith("P-ERR-26108 ROS does not start: ") and reason in error
-    assert error.endswith("; nothing was started\n")
 
 
 def test_free_run_that_is_recorded_in_full(one_axis, tmp_path):

@@ -468,7 +468,9 @@ def test_override_does_not_change_a_stop() -> None:
         each.run(700)
         each.accepted("stop")
         each.run(50)
-    assert bench.accepted("set_override", percent=10.0) == ""
+    assert bench.accepted("set_override", percent=10.0) == (
+        "axis x: override 10.0 % does not change the motion in work (the axis stops)"
+    )
     for each in (bench, undisturbed):
         each.run(1000)
     assert bench.column("set_position") == undisturbed.column("set_position")

@@ -121,7 +121,7 @@ def test_solvers_stay_in_their_brackets_where_the_target_is_behind():
     """The slope is 0 where √q = 0 in the free equation and a = -A- in the bounded one."""
     assert to_position._solve_free(2.0, 2.0, -4.0, -8.0) == 2.0
     assert to_position._solve_bounded(-3.0, -3.0, 9.0, 0.0, 3.0) == -3.0
-    assert to_position._leave_at_constant_acceleration(10.0, 5.0, 4.0, -90.0, 8.0, 100.0) == 508.0
+    assert to_position._time_at_constant_acceleration(10.0, 5.0, 4.0, -90.0, 8.0, 100.0) == 0.0
 
 
 PAST = {
@@ -156,6 +156,14 @@ PAST = {
         228.01824629729197,
         Limits(0.03360424366498038, 0.009020640709298302, 2063.10452295828, 0.0010770412879645998),
         True,
+    ),
+    "constant A+ of 1e-7 of A-, step of position 2e-9 of the way": Problem(
+        0.0,
+        8708.941920036104,
+        0.00038148980314496237,
+        5755.85858892489,
+        Limits(9193.83302306046, 0.0029887758676971233, 67243.01263199675, 68291.99714302424),
+        False,
     ),
     "way back of 1e-3 mm at 1e5 mm counted in absolute places": Problem(
         100000.0,

@@ -1,0 +1,127 @@
+"""Faults of starting and recording that a good run never meets, with their exact texts."""
+
+import pytest
+import rclpy
+from graph_support import MILL, PTP, one_axis_machine, run
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import PlcBlock, Severity
+from cnc_ptp.nodes import convert, process, supervisor
+from cnc_ptp.nodes.clock import ClockNode
+from cnc_ptp.nodes.recorder import RecorderNode
+from cnc_ptp.nodes.supervisor import Job, Supervisor
+from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
+from cnc_ptp.parameters import read_machine
+
+UNITS = ("plc", "x", "y", "z", "c")
+"""Of ptp.yaml."""
+
+
+class Outside(Node):
+    """Everything around a node, in the hands of a test."""
+
+    def __init__(self):
+        super().__init__("outside", enable_rosout=False, start_parameter_services=False)
+        self.ticks = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
+        self.plc = self.create_publisher(msg.PlcBlock, block_topic("plc"), BLOCKS)
+        self.reports = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
+        self.events = []
+        self.create_subscription(msg.Event, EVENT, self.events.append, EVENTS)
+
+    def plc_block(self, first_cycle):
+        block = PlcBlock(first_cycle, 10)
+        self.plc.publish(convert.block_to_message(block, convert.time_message(0)))
+
+
+@pytest.fixture
+def around():
+    """Makes a node beside `outside`; gives both, and a function that spins them until something holds."""
+    process.initialise()
+    executor = process.EventsExecutor()
+    nodes = [Outside()]
+
+    def start(make):
+        nodes.append(make())
+        for node in nodes:
+            executor.add_node(node)
+        return (*nodes, spin_until)
+
+    def spin_until(condition):
+        for _ in range(1000):
+            if condition():
+                return
+            executor.spin_once(timeout_sec=0.01)
+        raise AssertionError("nothing more comes")
+
+    yield start
+    for node in nodes:
+        node.destroy_node()
+    executor.shutdown()
+    rclpy.try_shutdown()
+
+
+def test_a_second_clock_starts_nothing(around):
+    outside, clock, spin_until = around(lambda: ClockNode(read_machine(str(PTP))))
+    spin_until(outside.reports.get_subscription_count)
+    spin_until(lambda: clock.count_publishers(TICK) == 2)
+    clock.advance()
+    for unit in UNITS:
+        outside.reports.publish(msg.BlockReport(source=unit, first_cycle=-1))
+
+    def advance():
+        clock.advance()
+        return False
+
+    with pytest.raises(CncError) as refused:
+        spin_until(advance)
+    assert str(refused.value) == ("P-ERR-26109 another clock is on this ROS domain; this one ends, nothing was started")
+
+
+def test_blocks_that_are_not_recorded_are_told(around, tmp_path):
+    def make():
+        return RecorderNode(read_machine(str(PTP)), str(tmp_path / "a.mcap"), PTP.read_text())
+
+    outside, recorder, spin_until = around(make)
+    spin_until(lambda: outside.ticks.get_subscription_count() and outside.plc.get_subscription_count())
+    outside.ticks.publish(msg.CycleTick(first_cycle=0, count=10))
+    for first_cycle in (0, 30, 40):
+        outside.plc_block(first_cycle)
+    spin_until(lambda: outside.events)
+    spin_until(lambda: recorder._next_cycle["plc"] == 50)
+    assert [(event.cycle, event.source, event.severity, event.error_id, event.text) for event in outside.events] == [
+        (
+            30,
+            "recorder",
+            Severity.ERROR,
+            26114,
+            "recorder: blocks of 'plc' from cycle 10 to 29 are missing in the recording",
+        )
+    ]
+
+
+def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):
+    """Sooner than any process can be there."""
+    monkeypatch.setattr(supervisor, "START_TIMEOUT", 0.1)
+    machine = str(one_axis_machine(tmp_path))
+    run_of = Supervisor(read_machine(machine), Job(machine), show=lambda monitor: None)
+    run_of.run()
+    assert run_of.failures == [
+        "P-ERR-26105 the nodes did not find each other within 0.1 s (not there: x, plc, clock); the run ends"
+    ]
+    assert all(child.poll() is not None for child in run_of._processes.values())
+
+
+@pytest.mark.parametrize(
+    ("domain", "reason"),
+    [
+        ("1000", "ROS_DOMAIN_ID = 1000 is not within 0 ... 232"),
+        ("two", "failed to initialize rcl: ROS_DOMAIN_ID is not an integral number"),
+    ],
+)
+@pytest.mark.parametrize("options", [[], ["--composed"]], ids=str)
+def test_no_such_domain(domain, reason, options, monkeypatch):
+    monkeypatch.setenv("ROS_DOMAIN_ID", domain)
+    error = run("run", MILL, *options, expect=2).stderr
+    assert error == f"P-ERR-26108 ROS does not start: {reason}; nothing was started\n"
