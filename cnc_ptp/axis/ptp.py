@@ -38,8 +38,8 @@ REDUCTIONS = 8
 class Job:
     """A positioning: where to, with which limits, and the velocity that its last leg can reach of them.
 
-    The velocity of the limits is the one that the user asked for; it may become reachable with a new target. A target at
-    ±infinity is endless motion in that direction.
+    The velocity of the limits is the one that the user asked for; it may become reachable with a new target.
+    A target at ±infinity is endless motion in that direction.
     """
 
     target: float

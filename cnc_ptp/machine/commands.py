@@ -93,7 +93,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "change_cam": CAM,
         "set_coupling_factor": {"factor": NUMBER},
         "set_cyclic_factor": {"factor": NUMBER},
-        "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_NUMBER},
+        "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_POSITIVE},
         "lead": {"slave": TEXT, "on": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,

@@ -12,7 +12,9 @@ from cnc_ptp.machine.wiring import Inputs
 class BlockGate:
     """Collects ticks and blocks in any order of arrival; gives out one computation after the other, in order of cycles.
 
-    A source whose needed block was skipped (a later one came) or that its watchdog gave up is dropped for good.
+    `begin` opens a tick when the blocks are there that commands come in; `complete` closes it when the block of the
+    master is there too, which may have been named by one of these commands. A source whose needed block was skipped (a
+    later one came) or that its watchdog gave up is dropped for good.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -23,6 +25,9 @@ class BlockGate:
         self._next_cycle = 0
         self._closed = False
         self._last_tick_came = False
+        self._open: tuple[CycleTick, dict[str, Block]] | None = None
+        self._master: str | None = None
+        self._master_blocks: dict[int, Block] = {}
         self.duplicates = 0
         """Ticks and blocks that came a second time and were not used again."""
 
@@ -53,8 +58,25 @@ class BlockGate:
             return
         waiting[block.first_cycle] = block
 
+    def follow(self, master: str | None) -> None:
+        """The axis whose blocks are needed from the open tick on; None: of no one."""
+        if master != self._master:
+            self._master = master
+            self._master_blocks.clear()
+
+    def add_master_block(self, master: str, block: Block) -> None:
+        """Takes a block of the master that is followed; one from before the open tick is of no use."""
+        if master == self._master and block.first_cycle >= self._needed_of_master():
+            self._master_blocks[block.first_cycle] = block
+
+    def _needed_of_master(self) -> int:
+        return self._next_cycle if self._open is None else self._open[0].first_cycle
+
     def missing(self) -> list[str]:
         """Sources that the next tick waits for; [clock] when no tick is there; empty when it can be computed."""
+        if self._open is not None:
+            waits = self._master is not None and self._needed_of_master() not in self._master_blocks
+            return [self._master] if waits and self._master is not None else []
         if not self._ticks:
             return [CLOCK]
         tick = self._ticks[0]
@@ -66,6 +88,8 @@ class BlockGate:
 
     def skipped(self) -> list[str]:
         """Of the missing sources, those that have sent a later block already: the needed one is lost."""
+        if self._open is not None:
+            return self.missing() if self._master_blocks else []
         if not self._ticks:
             return []
         tick = self._ticks[0]
@@ -73,15 +97,31 @@ class BlockGate:
         needed |= dict.fromkeys(self._feedback, tick.first_cycle - tick.count)
         return [name for name in self.missing() if any(cycle > needed[name] for cycle in self._blocks[name])]
 
-    def take(self) -> tuple[CycleTick, dict[str, Block]] | None:
-        """The next tick with its inputs, in the order of the wiring; None while something is missing."""
-        if self.closed or self.missing():
+    @property
+    def opened(self) -> bool:
+        """True between `begin` and `complete` of a tick."""
+        return self._open is not None
+
+    def begin(self) -> tuple[CycleTick, dict[str, Block]] | None:
+        """Opens the next tick: its inputs in the order of the wiring; None while something is missing."""
+        if self.closed or self._open is not None or self.missing():
             return None
         tick = self._ticks.popleft()
         inputs = {name: self._blocks[name].pop(tick.first_cycle) for name in self._upstream}
         before = tick.first_cycle - tick.count
         inputs |= {name: self._blocks[name].pop(before) for name in self._feedback if before >= 0}
         self._next_cycle = tick.first_cycle + tick.count
+        self._open = tick, inputs
+        return self._open
+
+    def complete(self) -> tuple[CycleTick, dict[str, Block]] | None:
+        """Closes the open tick, with the block of the master among the inputs; None while that is missing."""
+        if self._open is None or self.missing():
+            return None
+        tick, inputs = self._open
+        self._open = None
+        if self._master is not None:
+            inputs = {**inputs, self._master: self._master_blocks.pop(tick.first_cycle)}
         return tick, inputs
 
     def drop(self, source: str) -> None:
@@ -89,6 +129,8 @@ class BlockGate:
         self._upstream = [name for name in self._upstream if name != source]
         self._feedback = [name for name in self._feedback if name != source]
         self._blocks.pop(source, None)
+        if source == self._master:
+            self.follow(None)
 
     def close(self) -> None:
         """The run is over: no more block is computed."""
@@ -97,7 +139,7 @@ class BlockGate:
     @property
     def closed(self) -> bool:
         """True when the run is over and all that belongs to it is computed."""
-        return self._closed or (self._last_tick_came and not self._ticks)
+        return self._closed or (self._last_tick_came and not self._ticks and self._open is None)
 
     @property
     def next_cycle(self) -> int:

@@ -11,11 +11,13 @@ import yaml
 from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.cam_file import parse_cam
 from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, is_finite
 from cnc_ptp.machine.setpoint_file import parse_setpoints
 
 BAD_SCENARIO = 25101
 SETPOINTS = "external_setpoints"
+CAMS = ("couple_cam", "change_cam")
 SWITCH_WORDS = {"on": True, "off": False}
 
 
@@ -93,6 +95,8 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     _read_switches(kinds[to], do, arguments)
     if do == SETPOINTS:
         _read_setpoints(to, arguments, read)
+    if do in CAMS and read and isinstance(arguments.get("file"), str) and "table" not in arguments:
+        arguments["table"] = parse_cam(read("cam file", arguments["file"]), arguments["file"])
     check_command(kinds[to], to, do, arguments)
     if do == "load" and "text" not in arguments and read:
         arguments["text"] = read("NC program", arguments["program"])

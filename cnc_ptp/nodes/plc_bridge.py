@@ -17,11 +17,13 @@ from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import PLC, build_unit, consumers_of
 from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.coupling_services import CouplingServices
 from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 LIFE_SIGN_LOST = 26103
+FACTOR_STALE = 26118
 FULL_OVERRIDE = 100.0
 
 
@@ -57,10 +59,16 @@ class PlcBridgeNode(UnitNode):
             self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
             received = partial(self._on_external_setpoint, unit)
             self.create_subscription(msg.ExternalSetpoint, f"/{unit}/external_setpoint", received, BLOCKS)
+            self._listen(msg.CyclicCouplingFactor, unit, "coupling_factor", self._coupling_factor)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_life_sign)
+        self._factors: dict[str, float] = {}
+        self.create_timer(self._life_sign_timeout / 4.0, self._watch_factors)
+        self._answers = CouplingServices(self, list(machine.axes))
 
-    def _listen(self, message_type: Any, unit: str, name: str, convert_message: Callable[[str, Any], Command]) -> None:
+    def _listen(
+        self, message_type: Any, unit: str, name: str, convert_message: Callable[[str, Any], Command | None]
+    ) -> None:
         topic = f"/{unit}/{name}"
 
         def received(message: Any) -> None:
@@ -68,9 +76,11 @@ class PlcBridgeNode(UnitNode):
                 return
             self._sequence[topic] = message.sequence
             command = convert_message(unit, message)
+            if command is None:
+                return
             if self._last.get(topic) != command.arguments_json:
                 self._last[topic] = command.arguments_json
-                self._input(command)
+                self.input(command)
 
         self.create_subscription(message_type, topic, received, PLC_INPUT)
 
@@ -81,6 +91,23 @@ class PlcBridgeNode(UnitNode):
     @staticmethod
     def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
         return Command(unit, command, {"on": message.on if message.valid else idle})
+
+    def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
+        """Not valid, or no number: the factor stays as it is."""
+        topic = f"/{unit}/coupling_factor"
+        if not message.valid:
+            self._factors.pop(topic, None)
+            return None
+        self._factors[topic] = time.monotonic()
+        return Command(unit, "set_cyclic_factor", {"factor": message.factor})
+
+    def _watch_factors(self) -> None:
+        """A factor whose topic falls silent freezes: the last one holds, and people are told."""
+        for topic, heard in list(self._factors.items()):
+            if time.monotonic() - heard > self._life_sign_timeout:
+                del self._factors[topic]
+                silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
+                self._warn(FACTOR_STALE, f"plc: no message on {topic} for {silence}; the factor stays as it is")
 
     def _on_external_setpoint(self, axis: str, message: msg.ExternalSetpoint) -> None:
         """With a cycle it counts for that one, without (0) for the next block; `valid` = false ends the motion."""
@@ -95,7 +122,7 @@ class PlcBridgeNode(UnitNode):
         else:
             self.unit.input_setpoint(axis, values)
 
-    def _input(self, command: Command) -> None:
+    def input(self, command: Command) -> None:
         if isinstance(self.unit, PlcUnit):
             self.unit.input(command)
 
@@ -118,11 +145,15 @@ class PlcBridgeNode(UnitNode):
         for channel in self._channels:
             hold = Command(channel, "feed_hold", {"on": True})
             self._last[f"/{channel}/feed_hold"] = hold.arguments_json  # so that the PLC's next `off` counts as a change
-            self._input(hold)
+            self.input(hold)
         silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
-        text = f"plc: no life sign of the external PLC for {silence}; feed hold is set on all channels"
+        self._warn(
+            LIFE_SIGN_LOST, f"plc: no life sign of the external PLC for {silence}; feed hold is set on all channels"
+        )
+
+    def _warn(self, error_id: int, text: str) -> None:
         cycle = self._gate.next_cycle
-        event = Event(cycle, PLC, Severity.WARNING, LIFE_SIGN_LOST, text)
+        event = Event(cycle, PLC, Severity.WARNING, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, self.stamp(cycle)))
 
 

@@ -11,6 +11,11 @@ from cnc_ptp import msg, srv
 BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 """Numbered blocks: nothing is lost while a reader stalls for up to 1000 blocks (10 s at 100 blocks a second)."""
 
+REMEMBERED_BLOCKS = QoSProfile(
+    depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
+)
+"""Blocks of axes: an axis that is coupled to another one finds the blocks of the tick in which that was commanded."""
+
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
 )
@@ -57,6 +62,9 @@ SERVICES: dict[str, dict[str, Any]] = {
         "compensation_stop": srv.Execute,
         "external_enable": srv.EnableExternalSetpoints,
         "external_disable": srv.Execute,
+        "set_coupling_factor": srv.SetCouplingFactor,
+        "set_cyclic_factor": srv.SetCouplingFactor,
+        "decouple": srv.Decouple,
     },
     "spindle": {
         "start": srv.StartSpindle,
@@ -82,6 +90,16 @@ SERVICES: dict[str, dict[str, Any]] = {
     },
 }
 """Service of a unit -> type; the service's name and fields are those of the command."""
+
+COUPLING_SERVICES: dict[str, Any] = {
+    "couple": srv.Couple,
+    "couple_gantry": srv.CoupleGantry,
+    "couple_cyclic": srv.CoupleCyclic,
+    "couple_flying_saw": srv.CoupleFlyingSaw,
+    "couple_cam": srv.CoupleCam,
+    "change_cam": srv.ChangeCam,
+}
+"""Services of the axes that the plc_bridge answers: it sees all axes, and reads the tables."""
 
 
 def block_topic(unit: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Iterator
@@ -17,7 +16,7 @@ from rclpy.node import Node
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
-from cnc_ptp.machine.commands import COMMANDS, Argument
+from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.unit import Unit
@@ -25,6 +24,7 @@ from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.parameters import declare_parameters
+from cnc_ptp.nodes.requests import given_arguments
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
     BLOCKS,
@@ -34,6 +34,7 @@ from cnc_ptp.nodes.topics import (
     EVENTS,
     HEARTBEAT,
     PLC_INPUT,
+    REMEMBERED_BLOCKS,
     REPORT,
     SERVICES,
     TICK,
@@ -55,7 +56,8 @@ DIAGNOSTICS_PERIOD = 1.0
 class UnitNode(Node):
     """Runs one unit of the machine as a ROS node of the unit's name.
 
-    Subscriptions: /clock/tick (CycleTick), /<unit>/block of every upstream and feedback unit, /heartbeat (BlockReport).
+    Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
+    and of the master of a coupled axis.
     Publishers: /<name>/block, /events, /commands, /clock/report, /heartbeat, /diagnostics (1 Hz).
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
@@ -77,6 +79,7 @@ class UnitNode(Node):
         self._scheduled_ns: dict[int, int] = {}
         self._blocks_done = 0
         self._blocks_lost = 0
+        self._masters: dict[str, Any] = {}
         self._running = False
         self._alone = False
         self._busy = False
@@ -102,7 +105,8 @@ class UnitNode(Node):
 
     def _make_publishers(self) -> None:
         name = self.unit.name
-        self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), BLOCKS)
+        quality = REMEMBERED_BLOCKS if self.unit.kind == "axis" else BLOCKS
+        self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), quality)
         self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
         self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
@@ -171,13 +175,11 @@ class UnitNode(Node):
         record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
+        self._compute_ready_blocks()  # an axis that is decoupled now does not wait for its master any more
         return response
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
-        """The fields of a service request without those that are left out: NaN, and 0 where only more makes sense."""
-        known = COMMANDS[self.unit.kind][command]
-        given = {name: getattr(request, name) for name in known if hasattr(request, name)}
-        return {name: value for name, value in given.items() if not is_left_out(known[name], value)}
+        return given_arguments(COMMANDS[self.unit.kind][command], request)
 
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
@@ -203,12 +205,38 @@ class UnitNode(Node):
     def _compute_ready_blocks(self) -> None:
         for source in self._gate.skipped():
             self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
-        while (work := self._gate.take()) is not None:
-            self._compute(*work)
+        while True:
+            if not self._gate.opened:
+                begun = self._gate.begin()
+                if begun is None:
+                    return
+                with self._working():
+                    self._runner.apply(*begun)
+            self._follow_master()
+            ready = self._gate.complete()
+            if ready is None:
+                return
+            self._compute(*ready)
+
+    def _follow_master(self) -> None:
+        """Needs the blocks of the axis that this one is coupled to now; the first ones come from the topic's memory."""
+        master = self._runner.master
+        self._gate.follow(master)
+        if master is not None and master not in self._masters:
+            self._heard[master] = time.monotonic()
+            received = partial(self._on_master_block, master)
+            self._masters[master] = self.create_subscription(
+                msg.AxisBlock, block_topic(master), received, REMEMBERED_BLOCKS
+            )
+
+    def _on_master_block(self, master: str, message: msg.AxisBlock) -> None:
+        self._heard[master] = time.monotonic()
+        self._gate.add_master_block(master, convert.message_to_block(message))
+        self._compute_ready_blocks()
 
     def _compute(self, tick: CycleTick, inputs: dict[str, Block]) -> None:
         with self._working():
-            block = self._runner.run(tick, inputs)
+            block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publish_block(block)
         self._blocks_done += 1
@@ -342,10 +370,3 @@ class UnitNode(Node):
         message = DiagnosticArray(status=[status])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
-
-
-def is_left_out(argument: Argument, value: Any) -> bool:
-    """True for the values that say in a message that an optional argument is not given."""
-    if argument.required or not isinstance(value, float):
-        return False
-    return math.isnan(value) or (argument.positive and value == 0.0)

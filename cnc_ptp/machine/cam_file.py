@@ -1,0 +1,30 @@
+"""Files of cam tables: CSV with the columns master, slave."""
+
+from __future__ import annotations
+
+from cnc_ptp.axis.cam import CamTable
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.csv_table import table_lines
+
+BAD_CAM_FILE = 25103
+COLUMNS = ("master", "slave")
+
+
+def parse_cam(text: str, file: str) -> list[list[float]]:
+    """The points of a file, mm (deg). Raises CncError 25103 with file, line and value."""
+
+    def fault(line: int, reason: str) -> CncError:
+        return CncError(BAD_CAM_FILE, f"cam file {file}:{line}: {reason}; nothing was started")
+
+    points: list[list[float]] = []
+    number = 1
+    for number, values in table_lines(text, COLUMNS, fault):
+        try:
+            points.append([float(value) for value in values])
+        except ValueError as error:
+            raise fault(number, f"{error}") from None
+    try:
+        CamTable(points, cyclic=False)
+    except CncError as error:
+        raise fault(number, error.message) from None
+    return points

@@ -1,0 +1,37 @@
+"""Tables in CSV files: the columns are named in the first line, in any order; others are ignored."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterator, Sequence
+
+from cnc_ptp.errors import CncError
+
+BYTE_ORDER_MARK = "\ufeff"
+
+Fault = Callable[[int, str], CncError]
+"""Makes the error of a table from line and reason."""
+
+
+def table_lines(text: str, columns: Sequence[str], fault: Fault) -> Iterator[tuple[int, list[str]]]:
+    """Number and values of each line that is not empty, the values in the order of `columns`. Raises what `fault` makes."""
+    lines = csv.reader(text.removeprefix(BYTE_ORDER_MARK).splitlines(), skipinitialspace=True)
+    try:
+        places = _places(next(lines, []), columns, fault)
+        for line in lines:
+            if any(map(str.strip, line)):
+                if len(line) <= max(places):
+                    raise fault(lines.line_num, f"{len(line)} values instead of {max(places) + 1}")
+                yield lines.line_num, [line[place] for place in places]
+    except csv.Error as error:
+        raise fault(lines.line_num, f"{error}") from None
+
+
+def _places(header: Sequence[str], columns: Sequence[str], fault: Fault) -> list[int]:
+    """Where in a line the columns stand."""
+    names = [name.strip() for name in header]
+    for column in columns:
+        if names.count(column) != 1:
+            what = "stands twice" if column in names else "is missing"
+            raise fault(1, f"column '{column}' {what}; the first line must name {', '.join(columns)}")
+    return [names.index(column) for column in columns]
