@@ -14,7 +14,7 @@ Fault = Callable[[int, str], CncError]
 
 
 def table_lines(text: str, columns: Sequence[str], fault: Fault) -> Iterator[tuple[int, list[str]]]:
-    """Number and values of each line that is not empty, the values in the order of `columns`. Raises what `fault` makes."""
+    """Number and values of each line that is not empty, the values as `columns` stand. Raises what `fault` makes."""
     lines = csv.reader(text.removeprefix(BYTE_ORDER_MARK).splitlines(), skipinitialspace=True)
     try:
         places = _places(next(lines, []), columns, fault)
