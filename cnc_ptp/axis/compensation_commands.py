@@ -48,6 +48,7 @@ class CompensationCommands:
         cannot be reached, what can be reached of it is compensated, and the answer says so.
         """
         axis = self._axis
+        axis.setpoint(cycle)  # a compensation may end in this cycle
         self._check_state(cycle)
         rise = axis.parameters.acceleration if acceleration is None else acceleration
         fall = axis.parameters.deceleration if deceleration is None else deceleration

@@ -17,6 +17,7 @@ from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, Command, CycleTick, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.plc_unit import error_of
 from cnc_ptp.machine.wiring import PLC, build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
@@ -44,7 +45,8 @@ class Result:
                 self.program_cycles += block.count if block.path_active else 0
             elif isinstance(block, PlcBlock):
                 self.cycles = block.first_cycle + block.count
-                self.failed = block.run_failed
+                # The PLC knows of a fault a block later, which may not come any more.
+                self.failed = block.run_failed or any(error_of(other.block) for other in outputs.values())
             self.errors += [
                 f"P-ERR-{event.error_id} {event.text}" for event in output.events if event.severity == Severity.ERROR
             ]

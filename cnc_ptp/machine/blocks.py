@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field
 from enum import IntEnum
+from math import isfinite
 from typing import Any, NamedTuple
 
 from cnc_ptp.axis.states import AxisStateCode as AxisStateCode
@@ -58,7 +59,17 @@ class Command:
 
     @property
     def arguments_json(self) -> str:
-        return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr)
+        """The arguments as JSON; what JSON does not know (nan, inf) as text, which every unit refuses as well."""
+        try:
+            return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
+        except ValueError:
+            shown = {
+                name: value
+                if isinstance(value, str | int) or (isinstance(value, float) and isfinite(value))
+                else repr(value)
+                for name, value in self.arguments.items()
+            }
+            return json.dumps(shown, sort_keys=True, ensure_ascii=False)
 
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:

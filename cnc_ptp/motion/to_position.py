@@ -9,7 +9,8 @@ of the coming deceleration peak) and g = `brake_term`:
     D·J² = const + q²/(2A) + qA/2 + g(q)            constant A   (a quadratic for √q(√q + A), or for q)
     D    = const + V·τ                              cruise
 
-and D is constant while Γ brakes or lowers its acceleration, because the stop ramp does the same.
+and D is constant while Γ brakes or lowers its acceleration, because the stop ramp does the same. All of it is closed
+form; the two of degree four (`quartic.py`) are followed by one Newton step against rounding.
 """
 
 from __future__ import annotations

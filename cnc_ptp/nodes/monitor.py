@@ -43,7 +43,9 @@ class RunMonitor(Node):
         self.errors: list[str] = []
         self.refusals: list[str] = []
         self.run_done = False
-        self.run_failed = False
+        self._plc_block = 0
+        self._plc_knows_failure = False
+        self._last_fault = -1
         self.diagnostics: dict[str, dict[str, str]] = {}
         self.standing: dict[str, bool] = {}
         self._needed = []
@@ -55,6 +57,11 @@ class RunMonitor(Node):
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
+
+    @property
+    def run_failed(self) -> bool:
+        """The PLC knows of a fault a block later, which may not come any more."""
+        return self._plc_knows_failure or self._last_fault >= self._plc_block
 
     def _need(self, block_type: Any, topic: str, received: Any) -> None:
         self._needed.append(self.create_subscription(block_type, topic, received, BLOCKS))
@@ -97,12 +104,14 @@ class RunMonitor(Node):
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)
-        self.run_done, self.run_failed = message.run_done, message.run_failed
+        self.run_done, self._plc_knows_failure = message.run_done, message.run_failed
+        self._plc_block = message.first_cycle
 
     def _on_event(self, message: msg.Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
             where = f" (cycle {message.cycle}, line {message.line})" if message.line else f" (cycle {message.cycle})"
             self.errors.append(f"P-ERR-{message.error_id} {message.text}{where}")
+            self._last_fault = max(self._last_fault, message.cycle)
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         if not message.accepted:

@@ -205,6 +205,16 @@ def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):
     assert "error: P-ERR-23010 axis x: the enable was removed during path motion" in result.output
 
 
+def test_a_duration_that_ends_in_the_block_of_a_fault_is_status_1(program, tmp_path):
+    """The PLC would know of it in the next block; a fault that comes after the end is none."""
+    path = tmp_path / "s.yaml"
+    path.write_text("- {at: 0.1, to: x, do: power, on: off}\n")
+    for duration, status in (("0.1", 0), ("0.11", 1), ("0.12", 1)):
+        result = call("simulate", MILL, "--program", program, "--scenario", path, "--duration", duration)
+        assert result.exit_code == status, duration
+        assert ("error: P-ERR-23010" in result.output) == bool(status)
+
+
 def test_duration_ends_the_run(program, tmp_path):
     result = call("simulate", MILL, "--program", program, "--duration", "0.255", "--record", tmp_path / "a.mcap")
     assert result.exit_code == 0

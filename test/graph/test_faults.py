@@ -10,6 +10,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import PlcBlock, Severity
 from cnc_ptp.nodes import convert, process, supervisor
 from cnc_ptp.nodes.clock import ClockNode
+from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.supervisor import Job, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
@@ -99,6 +100,25 @@ def test_blocks_that_are_not_recorded_are_told(around, tmp_path):
             "recorder: blocks of 'plc' from cycle 10 to 29 are missing in the recording",
         )
     ]
+
+
+def test_a_fault_in_the_last_block_fails_the_run(around):
+    """The PLC would know of it in the block after."""
+    outside, monitor, spin_until = around(lambda: RunMonitor(read_machine(str(PTP))))
+    errors = outside.create_publisher(msg.Event, EVENT, EVENTS)
+    spin_until(lambda: errors.get_subscription_count() and outside.plc.get_subscription_count())
+
+    def fault(cycle, number):
+        errors.publish(msg.Event(cycle=cycle, source="x", severity=Severity.ERROR, error_id=1, text="fault"))
+        spin_until(lambda: len(monitor.errors) == number)
+
+    fault(3, 1)
+    assert monitor.run_failed
+    outside.plc_block(10)
+    spin_until(lambda: monitor.progress.cycle == 20)
+    assert not monitor.run_failed, "it was reset before"
+    fault(10, 2)
+    assert monitor.run_failed
 
 
 def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):

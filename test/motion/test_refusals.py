@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -85,3 +86,25 @@ def test_the_largest_and_smallest_values_still_give_finite_tables(limits):
         plan_to_velocity(0.0, -1e12, 1e12, 1e12, limits),
     ):
         assert all(math.isfinite(value) for row in profile.rows for value in row)
+
+
+def test_extreme_values_in_any_mixture_give_finite_tables_that_end_exactly():
+    draw = random.Random(60)
+
+    def limit() -> float:
+        return draw.choice((1e-9, 1e12, 10 ** draw.uniform(-9, 12)))
+
+    def value() -> float:
+        return draw.choice((0.0, 1.0, -1.0)) * draw.choice(
+            (1e12, 10 ** draw.uniform(-300, -20), 10 ** draw.uniform(-40, 12))
+        )
+
+    for _ in range(5000):
+        limits = Limits(limit(), limit(), limit(), limit())
+        state = [value() for _ in range(3)]
+        target = value()
+        for direct in (False, True):
+            profile = plan_to_position(*state, target, limits, direct=direct)
+            assert profile.end == (target, 0.0, 0.0)
+            assert all(math.isfinite(number) for row in profile.rows for number in row), (state, target, limits)
+            assert list(profile.starts) == sorted(profile.starts)
