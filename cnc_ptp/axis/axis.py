@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from cnc_ptp.axis.checks import MotionChecks
@@ -23,6 +23,8 @@ from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import StatusBit
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.parameters import AxisParameters
+
+CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
 Report = Callable[[int, int, str], None]
 """Takes an event: cycle, number, text."""
@@ -213,27 +215,52 @@ class Axis:
         self.state = state
 
     def status_bits(self, cycle: int, setpoint: State, actual_position: float) -> int:
-        position, velocity, acceleration, _ = setpoint
-        bits = 0
-        if self.has_job:
-            bits |= StatusBit.HAS_JOB
+        return self.common_bits(cycle) | self.motion_bits(setpoint, actual_position)
+
+    def common_bits(self, cycle: int) -> int:
+        """The bits that do not depend on the setpoint of the cycle."""
+        bits = StatusBit.HAS_JOB if self.has_job else 0
         if self.coupling is not None:
             bits |= StatusBit.PROTECTED
         if self.has_been_stopped:
             bits |= StatusBit.HAS_BEEN_STOPPED
-        if velocity != 0.0 and acceleration == 0.0:
-            bits |= StatusBit.CONSTANT_VELOCITY
         if self.superposed:
             bits |= StatusBit.COMPENSATING if self.compensation.active else 0
             bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0
         if self.error_id:
             bits |= StatusBit.ERROR
             bits |= StatusBit.ERROR_DELAYED if cycle < self._propagated_at else 0
-        if velocity == 0.0 and self.ptp.job is None and self.target_window.reached(position, actual_position):
-            bits |= StatusBit.IN_TARGET_POSITION
-        return bits
+        return int(bits)
+
+    def motion_bits(self, setpoint: State, actual_position: float) -> int:
+        position, velocity, acceleration, _ = setpoint
+        if velocity != 0.0:
+            return CONSTANT_VELOCITY if acceleration == 0.0 else 0
+        if self.ptp.job is None and self.target_window.reached(position, actual_position):
+            return IN_TARGET_POSITION
+        return 0
 
     # monitoring
+
+    def undisturbed(self, first_cycle: int, setpoints: Sequence[State]) -> bool:
+        """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
+
+        The state of the first cycle has been advanced already.
+        """
+        if self.superposed or self.error_id:
+            return False
+        last_cycle = first_cycle + len(setpoints) - 1
+        if self.state in (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION) and self.ptp.arrived(last_cycle):
+            return False
+        if self.coupling is not None or self.state == S.CONTINUOUS_MOTION:
+            positions = [setpoint[0] for setpoint in setpoints]
+            low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
+            if min(positions) < low or max(positions) > high:
+                return False
+        if self.ptp.job is not None or all(setpoint[1] for setpoint in setpoints):
+            self.target_window.moves()
+            return True
+        return not self.target_window.watching
 
     def watch(self, cycle: int, setpoint: State) -> None:
         """What nothing has checked beforehand: soft limits, external setpoints that jump or stay away."""

@@ -17,6 +17,11 @@ class TargetWindow:
         self.target: float | None = None
         """Where the motion was to end; None: wherever the setpoint comes to rest."""
 
+    @property
+    def watching(self) -> bool:
+        """True from the begin of a motion until the axis is in its window, or is found not to be."""
+        return self._watching
+
     def watch(self, target: float | None = None) -> None:
         """A motion begins."""
         self._has_target = self._watching = True

@@ -143,6 +143,10 @@ class MasterSource:
             self._first_cycle = first_cycle
             self._gantry = list(block.actual_position)
 
+    @property
+    def watches_gantry(self) -> bool:
+        return self._gantry is not None
+
     def watch_gantry(self, cycle: int, setpoint: State, actual_position: float) -> None:
         """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
         if self._gantry is None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from math import inf
+from typing import Any, ClassVar, cast
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.compensation_commands import CompensationCommands
@@ -26,7 +27,10 @@ MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
 """States that can end by themselves."""
 
 Row = tuple[float | int, ...]
-"""One cycle: the fields of AxisBlock after `count`."""
+"""One cycle: the fields of AxisBlock with a value per cycle."""
+FIELDS = 16
+Columns = list[Any]
+"""The same of many cycles, field by field."""
 
 
 class AxisUnit(Unit):
@@ -112,33 +116,77 @@ class AxisUnit(Unit):
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
-        """Computes one block; follows the path of the channel among `inputs` that has the axis."""
+        """Computes one block; follows its master, or the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
         axis = self._axis
+        columns: Columns = [[] for _ in range(FIELDS)]
         axis.advance(first_cycle)
-        if axis.coupled:
-            rows = self._follow(first_cycle, self._master.setpoints(first_cycle, inputs))
-        else:
-            rows = self._follow(first_cycle, self._path.setpoints(first_cycle, inputs))
-        while len(rows) < count:
-            cycle = first_cycle + len(rows)
+        source = self._master if axis.coupled else self._path
+        self._follow(first_cycle, source.setpoints(first_cycle, inputs), columns)
+        while len(columns[0]) < count:
+            cycle = first_cycle + len(columns[0])
             axis.advance(cycle)
-            rows += self._follow(cycle, axis.basic_motion(cycle, count - len(rows)))
-        columns: Iterable[Any] = map(list, zip(*rows, strict=True))
-        block = AxisBlock(first_cycle, count, *columns)
+            self._follow(cycle, axis.basic_motion(cycle, count - len(columns[0])), columns)
+        block = AxisBlock(first_cycle, count, *cast(Any, columns))
         block.master = axis.coupling.master if axis.coupling is not None else ""
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
         return block
 
-    def _follow(self, first_cycle: int, setpoints: list[State]) -> list[Row]:
-        """The cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
-        rows: list[Row] = []
-        error_id = self._axis.error_id
-        for cycle, setpoint in enumerate(setpoints, first_cycle):
-            rows.append(self._cycle(cycle, setpoint))
-            if self._axis.error_id != error_id:
+    def _follow(self, first_cycle: int, setpoints: list[State], columns: Columns) -> None:
+        """Appends the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
+        axis = self._axis
+        done = 0
+        if setpoints and not self._master.watches_gantry:
+            if axis.state in MOVING_ALONE:
+                axis.advance_state(first_cycle)
+            if axis.undisturbed(first_cycle, setpoints):
+                done = self._undisturbed_cycles(setpoints, columns)
+        error_id = axis.error_id
+        for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
+            for column, value in zip(columns, self._cycle(cycle, setpoint), strict=True):
+                column.append(value)
+            if axis.error_id != error_id:
                 break
-        return rows
+
+    def _undisturbed_cycles(self, setpoints: list[State], columns: Columns) -> int:
+        """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
+
+        Returns their number.
+        """
+        axis, drive, controller = self._axis, self._drive, self._controller
+        limit = controller.following_error_limit if controller.monitoring else inf
+        closed = axis.powered
+        cycles = []
+        for position, _, _, _ in setpoints:
+            actual = drive.position
+            error = position - actual
+            if closed and not -limit <= error <= limit:
+                break
+            command = controller.command_velocity(error) if closed else 0.0
+            cycles.append((actual, drive.velocity, error, command))
+            drive.step(command)
+        n = len(cycles)
+        if n == 0:
+            return 0
+        setpoints = setpoints[:n]
+        nothing = [0.0] * n
+        common = axis.common_bits(0)
+        bits = [common | axis.motion_bits(s, c[0]) for s, c in zip(setpoints, cycles, strict=True)]
+        values: Columns = [
+            *zip(*setpoints, strict=True),
+            *zip(*cycles, strict=True),
+            nothing,
+            nothing,
+            nothing,
+            nothing,
+            [axis.override_percent] * n,
+            [axis.state] * n,
+            bits,
+            [0] * n,
+        ]
+        for column, more in zip(columns, values, strict=True):
+            column += more
+        return n
 
     def _cycle(self, cycle: int, base: State) -> Row:
         axis, drive = self._axis, self._drive

@@ -84,19 +84,20 @@ class OfflineMachine:
                 self._blocks[name] = runner.compute(tick, inputs)
             else:
                 waiting[name] = inputs
-        self._compute_slaves(tick, waiting)
+        for name in waiting:
+            self._compute_slave(tick, name, waiting)
         self._first_cycle += self._count
         return {name: Output(runner.unit, self._blocks[name]) for name, runner in self._runners.items()}
 
-    def _compute_slaves(self, tick: CycleTick, waiting: dict[str, Mapping[str, Block]]) -> None:
-        while waiting:
-            ready = [name for name in waiting if self._runners[name].master in self._blocks]
-            for name in ready:
-                master = self._runners[name].master
-                inputs = waiting.pop(name)
-                if master is not None:
-                    inputs = {**inputs, master: self._blocks[master]}
-                self._blocks[name] = self._runners[name].compute(tick, inputs)
+    def _compute_slave(self, tick: CycleTick, name: str, waiting: Mapping[str, Mapping[str, Block]]) -> None:
+        """After its master. Couplings never run in a circle: the PLC says to each what is above its master."""
+        master = self._runners[name].master
+        if name in self._blocks or master is None:
+            return
+        if master not in self._blocks:
+            self._compute_slave(tick, master, waiting)
+        inputs = {**waiting[name], master: self._blocks[master]}
+        self._blocks[name] = self._runners[name].compute(tick, inputs)
 
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Ticks until the PLC ends the run, or for `cycles` cycles (rounded up to whole blocks).
