@@ -79,7 +79,7 @@ def generator(
     way: float, *, first_cycle: int, velocity: float = 1000.0, a: float = 4000.0, every: int = 1, start: float = 0.0
 ) -> list[Row]:
     """The manual's example: three phases with rectangular acceleration, direction set one cycle longer on each side."""
-    sign, ramp = np.sign(way), velocity / a
+    sign, ramp = float(np.sign(way)), velocity / a
     seconds = abs(way) / velocity + ramp
     rows = [[first_cycle, start, 0.0, 0.0, sign]]
     for k in range(round(seconds / CYCLE_TIME) + 1):
