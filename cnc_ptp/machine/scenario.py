@@ -91,7 +91,7 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     if do in INTERNAL:
         raise CncError(BAD_SCENARIO, f"'{do}' is given by watchdogs only")
     _read_switches(kinds[to], do, arguments)
-    if do == SETPOINTS:
+    if do == SETPOINTS and kinds[to] == "axis":
         _read_setpoints(to, arguments, read)
     check_command(kinds[to], to, do, arguments)
     if do == "load" and "text" not in arguments and read:
