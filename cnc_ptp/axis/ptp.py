@@ -106,7 +106,10 @@ class PtpGenerator:
 
     def braking(self, cycle: int) -> bool:
         """True in the brake phase: the last ramp down of a job, or that of a stop."""
-        return self.job is None or self._in_brake_phase(cycle, self.job)
+        if self.job is None:
+            return True
+        _, velocity, acceleration, _ = self.state(cycle)
+        return velocity * acceleration <= 0.0 and self._in_brake_phase(cycle, self.job)
 
     @property
     def target_velocity(self) -> float:
@@ -168,7 +171,7 @@ class PtpGenerator:
         ramp = self._ramp_limits or limits
         if at_least:
             ramp = Limits(*map(max, ramp, limits))
-        brakes = self.braking(cycle) and self._profile.end[1:] == (0.0, 0.0)
+        brakes = self._is_stop_ramp() if self.job is None else self._in_brake_phase(cycle, self.job)
         self._stopped_job, self.job = self.job or self._stopped_job, None
         self._suspended = self._activation = self._due = None
         self._stop_locks = locks
@@ -244,8 +247,15 @@ class PtpGenerator:
         """The table in work leads to the target; the one of override 0 does not."""
         return bool(self._profile.end[0] == job.target)
 
+    def _is_stop_ramp(self) -> bool:
+        """For a table without a job: it comes to rest; what was taken over in motion does not."""
+        return self._profile.end[1:] == (0.0, 0.0)
+
     def _in_brake_phase(self, cycle: int, job: Job) -> bool:
-        """True when the table leads to the target and nothing but its last ramp down is left."""
+        """True when the table leads to the target and a stop would do the same: nothing can be changed any more.
+
+        Without a stretch at constant velocity that is so before the velocity falls, as soon as the acceleration does.
+        """
         if not self._ends_at(job):
             return False
         position, velocity, acceleration, _ = self.state(cycle)

@@ -93,7 +93,7 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     if do in INTERNAL:
         raise CncError(BAD_SCENARIO, f"'{do}' is given by watchdogs only")
     _read_switches(kinds[to], do, arguments)
-    if do == SETPOINTS:
+    if do == SETPOINTS and kinds[to] == "axis":
         _read_setpoints(to, arguments, read)
     if do in CAMS and read and isinstance(arguments.get("file"), str) and "table" not in arguments:
         arguments["table"] = parse_cam(read("cam file", arguments["file"]), arguments["file"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 A, J = 5000.0, 50000.0
 """Acceleration and jerk of the axis of the bench."""
+Row = list[float]
+"""Cycle, position, velocity, acceleration, direction."""
 HAS_JOB, COMPENSATING, EXTERNAL, IN_TARGET = 1 << 8, 1 << 13, 1 << 14, 1 << 4
 
 
@@ -70,3 +73,50 @@ def assert_no_steps(bench: UnitBench, *, acceleration: float, jerk: float, corne
     assert np.count_nonzero(stepping) <= corners
     change = np.abs(np.diff(v) - 0.5 * t * (a[1:] + a[:-1]))[~stepping]
     assert np.count_nonzero(change > 0.25 * jerk * t * t + slack[~stepping]) <= corners
+
+
+def generator(
+    way: float, *, first_cycle: int, velocity: float = 1000.0, a: float = 4000.0, every: int = 1, start: float = 0.0
+) -> list[Row]:
+    """The manual's example: three phases with rectangular acceleration, direction set one cycle longer on each side."""
+    sign, ramp = float(np.sign(way)), velocity / a
+    seconds = abs(way) / velocity + ramp
+    rows = [[first_cycle, start, 0.0, 0.0, sign]]
+    for k in range(round(seconds / CYCLE_TIME) + 1):
+        t = k * CYCLE_TIME
+        left = seconds - t
+        if t < ramp - 1e-9:
+            p, v, acceleration = 0.5 * a * t * t, a * t, a
+        elif left > ramp + 1e-9:
+            p, v, acceleration = velocity * (t - 0.5 * ramp), velocity, 0.0
+        else:
+            p, v, acceleration = abs(way) - 0.5 * a * left * left, a * left, -a if left > 1e-9 else 0.0
+        rows.append([first_cycle + 1 + k, start + sign * p, sign * v, sign * acceleration, sign])
+    end = rows[-1][0]
+    rows += [[end + 1, start + way, 0.0, 0.0, sign], [end + 2, start + way, 0.0, 0.0, 0]]
+    return [row for row in rows if every == 1 or (row[0] - first_cycle) % every == 0 or row[4] == 0]
+
+
+def feed(bench: UnitBench, rows: Iterable[Row], cycles: int) -> None:
+    """Runs `cycles` with each block's rows given before it, as the PLC does."""
+    rows, end = list(rows), bench.cycle + cycles
+    while bench.cycle < end:
+        block_end = min(bench.cycle + bench.count, end)
+        part = [row for row in rows if bench.cycle <= row[0] < block_end]
+        if part:
+            bench.accepted("external_setpoints", setpoints=part)
+        bench.run(block_end - bench.cycle)
+
+
+def external_axis(mode: str = "absolute", *, cycles: int = 10, count: int = 10, **changes: Any) -> UnitBench:
+    bench = axis_bench(count=count, **changes)
+    bench.accepted("external_enable", mode=mode)
+    if cycles:
+        bench.run(cycles)
+    return bench
+
+
+def setpoints(bench: UnitBench, rows: list[Row]) -> list[tuple[float, ...]]:
+    """(position, velocity, acceleration) that the axis had in the cycles of `rows`."""
+    columns = [bench.column(f"set_{name}") for name in ("position", "velocity", "acceleration")]
+    return [tuple(values[int(row[0])] for values in columns) for row in rows]

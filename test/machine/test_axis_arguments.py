@@ -7,13 +7,14 @@ from typing import Any
 
 import pytest
 from axis_states_support import DYNAMICS
-from machine_support import axis_bench
+from machine_support import CYCLE_TIME, assert_axis_smooth, axis_bench
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 
 # ---------------------------------------------------------------- arguments
 
 
+TWO_STAGE = ("velocity", "target", "activation_position")
 BAD_NUMBERS: list[tuple[Any, str]] = [
     (math.nan, "22001 axis x: {command} refused: {name} = nan is not finite; nothing was changed"),
     (math.inf, "22001 axis x: {command} refused: {name} = inf is not finite; nothing was changed"),
@@ -27,7 +28,12 @@ BAD_NUMBERS: list[tuple[Any, str]] = [
 NUMBERS = [
     ("move_absolute", "target", {}),
     ("move_relative", "distance", {}),
+    ("move_modulo", "position", {}),
     ("set_override", "percent", {}),
+    ("emergency_stop", "deceleration", {"jerk": 1e6}),
+    ("emergency_stop", "jerk", {"deceleration": 1e4}),
+    ("new_target", "target", {}),
+    *[("new_velocity_and_target", name, {other: 1.0 for other in TWO_STAGE if other != name}) for name in TWO_STAGE],
     *[("move_absolute", name, {"target": 1.0}) for name in DYNAMICS],
 ]
 
@@ -48,6 +54,25 @@ def test_dynamics_must_be_above_0(name: str, value: float) -> None:
     assert axis_bench().refused("move_absolute", target=1.0, **{name: value}) == (
         f"P-ERR-23003 axis x: move_absolute refused: {text}; nothing was changed"
     )
+
+
+@pytest.mark.parametrize("command", ["move_absolute", "move_relative", "move_modulo"])
+@pytest.mark.parametrize("name", ["acceleration", "deceleration", "velocity", "jerk"])
+@pytest.mark.parametrize("value", [1e-9, 1e-6, 1e12, 1e300])
+def test_absurd_dynamics_end_in_a_refusal_or_in_a_motion_without_steps(command: str, name: str, value: float) -> None:
+    """Never in an exception of the unit, and never beyond the limits of the axis."""
+    bench = axis_bench(modulo=True, modulo_high=360.0)
+    first = {"move_absolute": "target", "move_relative": "distance", "move_modulo": "position"}[command]
+    bench.give(command, **{first: 90.0, **DYNAMICS, name: value})
+    bench.run(300)
+    bench.give("set_override", percent=0.0001)
+    bench.run(300)
+    bench.give("new_velocity_and_target", velocity=1e-9, target=90.5, activation_position=1.0)
+    bench.run(300)
+    bench.give("stop")
+    bench.give("new_target", target=-90.0)
+    bench.run(300)
+    assert_axis_smooth(bench, acceleration=DYNAMICS["acceleration"], jerk=DYNAMICS["acceleration"] / CYCLE_TIME)
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
@@ -75,6 +100,19 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
             "velocity, "
             "acceleration, deceleration, jerk",
         ),
+        ("move_modulo", {}, "22001 axis x: move_modulo refused: argument 'position' is missing; nothing was changed"),
+        ("new_target", {}, "22001 axis x: new_target refused: argument 'target' is missing; nothing was changed"),
+        (
+            "emergency_stop",
+            {"deceleration": 1e4},
+            "22001 axis x: emergency_stop refused: argument 'jerk' is missing; nothing was changed",
+        ),
+        (
+            "new_velocity_and_target",
+            {"velocity": 1.0, "target": 1.0},
+            "22001 axis x: new_velocity_and_target refused: argument 'activation_position' is missing; nothing was changed",
+        ),
+        ("halt", {"now": True}, "22001 axis x: halt refused: unknown argument 'now'; nothing was changed. Known: none"),
         ("stop", {"now": True}, "22001 axis x: stop refused: unknown argument 'now'; nothing was changed. Known: none"),
         ("power", {"on": 1}, "22001 axis x: power refused: on = 1 is not a switch; nothing was changed"),
         ("power", {"on": "on"}, "22001 axis x: power refused: on = 'on' is not a switch; nothing was changed"),

@@ -1,53 +1,24 @@
-"""PTP motion of an axis in every cycle: starts, overrides, stops against closed forms."""
+"""PTP motion of an axis in every cycle: starts, reduced velocity, modulo starts against closed forms."""
 
 from __future__ import annotations
 
-import pytest
-from machine_support import (
-    CYCLE_TIME,
-    UnitBench,
-    assert_axis_smooth,
-    axis_bench,
-    position_after,
-    seven_phases,
-)
+from dataclasses import replace
 
+import pytest
+from axis_motion_support import ramp_way, reachable, start, time_of_arrival
+from axis_states_support import DYNAMICS, A, J, V
+from machine_support import CYCLE_TIME, PTP, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
+
+from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import StatusBit
 
-DYNAMICS = {"velocity": 2000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50_000.0}
-V, A, J = 2000.0, 5000.0, 50_000.0
 JOB, STOPPED, CONSTANT, ERROR = (
     StatusBit.HAS_JOB,
     StatusBit.HAS_BEEN_STOPPED,
     StatusBit.CONSTANT_VELOCITY,
     StatusBit.ERROR,
 )
-
-
-def start(bench: UnitBench, target: float, **dynamics: float) -> None:
-    assert bench.accepted("move_absolute", target=target, **{**DYNAMICS, **dynamics}) == ""
-
-
-def duration(phases: list[tuple[float, float]]) -> float:
-    return sum(d for d, _ in phases)
-
-
-def ramp_time(change: float, a: float = A) -> float:
-    """Time of a velocity change that reaches a."""
-    assert change >= a * a / J
-    return change / a + a / J
-
-
-def ramp_way(v: float, to: float, a: float = A) -> float:
-    return 0.5 * (v + to) * ramp_time(abs(to - v), a)
-
-
-def time_of_arrival(bench: UnitBench) -> float:
-    """When DiscreteMotion has ended, s: the first cycle of Standstill after it."""
-    states = bench.column("state")
-    begin = states.index(S.DISCRETE_MOTION)
-    return states.index(S.STANDSTILL, begin) * CYCLE_TIME
 
 
 # ---------------------------------------------------------------- starts
@@ -81,7 +52,7 @@ def test_every_cycle_is_the_seven_phase_profile(target: float, dynamics: dict[st
         assert abs(columns["set_position"][begin + k] - (7.0 + sign * p)) <= 1e-8
         assert abs(columns["set_velocity"][begin + k] - sign * v) <= 1e-8
         assert abs(columns["set_acceleration"][begin + k] - sign * a) <= 1e-6
-    assert time_of_arrival(bench) == pytest.approx(begin * CYCLE_TIME + duration(phases), abs=1.1 * CYCLE_TIME)
+    assert time_of_arrival(bench) == pytest.approx(begin * CYCLE_TIME + sum(d for d, _ in phases), abs=1.1 * CYCLE_TIME)
     assert bench.column("set_position")[-1] == 7.0 + target
     assert bench.columns()["set_velocity"][-1] == 0.0
 
@@ -153,6 +124,111 @@ def test_the_block_size_changes_no_number(count: int) -> None:
     assert benches[0].columns() == benches[1].columns()
 
 
+# ---------------------------------------------------------------- reduced velocity
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize(("up", "down"), [(5000.0, 10_000.0), (10_000.0, 5000.0), (3000.0, 20_000.0)])
+@pytest.mark.parametrize("part", [0.999, 0.9, 0.5, 0.01])
+def test_a_velocity_out_of_reach_is_reduced_for_min_of_both_ramps(
+    kind: int, up: float, down: float, part: float
+) -> None:
+    """The ramps stay those of the user; what the symmetric reduction leaves of the way is driven at the velocity."""
+    distance = part * (ramp_way(0.0, V, up) + ramp_way(V, 0.0, down))
+    velocity = reachable(distance, min(up, down))
+    assert velocity < V
+    bench = axis_bench(count=100, override_type=kind)
+    start(bench, distance, acceleration=up, deceleration=down)
+    bench.run(2500)
+    phases = seven_phases(distance, velocity, up, down, J)
+    for k, position in enumerate(bench.column("set_position")):
+        assert abs(position - position_after(phases, k * CYCLE_TIME)[0]) <= 1e-7
+    assert bench.column("set_position")[-1] == distance
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+def test_a_velocity_that_the_users_own_ramps_reach_is_not_reduced(kind: int) -> None:
+    """950 mm: with A+ 5000 and A- 10000 both ramps take 900 mm; with 5000 twice they would take 1000."""
+    bench = axis_bench(count=100, override_type=kind)
+    start(bench, 950.0, deceleration=10_000.0)
+    bench.run(2000)
+    phases = seven_phases(950.0, V, A, 10_000.0, J)
+    for k, position in enumerate(bench.column("set_position")):
+        assert abs(position - position_after(phases, k * CYCLE_TIME)[0]) <= 1e-8
+
+
+# ---------------------------------------------------------------- modulo start
+
+
+def rotary_bench(start_position: float = 0.0, **changes: object) -> UnitBench:
+    """The c axis of config/ptp.yaml: 360 degrees, V 3600 °/s, A 5000 °/s², J 50000 °/s³."""
+    parameters = replace(PTP.axes["c"], start_position=start_position, **changes)  # type: ignore[arg-type]
+    return UnitBench(AxisUnit(parameters, cycle_time=CYCLE_TIME), count=100)
+
+
+@pytest.mark.parametrize(
+    ("begin", "position", "target"),
+    [(0.0, 540.0, 540.0), (100.0, 90.0, 450.0), (100.0, -90.0, 90.0), (50.0, 0.0, 360.0), (50.0, -1e-6, 1e-6)],
+)
+def test_modulo_starts_go_the_way_of_their_sign(begin: float, position: float, target: float) -> None:
+    bench = rotary_bench(begin)
+    assert bench.accepted("move_modulo", position=position, **DYNAMICS) == ""
+    bench.run(2000)
+    sign = 1.0 if target > begin else -1.0
+    distance = abs(target - begin)
+    phases = seven_phases(distance, min(V, reachable(distance)), A, A, J)
+    for k, place in enumerate(bench.column("set_position")):
+        assert abs(place - begin - sign * position_after(phases, k * CYCLE_TIME)[0]) <= 1e-8
+    assert bench.state == S.STANDSTILL and bench.column("set_position")[-1] == pytest.approx(target, abs=1e-12)
+
+
+def test_modulo_starts_in_a_row_stay_congruent() -> None:
+    bench = rotary_bench(12.3)
+    for position in (77.7, -77.7, 437.7, -1e-6, 0.0, -359.9, 359.9):
+        bench.accepted("move_modulo", position=position)
+        bench.run(1500)
+        off = (bench.column("set_position")[-1] - abs(position)) % 360.0
+        assert min(off, 360.0 - off) < 1e-9 and bench.state == S.STANDSTILL
+
+
+@pytest.mark.parametrize("position", [90.0, -90.0])
+def test_an_axis_at_its_modulo_position_does_not_move(position: float) -> None:
+    bench = rotary_bench(90.0 + 360.0)
+    assert bench.accepted("move_modulo", position=position) == (
+        "P-WARN-23007 axis c: move_modulo over 0 deg is below one encoder increment (0.0 deg); the axis does not move"
+    )
+    bench.run(100)
+    assert set(bench.column("set_position")) == {450.0}
+
+
+def test_an_axis_that_does_not_count_modulo_refuses_a_modulo_start() -> None:
+    bench = axis_bench()
+    assert bench.refused("move_modulo", position=90.0) == (
+        "P-ERR-23024 axis x: move_modulo refused: the axis does not count modulo (P-AXIS-00015); nothing was changed"
+    )
+    bench.run(10)
+    assert bench.state == S.STANDSTILL
+
+
+@pytest.mark.parametrize(
+    ("command", "argument", "target"),
+    [
+        ("move_modulo", {"position": 1e300}, "1e+300"),
+        ("move_modulo", {"position": -3.6e14}, "-360000000000000.0"),
+        ("move_absolute", {"target": 2e12}, "2000000000000.0"),
+        ("move_relative", {"distance": -1.7e308}, "-1.7e+308"),
+    ],
+)
+def test_targets_out_of_all_range(command: str, argument: dict[str, float], target: str) -> None:
+    """An axis that counts modulo has no soft limits; beyond ±1e12 degrees no table can be made."""
+    bench = rotary_bench()
+    assert bench.refused(command, **argument) == (
+        f"P-ERR-23002 axis c: {command} refused: target {target} deg is not within ±1e+12 deg; nothing was changed"
+    )
+    bench.run(10)
+    assert bench.state == S.STANDSTILL and set(bench.column("set_position")) == {0.0}
+
+
 # ---------------------------------------------------------------- drive and following error
 
 
@@ -202,278 +278,6 @@ def test_without_monitoring_the_following_error_may_be_large() -> None:
     start(bench, 5000.0)
     bench.run(2000)
     assert max(bench.column("following_error")) > 100.0 and bench.events == []
-
-
-# ---------------------------------------------------------------- override
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-def test_override_20_to_100_takes_the_closed_form_time(kind: int) -> None:
-    """TX1250 2.2: V 2000, 0 to 5000 mm, start with 20 %, 100 % in the cruise after 2 s."""
-    bench = axis_bench(override_type=kind)
-    bench.accepted("set_override", percent=20.0)
-    start(bench, 5000.0)
-    bench.run(2000)
-    velocity = bench.column("set_velocity")
-    assert velocity[1000] == pytest.approx(400.0) and max(velocity) <= 400.0 * (1 + 1e-12)
-    bench.accepted("set_override", percent=100.0)
-    bench.run(4000)
-    slow = 0.5 * 400.0 * 2.0 * (400.0 / J) ** 0.5  # A is not reached up to 400 mm/s
-    before = slow + 400.0 * (2.0 - 2.0 * (400.0 / J) ** 0.5)
-    rest = 5000.0 - before - ramp_way(400.0, V) - ramp_way(V, 0.0)
-    expected = 2.0 + ramp_time(1600.0) + rest / V + ramp_time(V)
-    assert time_of_arrival(bench) == pytest.approx(expected, abs=1.1 * CYCLE_TIME)
-    assert max(bench.column("set_velocity")) == pytest.approx(V)
-    assert bench.column("set_position")[-1] == 5000.0
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("target", [5000.0, -5000.0])
-def test_override_100_75_100_takes_the_closed_form_time(kind: int, target: float) -> None:
-    bench = axis_bench(override_type=kind)
-    start(bench, target)
-    bench.run(1000)
-    bench.accepted("set_override", percent=75.0)
-    bench.run(700)
-    assert abs(bench.column("set_velocity")[-1]) == pytest.approx(1500.0)
-    bench.accepted("set_override", percent=100.0)
-    bench.run(3000)
-    before = ramp_way(0.0, V) + V * 0.5 + ramp_way(V, 1500.0) + 1500.0 * (0.7 - ramp_time(500.0))
-    rest = 5000.0 - before - ramp_way(1500.0, V) - ramp_way(V, 0.0)
-    assert rest > 0.0
-    expected = 1.7 + ramp_time(500.0) + rest / V + ramp_time(V)
-    assert time_of_arrival(bench) == pytest.approx(expected, abs=1.1 * CYCLE_TIME)
-    assert bench.column("set_position")[-1] == target
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-def test_override_0_at_the_start_keeps_the_job_and_waits(kind: int) -> None:
-    bench = axis_bench(override_type=kind)
-    bench.accepted("set_override", percent=0.0)
-    start(bench, 1000.0)
-    bench.run(500)
-    assert set(bench.column("set_position")) == {0.0} and set(bench.column("state")) == {S.DISCRETE_MOTION}
-    assert all(bits & JOB for bits in bench.column("status_bits"))
-    bench.accepted("set_override", percent=100.0)
-    bench.run(1500)
-    phases = seven_phases(1000.0, V, A, A, J)
-    position = bench.column("set_position")
-    for k in range(1500):
-        assert abs(position[500 + k] - position_after(phases, k * CYCLE_TIME)[0]) <= 1e-8
-    assert time_of_arrival(bench) == pytest.approx(1.5, abs=2 * CYCLE_TIME)
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("cycle", [30, 250, 470, 700, 1100])
-def test_override_0_in_motion_holds_and_100_goes_on(kind: int, cycle: int) -> None:
-    bench = axis_bench(override_type=kind)
-    start(bench, 3000.0)
-    bench.run(cycle)
-    bench.accepted("set_override", percent=0.0)
-    bench.run(1000)
-    assert bench.column("set_velocity")[-1] == 0.0 and bench.column("set_position")[-1] < 3000.0
-    assert bench.column("status_bits")[-1] & JOB and bench.state == S.DISCRETE_MOTION
-    bench.accepted("set_override", percent=100.0)
-    bench.run(4000)
-    assert bench.state == S.STANDSTILL and bench.column("set_position")[-1] == 3000.0
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-def test_a_hold_that_is_taken_back_during_its_ramp_still_ends_at_the_target(kind: int) -> None:
-    """Also where the level is out of reach from there: a hold is no table that could be kept."""
-    bench = axis_bench(override_type=kind)
-    start(bench, 800.0)  # V is not reached
-    bench.run(350)
-    bench.accepted("set_override", percent=0.0)
-    bench.run(50)
-    bench.accepted("set_override", percent=100.0)
-    bench.run(3000)
-    assert bench.state == S.STANDSTILL and bench.column("set_position")[-1] == 800.0
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-@pytest.mark.parametrize("kind", [1, 2, 3, 4])
-@pytest.mark.parametrize("percent", [0.0, 10.0, 99.0])
-def test_override_in_the_brake_phase_counts_for_the_next_start_only(kind: int, percent: float) -> None:
-    bench, undisturbed = axis_bench(override_type=kind), axis_bench(override_type=kind)
-    for each in (bench, undisturbed):
-        start(each, 1000.0)
-        each.run(700)
-    warning = bench.accepted("set_override", percent=percent)
-    assert warning == (
-        f"axis x: override {percent} % does not change the motion in work (brake phase or level out of reach)"
-    )
-    bench.run(100)
-    bench.accepted("set_override", percent=50.0)
-    bench.run(700)
-    undisturbed.run(800)
-    assert bench.column("set_position") == undisturbed.column("set_position")
-    assert bench.state == S.STANDSTILL
-
-
-@pytest.mark.parametrize(("kind", "level"), [(1, 0.5 * 1765.56), (2, 1000.0), (3, 0.5 * 1765.56), (4, 1000.0)])
-def test_override_refers_to_the_reduced_or_to_the_users_velocity(kind: int, level: float) -> None:
-    """800 mm reach 1765.56 mm/s: v²/A + v·A/J = 800; types 1 and 3 halve this, 2 and 4 the 2000 of the user."""
-    reduced = A * (-A / J + ((A / J) ** 2 + 4.0 * 800.0 / A) ** 0.5) / 2.0
-    assert reduced == pytest.approx(1765.56, abs=0.01)
-    bench = axis_bench(override_type=kind)
-    bench.accepted("set_override", percent=50.0)
-    start(bench, 800.0)
-    bench.run(3000)
-    assert max(bench.column("set_velocity")) == pytest.approx(level, rel=1e-5)
-    assert bench.column("set_position")[-1] == 800.0
-
-
-def test_original_override_has_no_effect_while_the_velocity_is_out_of_reach() -> None:
-    """Asked 2000 mm/s, reachable 1765: type 2 acts below 88 % only, from a start and from a change."""
-    full, ninety = axis_bench(override_type=2), axis_bench(override_type=2)
-    ninety.accepted("set_override", percent=90.0)
-    for bench in (full, ninety):
-        start(bench, 800.0)
-        bench.run(2000)
-    assert full.column("set_position") == ninety.column("set_position")
-
-
-@pytest.mark.parametrize(("kind", "acts"), [(1, False), (2, False), (3, True), (4, True)])
-def test_a_level_out_of_reach_keeps_the_old_table_or_takes_the_highest_that_is_left(kind: int, acts: bool) -> None:
-    bench, undisturbed = axis_bench(override_type=kind), axis_bench(override_type=kind)
-    for each in (bench, undisturbed):
-        each.accepted("set_override", percent=20.0)
-        start(each, 1000.0)
-        each.run(1500)
-    warning = bench.accepted("set_override", percent=100.0)
-    for each in (bench, undisturbed):
-        each.run(2500)
-    if acts:
-        assert warning == ""
-        assert 400.0 < max(bench.column("set_velocity")) < V
-        assert time_of_arrival(bench) < time_of_arrival(undisturbed)
-    else:
-        reason = "does not change the motion in work (brake phase or level out of reach)"
-        assert warning == f"axis x: override 100.0 % {reason}"
-        assert bench.column("set_position") == undisturbed.column("set_position")
-    assert bench.column("set_position")[-1] == 1000.0
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-@pytest.mark.parametrize(("percent", "shown"), [(0.0001, 0.0001), (0.00009, 0.0), (100.0, 100.0), (33.33333, 33.33333)])
-def test_override_steps(percent: float, shown: float) -> None:
-    """One step is 1/1,000,000; less is 0 and holds the axis."""
-    bench = axis_bench()
-    bench.accepted("set_override", percent=percent)
-    start(bench, 1000.0)
-    bench.run(100)
-    assert bench.column("override_percent")[-1] == shown
-    assert (bench.column("set_position")[-1] == 0.0) is (shown == 0.0)
-
-
-def test_override_acts_on_very_slow_moves_too() -> None:
-    """A level below what a table can be made for (1e-9 mm/s) is raised to it; nothing is refused."""
-    bench = axis_bench()
-    bench.accepted("set_override", percent=0.01)
-    start(bench, 1000.0, velocity=1e-6)
-    bench.run(100)
-    bench.accepted("set_override", percent=0.02)
-    bench.run(100)
-    assert bench.state == S.DISCRETE_MOTION and 0.0 < bench.column("set_position")[-1] < 1e-6
-
-
-@pytest.mark.parametrize("percent", [-0.1, 100.01])
-def test_override_outside_0_to_100_is_refused(percent: float) -> None:
-    bench = axis_bench()
-    start(bench, 1000.0)
-    bench.run(100)
-    assert bench.refused("set_override", percent=percent) == (
-        f"P-ERR-23006 axis x: set_override refused: percent = {percent} is not within 0 ... 100 (P-AXIS-00109, at most 100); nothing was changed"
-    )
-    bench.run(10)
-    assert set(bench.column("override_percent")) == {100.0}
-
-
-# ---------------------------------------------------------------- stop
-
-
-@pytest.mark.parametrize("cycle", [10, 90, 250, 450, 800])
-def test_stop_takes_the_ramp_of_the_start(cycle: int) -> None:
-    """The axis' own deceleration (1000) is weaker than the one that the start asked for."""
-    bench = axis_bench(deceleration=1000.0, jerk=10_000.0)
-    start(bench, 5000.0)
-    bench.run(cycle)
-    velocity = position_after(seven_phases(5000.0, V, A, A, J), cycle * CYCLE_TIME)[1]
-    bench.accepted("stop")
-    bench.run(1500)
-    states = bench.column("state")
-    assert states[cycle] == S.STOPPING
-    standing = states.index(S.STANDSTILL, cycle)
-    assert bench.column("set_velocity")[standing - 1 :][:2][1] == 0.0
-    assert (standing - cycle) * CYCLE_TIME <= velocity / A + 3 * A / J + CYCLE_TIME
-    bits = bench.column("status_bits")
-    assert not bits[cycle] & JOB and bits[cycle] & STOPPED and bits[-1] & STOPPED
-    assert_axis_smooth(bench, acceleration=A, jerk=J)
-
-
-def test_stop_in_the_cruise_takes_the_closed_form_way() -> None:
-    bench = axis_bench()
-    start(bench, 5000.0)
-    bench.run(1000)
-    before = ramp_way(0.0, V) + 0.5 * V
-    bench.accepted("stop")
-    bench.run(1000)
-    assert bench.column("set_position")[-1] == pytest.approx(before + ramp_way(V, 0.0), abs=1e-9)
-    assert bench.column("state").index(S.STANDSTILL) == pytest.approx(1500, abs=1)
-
-
-def test_stop_in_the_brake_phase_ends_exactly_at_the_target() -> None:
-    bench = axis_bench()
-    start(bench, 1000.0)
-    bench.run(800)
-    bench.accepted("stop")
-    bench.run(500)
-    assert bench.column("set_position")[-1] == 1000.0 and bench.state == S.STANDSTILL
-
-
-def test_a_start_after_a_stop_begins_where_the_axis_stands_and_clears_the_bit() -> None:
-    bench = axis_bench()
-    start(bench, 5000.0)
-    bench.run(600)
-    bench.accepted("stop")
-    bench.run(1000)
-    stand = bench.column("set_position")[-1]
-    start(bench, 0.0)
-    bench.run(3000)
-    assert bench.column("set_position")[1600] == stand and bench.column("set_position")[-1] == 0.0
-    assert bench.column("status_bits")[1599] & STOPPED and not bench.column("status_bits")[1600] & STOPPED
-
-
-def test_stop_while_override_0_holds_the_job() -> None:
-    bench = axis_bench()
-    bench.accepted("set_override", percent=0.0)
-    start(bench, 1000.0)
-    bench.run(10)
-    bench.accepted("stop")
-    bench.run(10)
-    assert bench.state == S.STANDSTILL and not bench.column("status_bits")[-1] & JOB
-    bench.accepted("set_override", percent=100.0)
-    bench.run(10)
-    assert bench.column("set_position")[-1] == 0.0
-
-
-def test_override_does_not_change_a_stop() -> None:
-    bench, undisturbed = axis_bench(), axis_bench()
-    for each in (bench, undisturbed):
-        start(each, 5000.0)
-        each.run(700)
-        each.accepted("stop")
-        each.run(50)
-    assert bench.accepted("set_override", percent=10.0) == (
-        "axis x: override 10.0 % does not change the motion in work (the axis stops)"
-    )
-    for each in (bench, undisturbed):
-        each.run(1000)
-    assert bench.column("set_position") == undisturbed.column("set_position")
 
 
 # ---------------------------------------------------------------- jerk and small ways

@@ -32,9 +32,26 @@ overrides = st.tuples(
         {"percent": st.one_of(st.sampled_from([0.0, 20.0, 50.0, 75.0, 100.0]), st.floats(0.0, 100.0))}
     ),
 )
+targets = st.floats(-200.0, 200.0)
+redirections = st.one_of(
+    st.tuples(st.just("new_target"), st.fixed_dictionaries({"target": targets})),
+    st.tuples(
+        st.just("new_velocity_and_target"),
+        st.fixed_dictionaries({"velocity": st.floats(1.0, 2000.0), "target": targets, "activation_position": targets}),
+    ),
+)
+modulo = st.tuples(st.just("move_modulo"), st.fixed_dictionaries({"position": st.floats(-400.0, 400.0)}))
+types = st.tuples(st.just("set_override_type"), st.fixed_dictionaries({"type": st.integers(1, 4)}))
+emergency = st.tuples(
+    st.just("emergency_stop"),
+    st.fixed_dictionaries({"deceleration": st.floats(1000.0, A), "jerk": st.floats(1000.0, J)}),
+)
 others = st.sampled_from(
     [
         ("stop", {}),
+        ("stop", {}),
+        ("halt", {}),
+        ("halt", {}),
         ("reset", {}),
         ("power", {"on": False}),
         ("power", {"on": True}),
@@ -42,6 +59,7 @@ others = st.sampled_from(
     ]
 )
 pauses = st.integers(0, 120)
+VELOCITY = {"max_velocity": 2000.0, "reference_velocity": 2000.0}
 Commands = list[tuple[tuple[str, dict[str, Any]], int]]
 
 
@@ -68,10 +86,16 @@ def check(bench: UnitBench) -> None:
 @QUICK
 @given(
     kind=st.sampled_from([1, 2, 3, 4]),
-    commands=st.lists(st.tuples(st.one_of(moves, relative, overrides, others), pauses), max_size=12),
+    steps=st.sampled_from([0, 200]),
+    commands=st.lists(
+        st.tuples(
+            st.one_of(moves, relative, modulo, overrides, redirections, redirections, types, emergency, others), pauses
+        ),
+        max_size=20,
+    ),
 )
-def test_random_commands_never_step_and_always_end_standing(kind: int, commands: Commands) -> None:
-    bench = axis_bench(count=1000, override_type=kind, max_velocity=2000.0, reference_velocity=2000.0)
+def test_random_commands_never_step_and_always_end_standing(kind: int, steps: int, commands: Commands) -> None:
+    bench = axis_bench(count=1000, override_type=kind, override_steps=steps, modulo=True, modulo_high=360.0, **VELOCITY)
     play(bench, commands)
     bench.give("stop")
     for _ in range(40):
@@ -112,6 +136,57 @@ def test_overrides_never_lose_the_target(kind: int, target: float, limits: dict[
     tolerance = 1e-9 * max(1.0, abs(target))
     assert all(sign * velocity >= -1e-9 for velocity in v)
     assert all(-tolerance <= sign * position <= sign * target + tolerance for position in p)
+    check(bench)
+
+
+@QUICK
+@given(
+    kind=st.sampled_from([1, 2, 3, 4]),
+    count=st.sampled_from([1, 7, 10, 333]),
+    limits=dynamics,
+    commands=st.lists(
+        st.tuples(st.one_of(redirections, overrides, st.sampled_from([("stop", {}), ("halt", {})])), pauses),
+        min_size=1,
+        max_size=10,
+    ),
+)
+def test_random_commands_on_the_fly_do_not_depend_on_blocks(
+    kind: int, count: int, limits: dict[str, float], commands: Commands
+) -> None:
+    """Commands at the same cycles: activations, waiting targets and filtered overrides come at the same cycles too."""
+    benches = []
+    for size in (1000, count):
+        bench = axis_bench(count=size, override_type=kind, override_steps=200, override_interval=0.05, **VELOCITY)
+        bench.accepted("move_absolute", target=150.0, **limits)
+        play(bench, commands)
+        bench.run(700)
+        benches.append(bench)
+    assert benches[0].columns() == benches[1].columns()
+    check(benches[1])
+
+
+@QUICK
+@given(
+    kind=st.sampled_from([1, 2, 3, 4]),
+    limits=dynamics,
+    commands=st.lists(st.tuples(st.one_of(redirections, overrides), pauses), min_size=1, max_size=10),
+    last=redirections,
+)
+def test_the_last_target_is_always_reached(
+    kind: int, limits: dict[str, float], commands: Commands, last: tuple[str, dict[str, float]]
+) -> None:
+    """However often it was redirected: at override 100 % the axis ends exactly at its last target."""
+    bench = axis_bench(count=1000, override_type=kind, **VELOCITY)
+    bench.accepted("move_absolute", target=150.0, **limits)
+    play(bench, commands)
+    bench.give("set_override", percent=100.0)
+    if not bench.give(last[0], **last[1]).accepted:  # it stands at its target already
+        return
+    for _ in range(600):
+        bench.run(1000)
+        if bench.state == S.STANDSTILL:
+            break
+    assert bench.state == S.STANDSTILL and bench.column("set_position")[-1] == last[1]["target"]
     check(bench)
 
 
