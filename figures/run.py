@@ -18,7 +18,8 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 from figures.scenario_head import FigureError, FigureScenario
 
 Column = npt.NDArray[np.float64]
-PER_CYCLE = tuple(field.name for field in fields(AxisBlock) if field.name not in ("first_cycle", "count"))
+OF_BLOCK = ("first_cycle", "count", "master", "target_velocity", "couples_actual")
+PER_CYCLE = tuple(field.name for field in fields(AxisBlock) if field.name not in OF_BLOCK)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from typing import Any
 
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisBlock, Block, Command, CommandRecord, CycleTick, Event
+from cnc_ptp.machine.commands import COMMANDS, INTERNAL
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.scenario import Entry, parse_scenario
@@ -22,6 +23,8 @@ ROOT = Path(__file__).parents[2]
 MILL = read_machine(ROOT / "config" / "mill.yaml")
 PTP = read_machine(ROOT / "config" / "ptp.yaml")
 CYCLE_TIME = 0.001
+AXIS_COMMANDS = ", ".join(sorted(COMMANDS["axis"].keys() - INTERNAL))
+"""What an axis tells somebody who asks for something else."""
 
 
 class UnitBench:
