@@ -15,6 +15,7 @@ from cnc_ptp.axis.faults import (
     SETPOINTS_STOPPED,
     SOFT_LIMIT_NEGATIVE,
     SOFT_LIMIT_POSITIVE,
+    SUM_TOO_FAST,
     TARGET_MISSED,
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
@@ -25,6 +26,9 @@ from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.parameters import AxisParameters
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
+
+ROUNDING = 1e-9
+"""Part of a velocity limit."""
 
 Report = Callable[[int, int, str], None]
 """Takes an event: cycle, number, text."""
@@ -285,6 +289,10 @@ class Axis:
         elif silence > self._longest_silence:
             timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
             self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves")
+        elif abs(setpoint[1]) > self.parameters.max_velocity * (1.0 + ROUNDING):
+            limit = f"{self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
+            reason = f"the superposed motions add up to {abs(setpoint[1]):g} {self.unit}/s, above the maximum {limit}"
+            self.fault(cycle, SUM_TOO_FAST, reason, setpoint)
         else:
             self._watch_soft_limits(cycle, setpoint)
 

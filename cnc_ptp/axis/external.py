@@ -12,6 +12,8 @@ from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.motion.profile import State
 
+NEGLIGIBLE_VELOCITY = 1e-9
+"""mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
 ABSOLUTE = "absolute"
 RELATIVE = "relative"
 
@@ -209,6 +211,6 @@ class ExternalSetpoints:
     def _to_rest(self, driving: Setpoint, cycle: int) -> Profile:
         """The ramp to rest from `cycle` on; a standing setpoint stays where it is."""
         position, velocity, acceleration, _ = self._driven(driving, cycle)
-        if velocity == 0.0:
-            acceleration = 0.0
+        if abs(velocity) <= NEGLIGIBLE_VELOCITY:
+            velocity = acceleration = 0.0
         return plan_to_velocity(position, velocity, acceleration, 0.0, self._limits)

@@ -21,9 +21,9 @@ def print_error(error: CncError) -> None:
         console.print(caret, markup=False)
 
 
-def print_faults(console: Console, errors: list[str], refusals: list[str]) -> None:
-    """Errors and refused commands of a run."""
+def print_faults(console: Console, errors: list[str], notes: list[str]) -> None:
+    """Errors of a run; commands that were refused or carried out with a warning."""
     for text in errors:
         console.print(f"error: {text}", style="red", markup=False)
-    for text in refusals:
-        console.print(f"refused: {text}", style="yellow", markup=False)
+    for text in notes:
+        console.print(text, style="yellow", markup=False)

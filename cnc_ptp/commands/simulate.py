@@ -14,7 +14,15 @@ from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, Command, CycleTick, PlcBlock, Severity
+from cnc_ptp.machine.blocks import (
+    AxisBlock,
+    ChannelBlock,
+    Command,
+    CycleTick,
+    PlcBlock,
+    Severity,
+    command_note,
+)
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.plc_unit import error_of
@@ -33,7 +41,7 @@ class Result:
     interrupted: str = ""
     following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     errors: list[str] = field(default_factory=list)
-    refusals: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def add(self, outputs: Outputs) -> None:
         for name, output in outputs.items():
@@ -50,9 +58,8 @@ class Result:
             self.errors += [
                 f"P-ERR-{event.error_id} {event.text}" for event in output.events if event.severity == Severity.ERROR
             ]
-            self.refusals += [
-                f"P-ERR-{record.error_id} {record.message}" for record in output.records if not record.accepted
-            ]
+            notes = (command_note(record.accepted, record.error_id, record.message) for record in output.records)
+            self.notes += [note for note in notes if note and note not in self.notes]
 
 
 def simulate(
@@ -121,4 +128,4 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
     if result.interrupted:
         console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
-    print_faults(console, result.errors, result.refusals)
+    print_faults(console, result.errors, result.notes)

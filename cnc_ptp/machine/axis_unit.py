@@ -36,8 +36,9 @@ Columns = list[Any]
 class AxisUnit(Unit):
     """One axis with its functions (cnc_ptp.axis), position controller and drive.
 
-    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), SynchronizedMotion (channel path), Stopping,
-    ErrorStop. The position loop is closed while powered or on a ramp.
+    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), ContinuousMotion (external setpoints, a slave that was
+    decoupled in motion), SynchronizedMotion (channel path, master axis), Stopping, ErrorStop.
+    The position loop is closed while powered or on a ramp.
     """
 
     kind: ClassVar[str] = "axis"

@@ -90,6 +90,13 @@ class CommandRecord:
     message: str
 
 
+def command_note(accepted: bool, error_id: int, message: str) -> str:
+    """What people should hear of a command: its refusal, or the warning with which it was carried out."""
+    if accepted:
+        return f"warning: {message}" if message else ""
+    return f"refused: P-ERR-{error_id} {message}"
+
+
 @dataclass(slots=True)
 class Event:
     """A state change, warning or error (Event.msg)."""

@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Severity
+from cnc_ptp.machine.blocks import Severity, command_note
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, MONITOR, PLC_INPUT, REPORT, block_topic
@@ -41,7 +41,7 @@ class RunMonitor(Node):
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
         self.progress = Progress()
         self.errors: list[str] = []
-        self.refusals: list[str] = []
+        self.notes: list[str] = []
         self.run_done = False
         self._plc_block = 0
         self._plc_knows_failure = False
@@ -114,8 +114,9 @@ class RunMonitor(Node):
             self._last_fault = max(self._last_fault, message.cycle)
 
     def _on_command(self, message: msg.CommandRecord) -> None:
-        if not message.accepted:
-            self.refusals.append(f"P-ERR-{message.error_id} {message.message} (cycle {message.cycle})")
+        note = command_note(message.accepted, message.error_id, message.message)
+        if note and note not in self.notes:
+            self.notes.append(note)
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
