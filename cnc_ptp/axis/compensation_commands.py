@@ -65,7 +65,7 @@ class CompensationCommands:
         used = min(length, abs(remaining))
         table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
         direction = copysign(1.0, base[1] or remaining)
-        self._check_velocity(max(job.limits.velocity, abs(base[1])), process_velocity, table)
+        self._check_velocity(axis.ptp.highest_velocity(cycle), process_velocity, table)
         axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
         axis.superposed = True
         axis.compensation.start(cycle, base, direction=direction, process_velocity=process_velocity, profile=table)
