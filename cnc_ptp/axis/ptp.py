@@ -121,6 +121,12 @@ class PtpGenerator:
         """True while there is a positioning, or a stop of one, that can be led to a new target."""
         return self.job is not None or self._stopped_job is not None
 
+    def highest_velocity(self, cycle: int) -> float:
+        """The largest |v| (mm/s) that the positioning in work may still have, with a new velocity that is to come."""
+        limits = [] if self.job is None else [self.job.limits.velocity]
+        coming = [] if self._activation is None else [self._activation.velocity]
+        return max([abs(self.state(cycle)[1]), *limits, *coming])
+
     # commands
 
     def start(self, cycle: int, target: float, limits: Limits) -> None:

@@ -116,6 +116,8 @@ class RecorderNode(Node):
         if self._recording is None:
             start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
             self._free_run = not message.scheduled_monotonic_ns
+            if not self._free_run:
+                process.take_priority()
             self._recording = Recording(self._path, self._machine_yaml, start_ns, self._cycle_ns)
             for record in self._early:
                 record()

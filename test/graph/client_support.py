@@ -1,9 +1,11 @@
 """A ROS client beside a running graph: calls services, writes PLC topics, waits for what blocks and events show."""
 
 import time
+from collections.abc import Sequence
 
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.machine.wiring import unit_kinds
@@ -13,16 +15,35 @@ from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, COMMAND, EVENT, EVENTS, PL
 TIMEOUT = 60.0
 
 
+class Blocks(Sequence):
+    """Messages as they came; only what a test looks at is deserialised: 600 come a second."""
+
+    def __init__(self, message_type):
+        self._type = message_type
+        self._looked_at = b"", None
+        self.serialised = []
+
+    def __len__(self):
+        return len(self.serialised)
+
+    def __getitem__(self, index):
+        data = self.serialised[index]
+        if data is not self._looked_at[0]:
+            self._looked_at = data, deserialize_message(data, self._type)
+        return self._looked_at[1]
+
+
 class Client(Node):
     """`blocks[unit]`: the blocks that came so far; `events`, `commands`: likewise."""
 
     def __init__(self, machine):
         super().__init__("test_client", enable_rosout=False)
         self.kinds = unit_kinds(machine)
-        self.blocks = {unit: [] for unit in self.kinds}
+        self.blocks = {unit: Blocks(BLOCK_TYPES[kind]) for unit, kind in self.kinds.items()}
         self.events, self.records = [], []
         for unit, kind in self.kinds.items():
-            self.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self.blocks[unit].append, BLOCKS)
+            received = self.blocks[unit].serialised.append
+            self.create_subscription(BLOCK_TYPES[kind], block_topic(unit), received, BLOCKS, raw=True)
         self.create_subscription(msg.Event, EVENT, self.events.append, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self.records.append, EVENTS)
         self._writers = {}
@@ -48,7 +69,7 @@ class Client(Node):
         """Waits until the last block of a unit, computed after its last command, fulfils a condition; returns it."""
 
         def fulfilled():
-            block = self.blocks[unit][-1] if self.blocks[unit] else None
+            block = self.blocks[unit][-1] if len(self.blocks[unit]) else None
             return block and block.first_cycle >= self._since[unit] and condition(block)
 
         self.spin_until(fulfilled, f"{unit}: {what}")
@@ -126,7 +147,6 @@ class Client(Node):
     def state_at(self, unit, cycle, field):
         """The value of a per-cycle field at a cycle that has come or comes."""
         self.wait_last(unit, lambda block: block.first_cycle + block.count > cycle, f"cycle {cycle}")
-        block = next(
-            block for block in self.blocks[unit] if block.first_cycle <= cycle < block.first_cycle + block.count
-        )
+        blocks = self.blocks[unit]
+        block = blocks[(cycle - blocks[0].first_cycle) // blocks[0].count]
         return getattr(block, field)[cycle - block.first_cycle]

@@ -157,6 +157,18 @@ def test_a_velocity_that_is_being_left_counts_too() -> None:
     )
 
 
+def test_a_velocity_that_is_to_come_counts_too() -> None:
+    """2200 mm/s from 5000 mm on; the compensation would still run there."""
+    bench = moving_axis(velocity=1000.0, max_velocity=2400.0)
+    change = {"velocity": 2200.0, "target": 10_000.0, "activation_position": 1500.0}
+    bench.accepted("new_velocity_and_target", **change)
+    assert refusal(bench, difference=2000.0, process_velocity=1000.0) == (
+        "23004 the axis would get up to 2500 mm/s, above the maximum 2400.0 mm/s (P-AXIS-00212)"
+    )
+    bench.accepted("new_target", target=9000.0)  # takes the new velocity back
+    bench.accepted("compensation_start", **VALUES | {"difference": 2000.0, "process_velocity": 1000.0})
+
+
 @pytest.mark.parametrize(
     ("limit", "target", "difference", "text"),
     [
