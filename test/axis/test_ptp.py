@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cnc_ptp.axis.ptp import PtpGenerator, reaches, standing
+from cnc_ptp.axis.two_stage import Request
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile
 
@@ -105,3 +106,46 @@ def test_a_stop_in_the_brake_phase_ends_the_job_at_once_and_keeps_the_table() ->
     ptp.stop(cycle, LIMITS._replace(deceleration=1.0))
     assert ptp.job is None and [ptp.state(cycle + n) for n in range(200)] == later
     assert later[-1][:2] == (50.0, 0.0) and ptp.arrived(cycle + 199)
+
+
+def test_without_a_positioning_there_is_nothing_to_redirect() -> None:
+    ptp = generator(position=2.0)
+    assert not ptp.can_redirect
+    ptp.redirect(5, Request(100.0, 50.0, 10.0))
+    ptp.advance(5)
+    assert ptp.job is None and ptp.state(1000) == (2.0, 0.0, 0.0, 0.0) and ptp.arrived(1000)
+
+
+@pytest.mark.parametrize(("request_", "error_id"), [(Request(1e13), 23002), (Request(50.0, 1e-300), 23001)])
+@pytest.mark.parametrize("stopped", [False, True])
+def test_a_request_that_no_table_can_be_made_for_changes_nothing(
+    request_: Request, error_id: int, stopped: bool
+) -> None:
+    """Neither the table, nor what waits: an activation, or a request that waits for the end of a stop."""
+    ptp = generator()
+    ptp.start(0, 500.0, LIMITS)
+    ptp.redirect(300, Request(600.0, 50.0, 200.0))
+    if stopped:
+        ptp.stop(400, LIMITS)
+        ptp.redirect(400, Request(-100.0))
+    before = vars(ptp).copy()
+    with pytest.raises(CncError) as caught:
+        ptp.redirect(410, request_)
+    assert caught.value.error_id == error_id and vars(ptp) == before
+
+
+@pytest.mark.parametrize("duration_cycles", range(40, 60))
+def test_a_waiting_request_begins_at_exact_rest(duration_cycles: int) -> None:
+    """Stop ramps of whole numbers of cycles, where rounding says which cycle is the first after them."""
+    ptp = generator()
+    seconds = 0.001 * duration_cycles
+    limits = LIMITS._replace(velocity=2500.0 * seconds * seconds)  # the ramp takes 2·√(v/J)
+    ptp.start(0, 500.0, limits)
+    ptp.stop(1000, limits)
+    ptp.redirect(1000, Request(0.0))
+    for cycle in range(1000, 1100):
+        ptp.advance(cycle)
+        if ptp.job is not None:
+            break
+    assert ptp.job is not None and ptp.state(cycle)[1:3] == (0.0, 0.0)
+    assert cycle - 1000 in (duration_cycles, duration_cycles + 1)

@@ -121,7 +121,7 @@ def test_overrides_never_lose_the_target(kind: int, target: float, limits: dict[
     bench.give("move_absolute", target=target, **limits)
     play(bench, changes)
     bench.give("set_override", percent=100.0)
-    for _ in range(100):
+    for _ in range(250):  # 200 mm at 1 mm/s
         bench.run(1000)
         if bench.state == S.STANDSTILL:
             break

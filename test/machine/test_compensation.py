@@ -241,6 +241,22 @@ def test_override_0_freezes_the_compensation() -> None:
     assert bench.column("set_position")[-1] > 10_150.0
 
 
+def test_the_jerk_is_the_slope_of_the_acceleration() -> None:
+    """Under an override that varies v below VP; central differences, which are exact to j'·T."""
+    bench = moving_axis(target=20_000.0, override_type=3)
+    compensate(bench)
+    for percent in (40.0, 90.0, 20.0, 100.0):
+        bench.run(400)
+        bench.accepted("set_override", percent=percent)
+    bench.run(400)
+    a, j = column(bench, "set_acceleration")[1000:], column(bench, "set_jerk")[1000:]
+    slope = (a[2:] - a[:-2]) / (2.0 * CYCLE_TIME)
+    smooth = (np.abs(np.diff(j[:-1])) < 100.0) & (np.abs(np.diff(j[1:])) < 100.0)
+    smooth &= np.abs(slope) < 100_000.0  # corners of the trapezoid
+    assert np.count_nonzero(smooth & (np.abs(slope) > 40_000.0)) > 300
+    assert j[1:-1][smooth] == pytest.approx(slope[smooth], abs=30.0)
+
+
 # end of path, bits
 
 

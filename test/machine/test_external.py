@@ -158,15 +158,16 @@ def test_a_new_target_counts_beside_the_contribution() -> None:
     assert bench.column("set_position")[-1] == pytest.approx(8000.0, abs=1e-9)
 
 
-def test_a_new_target_during_the_ramp_after_the_end_is_reached() -> None:
+@pytest.mark.parametrize("after", [0, 1, 50, 500])
+def test_a_new_target_during_the_ramp_after_the_end_is_reached(after: int) -> None:
     """The contribution still comes to rest when the target is given: where it will rest counts."""
     bench = moving_axis()
     bench.accepted("external_enable", mode="relative")
     rows = generator(300.0, first_cycle=1010, velocity=500.0)[:400]
     feed(bench, rows, 400)
     bench.accepted("external_disable")
-    bench.accepted("new_target", target=9000.0)
-    bench.run(50)
+    if after:
+        bench.run(after)
     bench.accepted("new_target", target=8000.0)
     settle(bench)
     assert bench.column("set_position")[-1] == pytest.approx(8000.0, abs=1e-9)
@@ -242,6 +243,22 @@ def test_an_end_in_motion_comes_to_rest_on_the_ramp_of_the_axis(end: str, v: flo
     assert speeds[standing - 1] != 0.0 and not speeds[standing + 1 :].any()
     changes = np.abs(np.diff(column(bench, "set_acceleration")))
     assert changes[120:].max() <= J * CYCLE_TIME * (1 + 1e-9)
+    ways = np.diff(column(bench, "set_position"))[120:]
+    assert ways == pytest.approx(0.5 * CYCLE_TIME * (speeds[120:-1] + speeds[121:]), abs=J * CYCLE_TIME**3)
+
+
+@pytest.mark.parametrize("direction", [1, 0])
+def test_a_last_setpoint_without_velocity_stands(direction: int) -> None:
+    """The generator's last value of acceleration counts for its cycle and moves nothing more."""
+    bench = external_axis()
+    rows = [row for row in generator(600.0, first_cycle=20) if row[0] <= 870]
+    rows.append([871, 600.0, 0.0, -4000.0, direction])
+    feed(bench, rows, 880)
+    bench.accepted("external_disable")
+    bench.run(500)
+    assert bench.column("set_acceleration")[871] == -4000.0
+    assert set(bench.column("set_position")[871:]) == {600.0}
+    assert not column(bench, "set_velocity")[871:].any() and not column(bench, "set_acceleration")[872:].any()
 
 
 def test_after_disabling_exactly_one_more_setpoint_counts() -> None:
