@@ -141,7 +141,7 @@ class AxisUnit(Unit):
             if axis.state in MOVING_ALONE:
                 axis.advance_state(first_cycle)
             if axis.undisturbed(first_cycle, setpoints):
-                done = self._undisturbed_cycles(setpoints, columns)
+                done = self._undisturbed_cycles(first_cycle, setpoints, columns)
         error_id = axis.error_id
         for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
             for column, value in zip(columns, self._cycle(cycle, setpoint), strict=True):
@@ -149,14 +149,14 @@ class AxisUnit(Unit):
             if axis.error_id != error_id:
                 break
 
-    def _undisturbed_cycles(self, setpoints: list[State], columns: Columns) -> int:
+    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], columns: Columns) -> int:
         """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
 
         Returns their number.
         """
         axis, drive, controller = self._axis, self._drive, self._controller
         limit = controller.following_error_limit if controller.monitoring else inf
-        closed = axis.powered
+        closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
         cycles = []
         for position, _, _, _ in setpoints:
             actual = drive.position
