@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.cam import CamCoupling, CamTable
@@ -29,12 +30,15 @@ from cnc_ptp.axis.two_stage import Request
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import AxisParameters
 
+GROUP = ("above", "master_stands", "master_lost")
+"""What the PLC fills in."""
+
 
 class CouplingCommands:
     """`couple` and its kinds, `set_coupling_factor`, `set_cyclic_factor`, `decouple`; `lead` and `group_error`.
 
     What the axis itself cannot know comes with the command: the PLC, which sees all axes, fills in `above` (the masters
-    of the master) and `master_stands`.
+    of the master), `master_stands` and `master_lost`.
     """
 
     def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
@@ -45,11 +49,9 @@ class CouplingCommands:
 
     # couple
 
-    def do_couple(
-        self, cycle: int, *, master: str, factor: float, above: Sequence[str] = (), master_stands: bool = True
-    ) -> None:
+    def do_couple(self, cycle: int, *, master: str, factor: float, **group: Any) -> None:
         """Slave position = `factor` · master position + offset of the coupling positions. Refusals: 23041 – 23046."""
-        self._check("couple", master, above, master_stands)
+        self._check("couple", master, **group)
         self._check_factor("couple", factor)
         self._couple(cycle, LinearCoupling(master, float(factor)))
 
@@ -59,19 +61,16 @@ class CouplingCommands:
         *,
         master: str,
         difference_limit: float,
-        above: Sequence[str] = (),
-        master_stands: bool = True,
+        **group: Any,
     ) -> None:
         """Factor 1 with a limit (mm, deg) on how far the actual positions may leave their distance."""
-        self._check("couple_gantry", master, above, master_stands)
+        self._check("couple_gantry", master, **group)
         self._check_positive("couple_gantry", difference_limit=difference_limit)
         self._couple(cycle, LinearCoupling(master, 1.0, difference_limit=float(difference_limit)))
 
-    def do_couple_cyclic(
-        self, cycle: int, *, master: str, acc_bound: float, above: Sequence[str] = (), master_stands: bool = True
-    ) -> None:
+    def do_couple_cyclic(self, cycle: int, *, master: str, acc_bound: float, **group: Any) -> None:
         """The factor comes cyclically; the slave's acceleration stays within `acc_bound` (mm/s²)."""
-        self._check("couple_cyclic", master, above, master_stands)
+        self._check("couple_cyclic", master, **group)
         if not acc_bound > 0.0:
             self._axis.refuse("couple_cyclic", BAD_ACC_BOUND, f"acc_bound = {acc_bound} must be greater than 0")
         self._couple(cycle, CyclicCoupling(master, float(acc_bound), cycle_time=self._cycle_time))
@@ -84,15 +83,14 @@ class CouplingCommands:
         factor: float,
         master_position: float,
         slave_position: float,
-        above: Sequence[str] = (),
-        master_stands: bool = True,
-        **dynamics: float,
+        **others: Any,
     ) -> None:
         """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on."""
         command, axis = "couple_flying_saw", self._axis
-        self._check(command, master, above, True)
+        group = {name: others.pop(name) for name in GROUP if name in others}
+        self._check(command, master, **(group | {"master_stands": True}))
         self._check_factor(command, factor)
-        limits = axis.checks.dynamics(command, dynamics)
+        limits = axis.checks.dynamics(command, others)
         axis.checks.soft_limits(command, slave_position)
         positions = {"master_position": float(master_position), "slave_position": float(slave_position)}
         self._couple(cycle, FlyingSaw(master, float(factor), limits=limits, **positions))
@@ -109,12 +107,11 @@ class CouplingCommands:
         slave_scaling: float = 1.0,
         slave_offset: float | None = None,
         file: str = "",
-        above: Sequence[str] = (),
-        master_stands: bool = True,
+        **group: Any,
     ) -> None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
-        self._check(command, master, above, master_stands)
+        self._check(command, master, **group)
         self._check_factor(command, slave_scaling, "slave_scaling")
         self._check_factor(command, master_scaling, "master_scaling")
         coupling = CamCoupling(
@@ -140,13 +137,23 @@ class CouplingCommands:
         except CncError as error:
             self._axis.refuse(command, BAD_CAM_TABLE, error.message)
 
-    def _check(self, command: str, master: str, above: Collection[str], master_stands: bool) -> None:
+    def _check(
+        self,
+        command: str,
+        master: str,
+        *,
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+        master_lost: bool = False,
+    ) -> None:
         axis = self._axis
         if master == axis.name:
             axis.refuse(command, COUPLED_TO_ITSELF, "an axis cannot be its own master")
         if master not in self._axes:
             known = ", ".join(name for name in self._axes if name != axis.name) or "none"
             axis.refuse(command, UNKNOWN_MASTER, f"there is no axis '{master}'. Known: {known}")
+        if master_lost:
+            axis.refuse(command, UNKNOWN_MASTER, f"the node of the master {master} is lost")
         if axis.state != S.STANDSTILL:
             reason = f"the axis is in {state_name(axis.state)}, it must be in Standstill"
             axis.refuse(command, SLAVE_NOT_STANDING, reason)

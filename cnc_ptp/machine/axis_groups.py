@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command
 from cnc_ptp.machine.commands import COUPLINGS
@@ -67,7 +67,7 @@ class AxisGroups:
             chain.append(name)
         return chain
 
-    def complete(self, commands: Iterable[Command]) -> list[Command]:
+    def complete(self, commands: Iterable[Command], lost: Container[str]) -> list[Command]:
         """The commands of a block, couplings with what their axis needs to know; masters are told of their slaves."""
         started: set[str] = set()
         completed = []
@@ -76,6 +76,8 @@ class AxisGroups:
             if command.command in COUPLINGS and isinstance(master, str):
                 stands = self._stands(master) and not started & {master, *self.above(master)}
                 command.arguments = {**command.arguments, "above": self.above(master), "master_stands": stands}
+                if master in lost:
+                    command.arguments["master_lost"] = True
                 if command.target not in (master, *command.arguments["above"]):
                     self._masters.setdefault(command.target, master)
             elif command.command in STARTS:

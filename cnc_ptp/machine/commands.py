@@ -42,8 +42,13 @@ DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "dece
 SOURCE: Arguments = {"source": TEXT}
 OPTIONAL_SWITCH = Argument("switch", required=False)
 CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
-COUPLING: Arguments = {"master": TEXT, "above": Argument("rows", required=False), "master_stands": OPTIONAL_SWITCH}
-"""A master, and what the PLC fills in: the masters of the master, and whether it stands."""
+COUPLING: Arguments = {
+    "master": TEXT,
+    "above": Argument("rows", required=False),
+    "master_stands": OPTIONAL_SWITCH,
+    "master_lost": OPTIONAL_SWITCH,
+}
+"""A master, and what the PLC fills in: the masters of the master, whether it stands, whether its node is lost."""
 
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "axis": {

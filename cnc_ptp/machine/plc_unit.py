@@ -155,7 +155,7 @@ class PlcUnit(Unit):
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
-        commands, self._outgoing = self._groups.complete(self._outgoing), []
+        commands, self._outgoing = self._groups.complete(self._outgoing, self._lost), []
         for command in commands:
             self._commands_sent += 1
             command.id = self._commands_sent

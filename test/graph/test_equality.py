@@ -14,9 +14,31 @@ PTP_SCENARIO = """
 - {at: 0.0, to: x, do: move_absolute, target: 1000.0, velocity: 2000.0, acceleration: 5000.0, jerk: 50000.0}
 - {at: 0.0, to: "y", do: move_relative, distance: -300.0, velocity: 800.0}
 - {at: 0.25, to: x, do: set_override, percent: 75.0}
+- {at: 0.3, to: x, do: compensation_start, length: 300, difference: 20, process_velocity: 1500, velocity_increase: 300}
 - {at: 0.4, to: "y", do: stop}
+- {at: 0.45, to: "y", do: new_target, target: -50}
 - {at: 0.5, to: z, do: move_absolute, target: 1.0e9}
-- {at: 0.6, to: c, do: move_absolute, target: 90}
+- {at: 0.5, to: z, do: external_enable, mode: absolute, target: 2}
+- {at: 0.5, to: z, do: external_setpoints, file: setpoints.csv}
+- {at: 0.0, to: c, do: move_modulo, position: -450}
+- {at: 0.3, to: c, do: new_velocity_and_target, velocity: 200, target: -500, activation_position: -300}
+- {at: 1.0, to: x, do: new_target, target: 800}
+"""
+SETPOINTS = "cycle,position,velocity,acceleration,direction\n" + "".join(
+    f"{n},{0.5 * 400.0 * (0.001 * n) ** 2},{0.4 * n},400,{1 if n < 100 else 0}\n" for n in range(101)
+)
+
+SLAVE_SCENARIO = """
+- {at: 0.0, to: z, do: couple, master: "y", factor: 0.8}
+- {at: 0.0, to: "y", do: couple, master: x, factor: -0.5}
+- {at: 0.0, to: c, do: couple_cyclic, master: x, acc_bound: 4000}
+- {at: 0.0, to: x, do: move_absolute, target: 3000.0, velocity: 2000.0, acceleration: 5000.0, jerk: 50000.0}
+- {at: 0.2, to: c, do: set_cyclic_factor, factor: 0.4}
+- {at: 0.3, to: z, do: compensation_start, length: 200, difference: 20, process_velocity: 800, velocity_increase: 300}
+- {at: 0.6, to: "y", do: set_coupling_factor, factor: -0.6}
+- {at: 0.8, to: "y", do: decouple}
+- {at: 1.2, to: "y", do: stop}
+- {at: 1.4, to: x, do: stop}
 """
 
 
@@ -26,6 +48,8 @@ def folder(tmp_path_factory):
     (folder / "short.nc").write_text(SHORT_PROGRAM)
     (folder / "short.yaml").write_text(SHORT_SCENARIO)
     (folder / "ptp.yaml").write_text(PTP_SCENARIO)
+    (folder / "setpoints.csv").write_text(SETPOINTS)
+    (folder / "slaves.yaml").write_text(SLAVE_SCENARIO)
     return folder
 
 
@@ -53,6 +77,20 @@ def test_ptp_graph_equals_the_offline_run(folder):
     assert "axis z: move_absolute refused: target 1000000000.0 mm lies beyond the positive soft limit" in output
     assert states_equal(folder / "a.mcap", folder / "b.mcap") == []
     assert len(verified(folder / "b.mcap").states) == 4
+
+
+@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
+    """Couplings over processes: the same numbers, and no cycle of delay."""
+    job = (PTP, "--scenario", folder / "slaves.yaml")
+    run("simulate", *job, "--record", folder / "c.mcap")
+    output = run("run", *job, *options, "--record", folder / "d.mcap").stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in output
+    assert states_equal(folder / "c.mcap", folder / "d.mcap") == []
+    states = verified(folder / "d.mcap").states
+    coupled = slice(0, 600)
+    x, y = (states[f"/{axis}/state"]["set_position"][coupled] for axis in ("x", "y"))
+    assert np.abs(y + 0.5 * x).max() <= 1e-9 and x[-1] > 500.0
 
 
 def test_offline_run_is_verified_and_a_refused_move_is_recorded(offline):
