@@ -7,21 +7,26 @@ from collections.abc import Sequence
 from math import floor
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
 from cnc_ptp.axis.coupling import Coupling
-from cnc_ptp.axis.faults import BAD_CAM_TABLE
+from cnc_ptp.axis.faults import BAD_CAM_TABLE, CAM_POSITION
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.profile import State
 
 SMALLEST_TABLE = 3
+BEGIN_TOLERANCE = 1e-6
+"""Largest distance (mm, deg) between a slave and where a table with a slave offset has it."""
+
+Floats = NDArray[np.float64]
 
 
 class CamTable:
     """y(x) through the points of a table, and its derivatives.
 
-    `cyclic`: the table goes on after its end with the same slopes, lifted by what it ends higher than it begins.
-    Otherwise it holds its first and last value outside, where it begins and ends with slope 0.
+    `cyclic`: the table goes on after its end with the same slopes and curvatures, lifted by what it ends higher than it
+    begins. Otherwise it holds its first and last value outside, and begins and ends with slope and curvature 0.
     """
 
     def __init__(self, points: Sequence[Sequence[float]], *, cyclic: bool) -> None:
@@ -31,19 +36,12 @@ class CamTable:
         self.first, self.last = float(x[0]), float(x[-1])
         self.length = self.last - self.first
         self.lift = float(y[-1] - y[0])
-        slope = self.lift / self.length
-        if cyclic:  # the spline of what differs from the mean slope is periodic
-            rest = y - y[0] - slope * (x - x[0])
-            rest[-1] = rest[0]
-            spline = CubicSpline(x, rest, bc_type="periodic")
-            coefficients = spline.c.copy()
-            coefficients[2] += slope
-            coefficients[3] += y[0] + slope * (x[:-1] - x[0])
-        else:
-            coefficients = CubicSpline(x, y, bc_type="clamped").c
-        self._starts: list[float] = x[:-1].tolist()
+        starts, coefficients = _cyclic_pieces(x, y) if cyclic else _single_pieces(x, y)
+        if not np.isfinite(coefficients).all():
+            raise CncError(BAD_CAM_TABLE, "the points of the cam table are too close to each other or too large")
+        self._starts: list[float] = starts.tolist()
         self._pieces: list[list[float]] = coefficients.T.tolist()
-        self._end = float(y[-1])
+        self._begin, self._end = float(y[0]), float(y[-1])
 
     def turn(self, x: float) -> int:
         """In which repetition of a cyclic table x lies; 0 is the table itself."""
@@ -54,7 +52,7 @@ class CamTable:
         turns = self.turn(x)
         x -= turns * self.length
         if not self.cyclic and x < self.first:
-            return self._pieces[0][3], 0.0, 0.0, 0.0
+            return self._begin, 0.0, 0.0, 0.0
         if not self.cyclic and x >= self.last:
             return self._end, 0.0, 0.0, 0.0
         index = max(0, bisect_right(self._starts, x) - 1)
@@ -62,6 +60,34 @@ class CamTable:
         d = x - self._starts[index]
         y = c0 + d * (c1 + d * (c2 + d * c3)) + turns * self.lift
         return y, c1 + d * (2.0 * c2 + 3.0 * d * c3), 2.0 * c2 + 6.0 * d * c3, 6.0 * c3
+
+
+def _cyclic_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Where the pieces begin (n,) and their coefficients (4, n), cubic first.
+
+    What differs from the mean slope is periodic.
+    """
+    slope = (y[-1] - y[0]) / (x[-1] - x[0])
+    rest = y - y[0] - slope * (x - x[0])
+    rest[-1] = rest[0]
+    coefficients = CubicSpline(x, rest, bc_type="periodic").c.copy()
+    coefficients[2] += slope
+    coefficients[3] += y[0] + slope * (x[:-1] - x[0])
+    return x[:-1], coefficients
+
+
+def _single_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """The same of a table that is run through once.
+
+    Slope and curvature 0 at both ends are two conditions more than a cubic spline has room for; a knot in the middle of
+    the first and of the last interval makes it.
+    """
+    middles = 0.5 * (x[[0, -2]] + x[[1, -1]])
+    knots = np.concatenate([[x[0]] * 4, np.sort(np.concatenate([x[1:-1], middles])), [x[-1]] * 4])
+    ends = [(1, 0.0), (2, 0.0)]
+    spline = PPoly.from_spline(make_interp_spline(x, y, k=3, t=knots, bc_type=(ends, ends)))
+    inside = np.diff(spline.x) > 0.0
+    return spline.x[:-1][inside], spline.c[:, inside]
 
 
 def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]:
@@ -107,28 +133,31 @@ class CamCoupling(Coupling):
         """The new table comes in when the master passes the seam of the cyclic table in work."""
         self._next = table
 
-    def begins_at(self, master_position: float) -> float | None:
-        """Where the slave must stand to be coupled; None: anywhere."""
-        if self._slave_offset is None:
-            return None
-        return self._slave_scaling * self.table.at(self._x(master_position))[0] + self._slave_offset
-
     def _x(self, master_position: float) -> float:
         return (master_position - self._master_offset) / self._master_scaling
 
     def follow(self, position: float, states: Sequence[State]) -> list[State]:
-        x = self._x(states[0][0])
-        if self._slave_offset is None:
-            self._slave_offset = position - self._slave_scaling * self.table.at(x)[0]
+        """Raises CncError 23053 in the first block when the slave does not stand where the slave offset has it."""
         if self._turn is None:
-            self._turn = self.table.turn(x)
+            self._begin(position, self._x(states[0][0]))
         return [self._state(state) for state in states]
+
+    def _begin(self, position: float, x: float) -> None:
+        height = self._slave_scaling * self.table.at(x)[0]
+        if self._slave_offset is None:
+            self._slave_offset = position - height
+        place = height + self._slave_offset
+        if abs(place - position) > BEGIN_TOLERANCE:
+            reason = f"the cam table has the slave at {place:g} with its slave_offset, the axis is at {position:g}"
+            raise CncError(CAM_POSITION, reason)
+        self._turn = self.table.turn(x)
 
     def _state(self, master: State) -> State:
         x = self._x(master[0])
         turn = self.table.turn(x)
         if turn != self._turn:
             self._pass_seam(x, turn)
+            x = self._x(master[0])
         y, dy, ddy, dddy = self.table.at(x)
         assert self._slave_offset is not None
         s, (v, a, j) = self._slave_scaling, (value / self._master_scaling for value in master[1:])
@@ -148,8 +177,7 @@ class CamCoupling(Coupling):
         start = new.at(new.first)[0] + (0.0 if forward else new.lift)
         assert self._slave_offset is not None
         self._slave_offset += self._slave_scaling * (height - start)
-        self.table, self._turn = new, 0 if forward else -1
-        self._turn = new.turn((x - seam) + (new.first if forward else new.last))
+        self.table, self._turn = new, 0
 
     def change_source(self, before: float, now: float) -> None:
         self._master_offset += now - before

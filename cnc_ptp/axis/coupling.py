@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from math import copysign
 
 from cnc_ptp.motion.profile import State
 
@@ -60,8 +61,9 @@ class LinearCoupling(Coupling):
 class CyclicCoupling(Coupling):
     """The factor comes cyclically from the PLC and is smoothed: the slave's acceleration stays within AccBound B.
 
-    Its velocity goes towards factor · vm by at most B·T a cycle; while it is there, the slave is linear in the master.
-    Stable where B >= max|factor| · max(A+, A-) of the master, else it lags behind its factor. Source: TX1250 3.3.
+    Its velocity goes towards factor · vm by at most B·T a cycle. Once it is there, the slave is a linear one
+    (p = f·pm + offset) for as long as the factor stays and |f·am| <= B. Stable where B >= max|factor| · max(A+, A-) of
+    the master, else it lags behind its factor. Source: TX1250 3.3.
     """
 
     def __init__(self, master: str, acc_bound: float, *, cycle_time: float) -> None:
@@ -70,34 +72,40 @@ class CyclicCoupling(Coupling):
         self.acc_bound = acc_bound
         self._cycle_time = cycle_time
         self._slave: State | None = None
-        self._master_position = 0.0
-        self._locked: float | None = 0.0
+        self._reached: float | None = None
+        """The factor that is held exactly, with its offset; None on the way to another."""
+        self._offset = 0.0
 
     def set_factor(self, factor: float) -> None:
         """Counts from the next cycle that is computed."""
         self.ratio = factor
 
     def follow(self, position: float, states: Sequence[State]) -> list[State]:
+        if self._slave is None:
+            self._slave = (position, 0.0, 0.0, 0.0)
         slaves = []
         for state in states:
-            if self._slave is None:
-                self._slave, self._master_position = (position, 0.0, 0.0, 0.0), state[0]
             self._slave = self._next(self._slave, state)
-            self._master_position = state[0]
             slaves.append(self._slave)
         return slaves
 
     def _next(self, slave: State, master: State) -> State:
-        factor, bound, t = self.ratio, self.acc_bound, self._cycle_time
+        """The slave one cycle after `slave`."""
+        f, bound, t = self.ratio, self.acc_bound, self._cycle_time
+        p, v, a, j = master
+        if self._reached == f and abs(f * a) <= bound:
+            return f * p + self._offset, f * v, f * a, f * j
         position, velocity, _, _ = slave
-        wanted, acceleration = factor * master[1], factor * master[2]
-        if self._locked == factor and abs(acceleration) <= bound:
-            way = factor * (master[0] - self._master_position)
-            return position + way, wanted, acceleration, factor * master[3]
-        change = min(max(wanted - velocity, -bound * t), bound * t)
-        reached = velocity + change
-        self._locked = factor if abs(wanted - reached) <= 1e-12 * abs(wanted) else None
-        return position + 0.5 * t * (velocity + reached), reached, change / t, 0.0
+        change = f * v - velocity
+        if abs(change) <= bound * t:
+            reached, self._reached = f * v, f
+        else:
+            change = copysign(bound * t, change)
+            reached, self._reached = velocity + change, None
+        position += 0.5 * t * (velocity + reached)
+        self._offset = position - f * p
+        return position, reached, change / t, 0.0
 
     def change_source(self, before: float, now: float) -> None:
-        self._master_position += now - before
+        if self._reached is not None:
+            self._offset += self._reached * (before - now)

@@ -1,8 +1,9 @@
 """Flying saw: a standing slave runs up to a moving master and is synchronous from a position on.
 
 The run-up is a jerk-limited ramp over the way of the master: its table is planned with the velocity v0 that the master
-has at the start and read at the time τ = (pm - pm0)/v0, so that the slave meets its place whatever the master does
-meanwhile. With r = dτ/dt = vm/v0:  v = v'(τ)·r,  a = a'(τ)·r² + v'(τ)·r',  j = j'·r³ + 3·a'·r·r' + v'·r''.
+has, and read at the time τ = (pm - pm0)/v0, so that the slave meets its place whatever the master does meanwhile. With
+r = dτ/dt = vm/v0:  v = v'(τ)·r,  a = a'(τ)·r² + v'(τ)·r',  j = j'·r³ + 3·a'·r·r' + v'·r''.
+While the slave still waits, a master with another velocity has the run-up planned anew.
 """
 
 from __future__ import annotations
@@ -14,6 +15,9 @@ from cnc_ptp.axis.faults import SAW_TOO_LATE
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.profile import State
+
+ROUNDING = 1e-12
+"""s; what a run-up that is planned anew in the moment of its begin may be late."""
 
 
 class FlyingSaw(Coupling):
@@ -32,38 +36,51 @@ class FlyingSaw(Coupling):
         self._table: Profile | None = None
         self._begin = 0.0
         self._speed = 1.0
+        self._wait = 0.0
         self.synchronous = False
 
     def follow(self, position: float, states: Sequence[State]) -> list[State]:
-        """Raises CncError 23051 in the first block when there is no time or way left to synchronise."""
+        """Raises CncError 23051 while the slave stands when there is no time or way left to synchronise."""
         if self._table is None:
-            self._begin, self._speed = states[0][:2]
-            self._table = self._plan(position)
-        slaves = []
-        for state in states:
-            moment = (state[0] - self._begin) / self._speed
-            self.synchronous = self.synchronous or moment >= self._table.duration
-            slaves.append(self._linear.follow(0.0, [state])[0] if self.synchronous else self._run_up(moment, state))
-        return slaves
+            if states[0][1] == 0.0:
+                raise CncError(SAW_TOO_LATE, "the master stands; a flying saw needs a moving master")
+            self._plan(position, states[0])
+        return [self._next(position, state) for state in states]
 
-    def _plan(self, position: float) -> Profile:
-        """Wait, ramp up to factor · v0, and on at that velocity so that the two positions are met together."""
-        if self._speed == 0.0:
-            raise CncError(SAW_TOO_LATE, "the master stands; a flying saw needs a moving master")
+    def _next(self, position: float, master: State) -> State:
+        assert self._table is not None
+        moment = (master[0] - self._begin) / self._speed
+        if moment < self._wait and master[1] not in (0.0, self._speed):
+            moment = self._plan(position, master)
+        if moment >= self._table.duration:
+            self.synchronous = True
+        return self._linear.follow(0.0, [master])[0] if self.synchronous else self._run_up(moment, master)
+
+    def _plan(self, position: float, master: State) -> float:
+        """Wait, ramp up to factor · v0, and on at that velocity so that the two positions are met together.
+
+        Returns the moment 0.0 at which the table begins.
+        """
+        self._begin, self._speed = master[:2]
         velocity = self.ratio * self._speed
+        if abs(velocity) > self._limits.velocity:
+            reason = f"it would have to run at {abs(velocity):g}, its velocity is limited to {self._limits.velocity:g}"
+            raise CncError(SAW_TOO_LATE, reason)
         ramp = plan_to_velocity(position, 0.0, 0.0, velocity, self._limits)
         meeting = (self._master_position - self._begin) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
-        wait = meeting - ramp.duration - cruise
+        self._wait = meeting - ramp.duration - cruise
         if cruise < 0.0:
             way = abs(ramp.end[0] - position)
             reason = f"the run-up takes {way:g}, the synchronous position is {self._slave_position - position:g} away"
             raise CncError(SAW_TOO_LATE, reason)
-        if wait < 0.0:
+        if self._wait < -ROUNDING:
             reason = f"the run-up takes {ramp.duration + cruise:g} s, the master is there in {meeting:g} s"
             raise CncError(SAW_TOO_LATE, reason)
-        rows = [(wait + t, p, v, a, j) for t, p, v, a, j in ramp.rows]
-        return Profile([(0.0, position, 0.0, 0.0, 0.0), *rows] if wait > 0.0 else rows)
+        self._wait = max(0.0, self._wait)
+        rows = [(self._wait + t, p, v, a, j) for t, p, v, a, j in ramp.rows]
+        self._table = Profile([(0.0, position, 0.0, 0.0, 0.0), *rows])
+        return 0.0
 
     def _run_up(self, moment: float, master: State) -> State:
         assert self._table is not None

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
-from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, PATH_NOT_ACCEPTED, SAW_TOO_LATE
+from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, PATH_NOT_ACCEPTED
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import StatusBit, state_name
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock
+from cnc_ptp.machine.unit import UPSTREAM_LOST
 from cnc_ptp.parameters import AxisParameters
 
 PATH_TOLERANCE = 1e-9
@@ -89,6 +90,8 @@ class MasterSource:
         self._coupling: Coupling | None = None
         self._actual = False
         self._velocity = 0.0
+        self._rest: float | None = None
+        """Where the master stood at the end of its last block, None if it moved."""
         self._first_cycle = 0
         self._gantry: list[float] | None = None
         self._gantry_distance: float | None = None
@@ -102,19 +105,31 @@ class MasterSource:
             return []
         block = inputs.get(coupling.master)
         if not isinstance(block, AxisBlock):
+            axis.fault(first_cycle, UPSTREAM_LOST, f"there is no block of its master '{coupling.master}'")
             return []
         if coupling is not self._coupling:
             self._coupling, self._actual, self._gantry_distance = coupling, block.couples_actual, None
+        else:
+            self._allow_placing(coupling, block)
+        self._rest = block.set_position[-1] if block.set_velocity[-1] == block.set_acceleration[-1] == 0.0 else None
         axis.follow_master(block.target_velocity, bool(block.status_bits[-1] & StatusBit.HAS_JOB))
         states = self._states(coupling, block)
         try:
             setpoints = coupling.follow(axis.ptp.state(first_cycle)[0], states)
         except CncError as error:
-            axis.give_up_coupling(first_cycle, SAW_TOO_LATE, error.message)
+            axis.give_up_coupling(first_cycle, error.error_id, error.message)
             return []
         self._prepare_gantry(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
         return setpoints
+
+    def _allow_placing(self, coupling: Coupling, block: AxisBlock) -> None:
+        """A standing master that counts from elsewhere (it was moved without enable) does not take its slave along."""
+        before, now = self._rest, block.set_position[0]
+        if self._actual or block.couples_actual or before is None or before == now:
+            return
+        if block.state[0] in (S.DISABLED, S.STANDSTILL, S.ERROR_STOP) and block.set_velocity[0] == 0.0:
+            coupling.change_source(before, now)
 
     def _states(self, coupling: Coupling, block: AxisBlock) -> list[State]:
         if block.couples_actual != self._actual:
@@ -145,11 +160,11 @@ class MasterSource:
 
     @property
     def watches_gantry(self) -> bool:
-        return self._gantry is not None
+        return self._gantry is not None and self._axis.coupled
 
     def watch_gantry(self, cycle: int, setpoint: State, actual_position: float) -> None:
         """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
-        if self._gantry is None:
+        if self._gantry is None or not self._axis.coupled:
             return
         axis, coupling = self._axis, self._axis.coupling
         assert isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None

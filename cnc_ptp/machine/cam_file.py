@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from cnc_ptp.axis.cam import CamTable
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.csv_table import table_lines
@@ -21,8 +23,13 @@ def parse_cam(text: str, file: str) -> list[list[float]]:
     for number, values in table_lines(text, COLUMNS, fault):
         try:
             points.append([float(value) for value in values])
-        except ValueError as error:
-            raise fault(number, f"{error}") from None
+        except ValueError:
+            raise fault(number, f"'{values[0]}, {values[1]}' are not two numbers") from None
+        if not all(map(isfinite, points[-1])):
+            raise fault(number, f"'{values[0]}, {values[1]}' are not two finite numbers")
+        if len(points) > 1 and points[-1][0] <= points[-2][0]:
+            reason = f"master position {points[-1][0]:g} comes after {points[-2][0]:g}; a cam table must ascend"
+            raise fault(number, reason)
     try:
         CamTable(points, cyclic=False)
     except CncError as error:
