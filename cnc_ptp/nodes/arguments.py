@@ -10,14 +10,14 @@ import click
 from rclpy.utilities import remove_ros_args
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import consumers_of, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 NAME = click.argument("name")
 RECORDERS = click.option(
-    "--recorders", default=0, show_default=True, help="Recorders that must have found the blocks first."
+    "--recorders", default=0, show_default=True, help="1: a recorder must have found the blocks first."
 )
 
 
@@ -30,9 +30,7 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @RECORDERS
     def command(machine: str, name: str, recorders: int, **options: Any) -> None:
         def make() -> Any:
-            parameters = read_machine(machine)
-            consumers = consumers_of(parameters, name, recorders=recorders)
-            return node_class(parameters, name, consumers=consumers, **options)
+            return node_class(read_machine(machine), name, recorders=recorders, **options)
 
         sys.exit(process.run_node(make))
 

@@ -104,9 +104,7 @@ class ClockNode(Node):
             return
         if self.count_publishers(TICK) > 1:
             raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
-        if self._plc.get_publisher_count() and self._publisher.get_subscription_count() >= len(
-            self._expected - {MONITOR}
-        ):
+        if self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR}):
             if not self._free_run:
                 process.take_priority()
             self._start_ns = time.time_ns()

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.job import read_file, read_job
-from cnc_ptp.machine.wiring import PLC, consumers_of, unit_kinds
+from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode, cycles_of
@@ -83,11 +83,10 @@ def stopped(end: EndRequest, nodes: list[Node]) -> bool:
 def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[Node]:
     nodes: list[Node] = []
     for name, kind in unit_kinds(machine).items():
-        consumers = consumers_of(machine, name, recorders=recorders)
         if kind == PLC:
             entries = read_job(machine, program=job.program, scenario=job.scenario)
             idle_ends = job.duration is None
-            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, consumers=consumers))
+            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, recorders=recorders))
         else:
-            nodes.append(UNIT_NODES[kind](machine, name, consumers=consumers))
+            nodes.append(UNIT_NODES[kind](machine, name, recorders=recorders))
     return nodes

@@ -15,7 +15,7 @@ from cnc_ptp.machine.blocks import Command, Event, Severity
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
-from cnc_ptp.machine.wiring import PLC, build_unit, consumers_of
+from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
 from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT
@@ -185,7 +185,7 @@ def command(machine: str, program: str | None, scenario: str | None, stay: bool,
             parameters,
             scenario=read_job(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
-            consumers=consumers_of(parameters, PLC, recorders=recorders),
+            recorders=recorders,
         )
 
     sys.exit(process.run_node(make))

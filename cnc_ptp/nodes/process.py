@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import socket
 import sys
-from collections.abc import Callable, MutableMapping, Sequence
+from collections.abc import Callable, MutableMapping, Sequence, Set
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from typing import Any
 import rclpy
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_rmw_implementation_identifier
 
@@ -96,6 +97,15 @@ def claim_domain() -> socket.socket:
             "Wait for its end, or set ROS_DOMAIN_ID to another number",
         ) from None
     return claim
+
+
+def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
+    """True when `publisher` of `node` has found readers of all nodes `names`.
+
+    Their number alone would take a foreign reader (ros2 topic echo) for one of ours.
+    """
+    readers = {reader.node_name for reader in node.get_subscriptions_info_by_topic(publisher.topic_name)}
+    return names <= readers and publisher.get_subscription_count() >= len(names)
 
 
 def spin(

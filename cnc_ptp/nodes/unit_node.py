@@ -34,6 +34,7 @@ from cnc_ptp.nodes.topics import (
     EVENTS,
     HEARTBEAT,
     PLC_INPUT,
+    RECORDER,
     REMEMBERED_BLOCKS,
     REPORT,
     SERVICES,
@@ -63,14 +64,16 @@ class UnitNode(Node):
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
     """
 
-    def __init__(self, machine: MachineParameters, unit: Unit, *, consumers: int) -> None:
-        """`consumers`: nodes that must find this one's blocks before it is ready."""
+    def __init__(self, machine: MachineParameters, unit: Unit, *, recorders: int = 0) -> None:
+        """`recorders`: with 1, a recorder must have found the blocks too before the node is ready."""
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
-        self._consumers = consumers
         self._watchdog = machine.watchdog_ms / 1000.0
         self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
-        self._inputs: Inputs = wiring(machine)[unit.name]
+        wires = wiring(machine)
+        self._inputs: Inputs = wires[unit.name]
+        self._readers = {name for name, needs in wires.items() if unit.name in (*needs.upstream, *needs.feedback)}
+        self._readers |= {RECORDER} if recorders else set()
         self._gate = BlockGate(self._inputs)
         self._cycle_ns = machine.cycle_time_us * 1000
         self._count = machine.block_cycles
@@ -130,7 +133,7 @@ class UnitNode(Node):
         if self._running:
             self._ready_timer.cancel()
             return
-        found = self._block_publisher.get_subscription_count() >= self._consumers
+        found = process.is_read(self, self._block_publisher, self._readers)
         if found and all(subscription.get_publisher_count() for subscription in self._needed):
             self._report(-1)
 

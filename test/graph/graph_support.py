@@ -1,6 +1,7 @@
 """Runs the command line as users do, finds its node processes, compares recordings."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -171,6 +172,17 @@ def wait_until_gone(pids):
     while time.monotonic() < deadline and any(alive(pid) for pid in pids):
         time.sleep(0.05)
     return [pid for pid in pids if alive(pid)]
+
+
+def wait_for_handler(pid, number):
+    """Waits until a process handles a signal by itself."""
+    deadline = time.monotonic() + TIMEOUT
+    while time.monotonic() < deadline:
+        caught = re.search(r"SigCgt:\s*(\w+)", Path(f"/proc/{pid}/status").read_text())[1]
+        if int(caught, 16) >> (number - 1) & 1:
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"{signal.Signals(number).name} is not handled")
 
 
 def kill(pid):

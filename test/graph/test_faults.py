@@ -80,6 +80,16 @@ def test_a_second_clock_starts_nothing(around):
     assert str(refused.value) == ("P-ERR-26109 another clock is on this ROS domain; this one ends, nothing was started")
 
 
+def test_a_foreign_reader_is_not_taken_for_one_of_ours(around):
+    """Otherwise the clock would start before the recorder is found, and its first blocks would be missing."""
+    outside, echo, spin_until = around(lambda: Node("echo", enable_rosout=False))
+    echo.create_subscription(msg.PlcBlock, block_topic("plc"), print, BLOCKS)
+    spin_until(outside.plc.get_subscription_count)
+    spin_until(lambda: process.is_read(outside, outside.plc, {"echo"}))
+    assert not process.is_read(outside, outside.plc, {"recorder"})
+    assert not process.is_read(outside, outside.plc, {"echo", "recorder"})
+
+
 def test_blocks_that_are_not_recorded_are_told(around, tmp_path):
     def make():
         return RecorderNode(read_machine(str(PTP)), str(tmp_path / "a.mcap"), PTP.read_text())

@@ -47,7 +47,7 @@ class Bench:
     def __init__(self):
         process.initialise()
         self.outside = Surroundings()
-        self.axis = AxisNode(read_machine(str(PTP)), "x", consumers=1)
+        self.axis = AxisNode(read_machine(str(PTP)), "x")
         self.executor = process.EventsExecutor()
         for node in (self.outside, self.axis):
             self.executor.add_node(node)
