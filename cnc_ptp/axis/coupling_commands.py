@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import copysign, inf
 from typing import Any
 
 from cnc_ptp.axis.axis import Axis
@@ -16,6 +17,7 @@ from cnc_ptp.axis.faults import (
     BAD_FACTOR,
     COUPLED_TO_ITSELF,
     COUPLING_LOOP,
+    DECOUPLE_AT_REST,
     FACTOR_KIND,
     GROUP_ERROR,
     MASTER_NOT_STANDING,
@@ -26,8 +28,8 @@ from cnc_ptp.axis.faults import (
 from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
-from cnc_ptp.axis.two_stage import Request
 from cnc_ptp.errors import CncError
+from cnc_ptp.motion.limits import SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
 
 GROUP = ("above", "master_stands", "master_lost")
@@ -241,17 +243,29 @@ class CouplingCommands:
         _, speed, acceleration, _ = axis.ptp.state(cycle)
         if speed == 0.0 and acceleration == 0.0:
             axis.state = axis.rest_state()
-            return None if target is None and velocity is None else f"axis {axis.name}: decouple: the axis stands"
-        limits = axis.own_limits._replace(velocity=velocity or max(former, abs(speed)))
-        axis.ptp.drive_on(cycle, limits.velocity, limits)
-        axis.state = S.CONTINUOUS_MOTION if axis.ptp.job else S.STOPPING
-        if target is not None and axis.ptp.job is not None:
-            axis.state = S.DISCRETE_MOTION
+            return None if target is None and velocity is None else self._at_rest(target, velocity)
+        highest = axis.parameters.max_velocity
+        full = max(SMALLEST_LIMIT, velocity or min(former or abs(speed), highest))
+        limits = axis.own_limits._replace(velocity=full)
+        if target is not None:
+            # what a compensation adds to the velocity is kept on the way to the target too
+            kept = velocity or min(max(full, abs(speed)), highest)
+            axis.ptp.lead_on(cycle, float(target), limits._replace(velocity=kept))
             axis.target_window.watch()
-            axis.ptp.redirect(cycle, Request(float(target)))
-        elif velocity is not None and axis.ptp.job is not None:
-            axis.ptp.set_override(cycle, axis.ptp.override)
+            axis.state = S.DISCRETE_MOTION
+        elif velocity is not None:
+            axis.ptp.lead_on(cycle, copysign(inf, speed), limits)
+            axis.state = S.CONTINUOUS_MOTION
+        else:
+            axis.ptp.drive_on(cycle, full, limits)
+            axis.state = S.CONTINUOUS_MOTION if axis.ptp.job else S.STOPPING
         return None
+
+    def _at_rest(self, target: float | None, velocity: float | None) -> str:
+        given = {"target": target, "velocity": velocity}
+        unused = " and ".join(f"{name} {value:g}" for name, value in given.items() if value is not None)
+        where = f"P-WARN-{DECOUPLE_AT_REST} axis {self._axis.name}: decouple"
+        return f"{where}: the axis stands; {unused} is not used, start it"
 
     # the group
 

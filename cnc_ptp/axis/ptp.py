@@ -143,14 +143,28 @@ class PtpGenerator:
 
         `full_velocity` (mm/s, deg/s) is what 100 % override mean when it changes. Source: TX1250 3.2.3.
         """
-        position, velocity, acceleration, _ = self.state(cycle)
+        position, velocity, acceleration, jerk = self.state(cycle)
         left = velocity + acceleration * abs(acceleration) / (2.0 * limits.jerk)
-        if left * velocity <= 0.0:
+        if left * velocity <= 0.0 or (acceleration != 0.0 and abs(left) <= self._blur(jerk, limits.jerk)):
             self.finish()
             self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, limits), limits)
             return
         job = Job(copysign(inf, left), limits._replace(velocity=full_velocity), full_velocity)
         self._begin(cycle, job, plan_to_velocity(position, velocity, acceleration, left, limits))
+
+    def _blur(self, jerk: float, own_jerk: float) -> float:
+        """Velocity (mm/s) that a master's last ramp may seem to leave, because it ends within a cycle, not at one."""
+        most = max(abs(jerk), own_jerk)
+        return 0.5 * most * self._cycle_time**2 * (1.0 + most / own_jerk)
+
+    def lead_on(self, cycle: int, target: float, limits: Limits) -> None:
+        """A job for an axis that moves without one: to `target`, which ±infinity makes endless.
+
+        Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
+        """
+        check_limits(limits)
+        job = self._job_on_the_way(cycle, target, limits)
+        self._begin(cycle, job, self._table(cycle, job))
 
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.

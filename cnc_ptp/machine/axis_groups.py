@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command
+from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
 from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
 
@@ -93,6 +93,7 @@ class AxisGroups:
             return True
         slave = bool(block.master) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
         still = block.set_velocity[-1] == 0.0 and block.set_acceleration[-1] == 0.0
+        still = still and not block.status_bits[-1] & StatusBit.HAS_JOB  # held by override 0, or in its first cycle
         return still and (slave or block.state[-1] in STANDING)
 
     def _lead_commands(self) -> Iterator[Command]:
