@@ -13,9 +13,13 @@ from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.faults import BAD_CAM_TABLE, CAM_POSITION
 from cnc_ptp.errors import CncError
+from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.motion.profile import State
 
 SMALLEST_TABLE = 3
+SMALLEST_STEP = 1e-6
+"""mm or deg, of the master."""
+ASCEND = f"a cam table must ascend by {SMALLEST_STEP:g} or more"
 BEGIN_TOLERANCE = 1e-6
 """Largest distance (mm, deg) between a slave and where a table with a slave offset has it."""
 
@@ -37,8 +41,6 @@ class CamTable:
         self.length = self.last - self.first
         self.lift = float(y[-1] - y[0])
         starts, coefficients = _cyclic_pieces(x, y) if cyclic else _single_pieces(x, y)
-        if not np.isfinite(coefficients).all():
-            raise CncError(BAD_CAM_TABLE, "the points of the cam table are too close to each other or too large")
         self._starts: list[float] = starts.tolist()
         self._pieces: list[list[float]] = coefficients.T.tolist()
         self._begin, self._end = float(y[0]), float(y[-1])
@@ -95,14 +97,16 @@ def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]
         raise CncError(BAD_CAM_TABLE, f"a cam table needs {SMALLEST_TABLE} points or more, it has {len(points)}")
     try:
         table = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         table = np.empty(0)
     if table.shape != (len(points), 2) or not np.isfinite(table).all():
         raise CncError(BAD_CAM_TABLE, "each point of a cam table needs two finite numbers, master and slave")
-    steps = np.flatnonzero(np.diff(table[:, 0]) <= 0.0)
+    if np.abs(table).max() > LARGEST_STATE:
+        raise CncError(BAD_CAM_TABLE, f"the points of a cam table must lie within ±{LARGEST_STATE:g}")
+    steps = np.flatnonzero(np.diff(table[:, 0]) < SMALLEST_STEP)
     if len(steps):
         before, after = table[steps[0], 0], table[steps[0] + 1, 0]
-        raise CncError(BAD_CAM_TABLE, f"master position {after:g} comes after {before:g}; a cam table must ascend")
+        raise CncError(BAD_CAM_TABLE, f"master position {after:g} comes after {before:g}; {ASCEND}")
     return table[:, 0], table[:, 1]
 
 

@@ -17,7 +17,7 @@ from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.profile import State
 
 ROUNDING = 1e-12
-"""s; what a run-up that is planned anew in the moment of its begin may be late."""
+"""s; what a run-up may be late or long: it can be planned anew in the very moment of its begin."""
 
 
 class FlyingSaw(Coupling):
@@ -37,6 +37,7 @@ class FlyingSaw(Coupling):
         self._begin = 0.0
         self._speed = 1.0
         self._wait = 0.0
+        self._waits = True
         self.synchronous = False
 
     def follow(self, position: float, states: Sequence[State]) -> list[State]:
@@ -50,7 +51,9 @@ class FlyingSaw(Coupling):
     def _next(self, position: float, master: State) -> State:
         assert self._table is not None
         moment = (master[0] - self._begin) / self._speed
-        if moment < self._wait and master[1] not in (0.0, self._speed):
+        if moment > self._wait:
+            self._waits = False
+        elif self._waits and master[1] not in (0.0, self._speed):
             moment = self._plan(position, master)
         if moment >= self._table.duration:
             self.synchronous = True
@@ -70,7 +73,7 @@ class FlyingSaw(Coupling):
         meeting = (self._master_position - self._begin) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
         self._wait = meeting - ramp.duration - cruise
-        if cruise < 0.0:
+        if cruise < -ROUNDING:
             way = abs(ramp.end[0] - position)
             reason = f"the run-up takes {way:g}, the synchronous position is {self._slave_position - position:g} away"
             raise CncError(SAW_TOO_LATE, reason)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-from cnc_ptp.axis.cam import CamTable
+from cnc_ptp.axis.cam import ASCEND, SMALLEST_STEP, CamTable
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.csv_table import table_lines
 
@@ -27,8 +27,8 @@ def parse_cam(text: str, file: str) -> list[list[float]]:
             raise fault(number, f"'{values[0]}, {values[1]}' are not two numbers") from None
         if not all(map(isfinite, points[-1])):
             raise fault(number, f"'{values[0]}, {values[1]}' are not two finite numbers")
-        if len(points) > 1 and points[-1][0] <= points[-2][0]:
-            reason = f"master position {points[-1][0]:g} comes after {points[-2][0]:g}; a cam table must ascend"
+        if len(points) > 1 and points[-1][0] - points[-2][0] < SMALLEST_STEP:
+            reason = f"master position {points[-1][0]:g} comes after {points[-2][0]:g}; {ASCEND}"
             raise fault(number, reason)
     try:
         CamTable(points, cyclic=False)
