@@ -11,6 +11,9 @@ from math import copysign
 
 from cnc_ptp.motion.profile import State
 
+ROUNDING = 1e-9
+"""Part of an acceleration limit: a velocity is rounded, its change in a cycle even more so."""
+
 
 class Coupling(ABC):
     """A coupling to the axis `master`; `ratio` is slave velocity over master velocity, where it is constant."""
@@ -62,7 +65,7 @@ class CyclicCoupling(Coupling):
     """The factor comes cyclically from the PLC and is smoothed: the slave's acceleration stays within AccBound B.
 
     Its velocity goes towards factor · vm by at most B·T a cycle. Once it is there, the slave is a linear one
-    (p = f·pm + offset) for as long as the factor stays and |f·am| <= B. Stable where B >= max|factor| · max(A+, A-) of
+    (p = f·pm + offset) for as long as the factor stays and B is kept. Stable where B >= max|factor| · max(A+, A-) of
     the master, else it lags behind its factor. Source: TX1250 3.3.
     """
 
@@ -93,10 +96,10 @@ class CyclicCoupling(Coupling):
         """The slave one cycle after `slave`."""
         f, bound, t = self.ratio, self.acc_bound, self._cycle_time
         p, v, a, j = master
-        if self._reached == f and abs(f * a) <= bound:
-            return f * p + self._offset, f * v, f * a, f * j
         position, velocity, _, _ = slave
         change = f * v - velocity
+        if self._reached == f and abs(f * a) <= bound and abs(change) <= bound * t * (1.0 + ROUNDING):
+            return f * p + self._offset, f * v, f * a, f * j
         if abs(change) <= bound * t:
             reached, self._reached = f * v, f
         else:
