@@ -105,9 +105,13 @@ class Axis:
         return not self.ptp.finished(cycle) or (self.superposed and self.external.moving(cycle))
 
     def absorb(self, cycle: int) -> None:
-        """The basic motion takes over what compensation and external setpoints have added; both are over."""
+        """The basic motion takes over what compensation and external setpoints have added; both are over.
+
+        Their acceleration is not limited in jerk and ends here: on a jerk-limited ramp it would drive the velocity on.
+        """
         if self.superposed:
-            self.ptp.take_over(cycle, *self.setpoint(cycle)[:3])
+            position, velocity, _, _ = self.setpoint(cycle)
+            self.ptp.take_over(cycle, position, velocity, self.ptp.state(cycle)[2])
             self._end_superposition()
 
     def place(self, cycle: int, position: float) -> None:
@@ -335,7 +339,8 @@ class Axis:
         """
         self.error_id = error_id
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
-            self.ptp.take_over(cycle, *setpoint[:3])
+            position, velocity, acceleration, _ = setpoint
+            self.ptp.take_over(cycle, position, velocity, 0.0 if self.superposed else acceleration)
             self._end_superposition()
         self.absorb(cycle)
         if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):

@@ -12,6 +12,8 @@ from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.motion.profile import State
 
+LONGEST_PERIOD = 0.02
+"""Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
 NEGLIGIBLE_VELOCITY = 1e-9
 """mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
 ABSOLUTE = "absolute"
@@ -80,6 +82,7 @@ class ExternalSetpoints:
         self._waiting: deque[Setpoint] = deque()
         self._driving: Setpoint | None = None
         self._period = 1
+        self._longest_period = max(1, round(LONGEST_PERIOD / cycle_time))
         self._last_cycle: int | None = None
         self._rest = standing(0.0)
         self._rest_cycle = 0
@@ -97,6 +100,7 @@ class ExternalSetpoints:
         Absolute setpoints are positions of the axis, relative ones count from where the axis is now.
         """
         if self.mode is None:
+            self._period = 1
             contribution = self.contribution(cycle)[0]
             self._reference = position - contribution if mode == ABSOLUTE else -contribution
             self.mode = mode
@@ -117,9 +121,16 @@ class ExternalSetpoints:
         return -1 if self._driving is None else self._driving.cycle
 
     def feed(self, setpoints: Iterable[Setpoint]) -> None:
-        """Takes setpoints in the order of their cycles; once disabled, none after the last cycle."""
+        """Takes setpoints in the order of their cycles; once disabled, none after the last cycle.
+
+        The end of a motion (direction 0) takes the place of what waits from its cycle on.
+        """
         last = self._last_cycle if self.mode is None else None
-        self._waiting.extend(setpoint for setpoint in setpoints if last is None or setpoint.cycle <= last)
+        for setpoint in setpoints:
+            if setpoint.direction == 0:
+                self._waiting = deque(waiting for waiting in self._waiting if waiting.cycle < setpoint.cycle)
+            if last is None or setpoint.cycle <= last:
+                self._waiting.append(setpoint)
 
     def disable(self, cycle: int) -> None:
         """The setpoint of `cycle` is taken over once more, then the contribution comes to rest."""
@@ -196,7 +207,7 @@ class ExternalSetpoints:
                 self._waiting.clear()
                 return
             if self._driving is not None:
-                self._period = setpoint.cycle - self._driving.cycle
+                self._period = min(setpoint.cycle - self._driving.cycle, self._longest_period)
             self._driving = driving
             self._last_cycle = cycle if setpoint.direction == 0 or self.mode is None else None
 
@@ -209,8 +220,12 @@ class ExternalSetpoints:
         self._driving = self._last_cycle = None
 
     def _to_rest(self, driving: Setpoint, cycle: int) -> Profile:
-        """The ramp to rest from `cycle` on; a standing setpoint stays where it is."""
-        position, velocity, acceleration, _ = self._driven(driving, cycle)
+        """The ramp to rest from `cycle` on; a standing setpoint stays where it is.
+
+        Setpoints know no jerk limit, and neither does their end: their acceleration ends at once. On the jerk limit of
+        the axis it would drive the velocity on by a²/2J.
+        """
+        position, velocity, _, _ = self._driven(driving, cycle)
         if abs(velocity) <= NEGLIGIBLE_VELOCITY:
-            velocity = acceleration = 0.0
-        return plan_to_velocity(position, velocity, acceleration, 0.0, self._limits)
+            velocity = 0.0
+        return plan_to_velocity(position, velocity, 0.0, 0.0, self._limits)

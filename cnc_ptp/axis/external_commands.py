@@ -99,7 +99,7 @@ class ExternalCommands:
             )
         try:
             packets = read_setpoints(setpoints)
-            if packets:
+            if packets and packets[0].direction:
                 check_order(axis.external.newest_cycle, packets[0])
         except ValueError as error:
             axis.refuse(SETPOINTS, BAD_SETPOINT, str(error))

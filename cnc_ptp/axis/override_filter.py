@@ -17,7 +17,7 @@ class OverrideFilter:
         """An override given at `cycle`: the percentage to be used now, None when it has to wait."""
         if self._steps == 0 or percent in (0.0, 100.0):
             return self._pass_on(cycle, percent)
-        self._waiting = round(0.01 * percent * self._steps) * 100.0 / self._steps
+        self._waiting = max(1, round(0.01 * percent * self._steps)) * 100.0 / self._steps
         return self.due(cycle)
 
     @property

@@ -54,8 +54,12 @@ class PowerCommands:
             axis.has_been_stopped = True
 
     def do_reset(self, cycle: int) -> None:
-        """Leaves ErrorStop; refused while the axis moves (23008)."""
+        """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""
         axis = self._axis
+        if axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
+            axis.stop(cycle)
+            axis.state = S.STOPPING
+            axis.has_been_stopped = True
         if axis.state != S.ERROR_STOP:
             return
         if not axis.ptp.finished(cycle):

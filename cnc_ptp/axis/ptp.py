@@ -123,7 +123,7 @@ class PtpGenerator:
 
     def highest_velocity(self, cycle: int) -> float:
         """The largest |v| (mm/s) that the positioning in work may still have, with a new velocity that is to come."""
-        limits = [] if self.job is None else [self.job.limits.velocity]
+        limits = [] if self.job is None else [self.job.reduced_velocity]
         coming = [] if self._activation is None else [self._activation.velocity]
         return max([abs(self.state(cycle)[1]), *limits, *coming])
 

@@ -20,6 +20,8 @@ from cnc_ptp.axis.states import state_name
 from cnc_ptp.axis.two_stage import Request
 
 REDIRECTABLE = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION, S.STOPPING)
+OVERRIDE_DECIMALS = 4
+"""Of the percentage: 100 % are 1,000,000 steps."""
 OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
@@ -89,7 +91,7 @@ class PtpCommands:
         if not 0.0 <= percent <= highest:
             reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
             axis.refuse("set_override", BAD_OVERRIDE, reason)
-        used = axis.override_filter.take(cycle, percent)
+        used = axis.override_filter.take(cycle, round(percent, OVERRIDE_DECIMALS))
         if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None
         reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"

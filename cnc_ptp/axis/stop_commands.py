@@ -60,6 +60,8 @@ class StopCommands:
         self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
+        if axis.state == S.STOPPING and axis.ptp.drop_suspended():
+            return f"axis {axis.name}: {command} takes the new target back; the axis stops"
         if axis.state == S.STOPPING or (axis.state == S.DISCRETE_MOTION and axis.ptp.braking(cycle)):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         axis.checks.positive(command, {"deceleration": deceleration, "jerk": jerk})

@@ -21,8 +21,9 @@ from cnc_ptp.machine.blocks import (
     SpindleBlock,
     StatusBit,
 )
-from cnc_ptp.machine.scenario import SETPOINTS, Entry
-from cnc_ptp.machine.setpoint_file import Row, placed
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.setpoint_file import placed
+from cnc_ptp.machine.setpoint_queue import SETPOINTS, SetpointQueue
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.parameters import AxisParameters
 
@@ -64,8 +65,8 @@ class PlcUnit(Unit):
         self._end_when_idle = end_when_idle
         self._groups = AxisGroups(axes or {}, cycle_time=cycle_time)
         self._outgoing: list[Command] = []
-        self._setpoints: dict[str, deque[Row]] = {}
-        self._arrived: dict[str, list[Row]] = {}
+        self.setpoints = SetpointQueue(cycle_time=cycle_time)
+        """External setpoints that scenario and topics give."""
         self._auto_acknowledge = True
         self._pending: dict[int, HandshakeRequest] = {}
         self._life_sign_on = True
@@ -79,17 +80,6 @@ class PlcUnit(Unit):
     def input(self, command: Command) -> None:
         """A command from outside (topic, button): goes out with the next block."""
         self._outgoing.append(command)
-
-    def input_setpoints(self, axis: str, rows: Iterable[Row]) -> None:
-        """External setpoints with their cycles: those of a block go out with it, late ones with the next."""
-        self._setpoints.setdefault(axis, deque()).extend(rows)
-
-    def input_setpoint(self, axis: str, values: Row) -> None:
-        """An external setpoint for the next block: position, velocity, acceleration, direction.
-
-        Those that come within one block are spread over the cycles of the next.
-        """
-        self._arrived.setdefault(axis, []).append(values)
 
     # commands
 
@@ -118,8 +108,7 @@ class PlcUnit(Unit):
         Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves.
         """
         self._scenario.clear()
-        self._setpoints.clear()
-        self._arrived.clear()
+        self.setpoints.clear()
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
@@ -148,10 +137,10 @@ class PlcUnit(Unit):
         first_cycle, count = tick
         self._reported = inputs
         self._outgoing += self._groups.report(first_cycle, inputs)
+        self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
-        self._place_arrived(first_cycle, count)
-        self._send_setpoints(first_cycle + count)
+        self._outgoing += self.setpoints.take(first_cycle, count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
@@ -163,7 +152,7 @@ class PlcUnit(Unit):
             first_cycle,
             count,
             life_sign=self._life_sign,
-            scenario_done=not self._scenario and not self._setpoints,
+            scenario_done=not self._scenario and not self.setpoints,
             run_done=run_done and not commands,
             run_failed=self._failed or any(error_of(block) for block in inputs.values()),
             commands=commands,
@@ -176,27 +165,9 @@ class PlcUnit(Unit):
             if command.target == self.name:
                 self.command(command, first_cycle)
             elif command.command == SETPOINTS:
-                self.input_setpoints(command.target, placed(command.arguments["setpoints"], first_cycle))
+                self.setpoints.add(command.target, placed(command.arguments["setpoints"], first_cycle))
             else:
                 self._outgoing.append(command)
-
-    def _place_arrived(self, first_cycle: int, count: int) -> None:
-        for axis, arrived in self._arrived.items():
-            newest = arrived[-count:]
-            cycles = (first_cycle + index * count // len(newest) for index in range(len(newest)))
-            self.input_setpoints(axis, [[cycle, *values] for cycle, values in zip(cycles, newest, strict=True)])
-        self._arrived.clear()
-
-    def _send_setpoints(self, end_cycle: int) -> None:
-        """External setpoints of the cycles before `end_cycle`, after the commands of the same block."""
-        for axis, waiting in list(self._setpoints.items()):
-            rows = []
-            while waiting and waiting[0][0] < end_cycle:
-                rows.append(waiting.popleft())
-            if rows:
-                self._outgoing.append(Command(axis, SETPOINTS, {"setpoints": rows}))
-            if not waiting:
-                del self._setpoints[axis]
 
     def _answer_requests(self, cycle: int, inputs: Mapping[str, Block]) -> None:
         for name, block in inputs.items():
@@ -211,7 +182,7 @@ class PlcUnit(Unit):
     def _run_done(self, count: int, inputs: Mapping[str, Block]) -> bool:
         """Everything has stood for the settling time; spindles that still turn are stopped first."""
         expected = set(self._kinds) - self._lost
-        idle = not (self._scenario or self._outgoing or self._setpoints) and expected <= inputs.keys()
+        idle = not (self._scenario or self._outgoing or self.setpoints) and expected <= inputs.keys()
         idle = idle and all(at_rest(block) for block in inputs.values())
         self._idle_cycles = self._idle_cycles + count if idle else 0
         if self._idle_cycles * self._cycle_time < SETTLING_TIME:

@@ -14,9 +14,9 @@ from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
 from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, is_finite
 from cnc_ptp.machine.setpoint_file import parse_setpoints
+from cnc_ptp.machine.setpoint_queue import SETPOINTS
 
 BAD_SCENARIO = 25101
-SETPOINTS = "external_setpoints"
 CAMS = ("couple_cam", "change_cam")
 SWITCH_WORDS = {"on": True, "off": False}
 

@@ -116,11 +116,8 @@ class PlcBridgeNode(UnitNode):
             return
         self._sequence[topic] = message.sequence
         direction = message.direction if message.valid else 0
-        values = [message.position, message.velocity, message.acceleration, direction]
-        if message.cycle:
-            self.unit.input_setpoints(axis, [[message.cycle, *values]])
-        else:
-            self.unit.input_setpoint(axis, values)
+        row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
+        self.unit.setpoints.arrive(axis, row)
 
     def input(self, command: Command) -> None:
         if isinstance(self.unit, PlcUnit):

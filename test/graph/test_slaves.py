@@ -79,7 +79,7 @@ def test_a_dead_master_stops_its_slaves(tmp_path, dead, first):
 
 @pytest.fixture(scope="module")
 def client():
-    graph = Running(PTP, "--duration", "120", "--composed")
+    graph = Running(PTP, "--duration", "600", "--composed")
     process.initialise()
     node = Client(read_machine(PTP))
     node.start()
