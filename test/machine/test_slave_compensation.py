@@ -61,7 +61,7 @@ def test_the_slave_is_making_up() -> None:
     assert bench.do("y", "compensation_start", **COMPENSATION) == ""
     bench.settle()
     assert bench.position("y") == pytest.approx(10_000.0, abs=1e-6) and bench.position("x") == 10_000.0
-    assert_linear(bench, "y", "z", -0.5, -250.0, begin=bench.cycle - 6000)
+    assert_linear(bench, "y", "z", -0.5, -250.0, begin=bench.cycle - 4000)
     assert bench.position("z") == pytest.approx(-0.5 * 10_500.0, abs=1e-6)
     peak = (bench.values("y", "set_velocity") - bench.values("x", "set_velocity")).max()
     assert 200.0 < peak <= 300.0
