@@ -209,6 +209,7 @@ def draw_panel(axes: Axes, panel: Panel, run: FigureRun, end: int, *, header_off
     if panel is VELOCITY:
         draw_override(axes, run, end, drawn)
     style_axes(axes, time)
+    keep_peaks_out(axes, drawn)
     draw_bands(axes, run, end, with_texts=panel is POSITION)
     draw_header(axes, panel, run, drawn, header_offset)
     write_values(axes, panel, drawn)
@@ -281,6 +282,17 @@ def style_axes(axes: Axes, time: Column) -> None:
     axes.axhline(0.0, color=FAINT, linewidth=0.8, zorder=0.5)
     axes.spines[:].set_visible(False)
     axes.tick_params(length=0, labelsize=SMALL, labelcolor=SOFT, labelbottom=False, pad=5)
+
+
+def keep_peaks_out(axes: Axes, drawn: list[Curve]) -> None:
+    """Where an actual value shoots far beyond all set values (a step of velocity), their scale is kept."""
+    sets = [curve.values for curve in drawn if curve.is_set]
+    if not sets:
+        return
+    low, high = min(0.0, *map(np.min, sets)), max(0.0, *map(np.max, sets))
+    bottom, top = axes.get_ylim()
+    if top - bottom > 3.0 * (high - low) > 0.0:
+        axes.set_ylim(low - 0.15 * (high - low), high + 0.15 * (high - low))
 
 
 def draw_header(axes: Axes, panel: Panel, run: FigureRun, drawn: list[Curve], offset: float) -> None:

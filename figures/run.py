@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisBlock, CommandRecord, Severity
+from cnc_ptp.machine.blocks import AxisBlock, CommandRecord, Event, Severity
+from cnc_ptp.machine.commands import INTERNAL
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
@@ -24,7 +25,10 @@ PER_CYCLE = tuple(field.name for field in fields(AxisBlock) if field.name not in
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """A command that took effect: when (s) and what. Those of cycle 0 are the set-up and have none."""
+    """A command that took effect, or an error that is shown: when (s) and what.
+
+    Commands of cycle 0 are the set-up and have none.
+    """
 
     time: float
     text: str
@@ -77,31 +81,33 @@ def _collect(figure: FigureScenario, machine: MachineParameters, ticks: list[Out
     outputs = [output for tick in ticks for output in tick.values()]
     records = [record for output in outputs for record in output.records]
     refused = [f"P-ERR-{record.error_id} {record.message}" for record in records if not record.accepted]
-    errors = [
-        f"P-ERR-{event.error_id} {event.text}"
-        for output in outputs
-        for event in output.events
-        if event.severity == Severity.ERROR
-    ]
-    if errors or refused:
-        raise FigureError(figure.path, (errors + refused)[0])
+    errors = [event for output in outputs for event in output.events if event.severity == Severity.ERROR]
+    if refused or (errors and not figure.shows_errors):
+        texts = [f"P-ERR-{event.error_id} {event.text}" for event in errors if not figure.shows_errors]
+        raise FigureError(figure.path, (texts + refused)[0])
     cycle_time = machine.cycle_time_us * 1e-6
+    given = [record for record in records if record.target in figure.axes and record.command not in INTERNAL]
     return FigureRun(
         cycle_time,
         {axis: _columns([tick[axis].block for tick in ticks]) for axis in figure.axes},
         {axis: "deg" if machine.axes[axis].rotary else "mm" for axis in figure.axes},
-        _markers([record for record in records if record.target in figure.axes], cycle_time),
+        (*_markers(given, cycle_time, named=len(figure.axes) > 1), *_error_markers(errors, cycle_time)),
     )
 
 
-def _markers(records: list[CommandRecord], cycle_time: float) -> tuple[Marker, ...]:
-    """What is given again and again (setpoints, block by block) is marked where it begins."""
-    markers: list[Marker] = []
+def _markers(records: list[CommandRecord], cycle_time: float, *, named: bool) -> Iterator[Marker]:
+    """What is given again and again (setpoints, block by block) is marked where it begins; `named`: with its axis."""
+    last = ""
     for record in records:
-        text = _text(record)
-        if record.cycle and not (markers and markers[-1].text == text):
-            markers.append(Marker(record.cycle * cycle_time, text))
-    return tuple(markers)
+        text = f"{record.target}: {_text(record)}" if named else _text(record)
+        if record.cycle and text != last:
+            last = text
+            yield Marker(record.cycle * cycle_time, text)
+
+
+def _error_markers(events: list[Event], cycle_time: float) -> Iterator[Marker]:
+    for event in events:
+        yield Marker(event.cycle * cycle_time, f"{event.source}: error {event.error_id}")
 
 
 def _columns(blocks: list[object]) -> dict[str, Column]:
@@ -111,7 +117,7 @@ def _columns(blocks: list[object]) -> dict[str, Column]:
     }
 
 
-SHOWN = {"target": "", "distance": "", "position": "", "percent": " %", "difference": ""}
+SHOWN = {"factor": "", "target": "", "distance": "", "position": "", "percent": " %", "difference": ""}
 """The argument that stands behind the name of a command, and its unit where that is not the axis'."""
 
 

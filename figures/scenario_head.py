@@ -7,8 +7,10 @@ The head is the block of comment lines at the top of the file, `key: value` each
     #   go on in further lines.
     # machine: config/ptp.yaml
     # axes: x
+    # errors: shown
 
-It stands in the scenario itself so that a figure is one file, read in one go and added without touching another.
+`errors: shown` is for figures of faults; without it a fault means that there is no picture. It stands in the scenario
+itself so that a figure is one file, read in one go and added without touching another.
 For the run these lines are comments: `cnc_ptp simulate MACHINE --scenario FILE` takes the file as it is.
 """
 
@@ -22,6 +24,7 @@ from cnc_ptp.machine.job import read_file
 
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
+ERRORS, SHOWN = "errors", "shown"
 
 
 class FigureError(Exception):
@@ -40,6 +43,7 @@ class FigureScenario:
     caption: str
     machine: str
     axes: tuple[str, ...]
+    shows_errors: bool = False
 
     @property
     def name(self) -> str:
@@ -64,7 +68,7 @@ def read_head(path: Path) -> FigureScenario:
             head[last] += " " + line.strip()
             continue
         key, colon, value = line.partition(":")
-        if not colon or key not in KEYS:
+        if not colon or key not in (*KEYS, ERRORS):
             raise FigureError(path, f"'{line}' in the head is not one of {', '.join(f'{key}: ...' for key in KEYS)}")
         if key in head:
             raise FigureError(path, f"'{key}' stands twice in the head")
@@ -72,8 +76,10 @@ def read_head(path: Path) -> FigureScenario:
     for key in KEYS:
         if not head.get(key):
             raise FigureError(path, f"the head (comment lines at the top of the file) has no '{key}: ...'")
+    if head.get(ERRORS, SHOWN) != SHOWN:
+        raise FigureError(path, f"'{ERRORS}: {head[ERRORS]}' in the head must be '{ERRORS}: {SHOWN}'")
     axes = tuple(axis.strip() for axis in head["axes"].split(","))
-    return FigureScenario(path, head["title"], head["caption"], head["machine"], axes)
+    return FigureScenario(path, head["title"], head["caption"], head["machine"], axes, ERRORS in head)
 
 
 def comment_block(text: str) -> list[str]:
