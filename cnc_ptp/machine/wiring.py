@@ -49,12 +49,6 @@ def wiring(machine: MachineParameters) -> dict[str, Inputs]:
     return inputs
 
 
-def consumers_of(machine: MachineParameters, name: str, *, recorders: int) -> int:
-    """How many nodes need the blocks of unit `name`."""
-    units = sum(name in (*inputs.upstream, *inputs.feedback) for inputs in wiring(machine).values())
-    return units + recorders
-
-
 def build_unit(
     machine: MachineParameters, name: str, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
 ) -> Unit:

@@ -158,7 +158,7 @@ def test_external_setpoints_by_topic(client):
 def test_a_target_of_0_is_a_target(client):
     """NaN leaves a target out, 0 does not: 70082 comes when the axis stands elsewhere."""
     client.done("z", "external_enable", mode="absolute", target=0.0)
-    packet(client, "z", 3.0, 1)
+    packet(client, "z", 3.0, 1, velocity=0.001)
     packet(client, "z", 3.0, 0)
     stands_at(client, "z", 3.0)
     client.spin_until(lambda: any(event.error_id == 70082 for event in client.events), "the target window warning")

@@ -12,7 +12,7 @@ from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.machine.blocks import Command, CycleTick, PlcBlock
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.runner import UnitRunner, commands_for
-from cnc_ptp.machine.wiring import Inputs, build_unit, build_units, consumers_of, unit_kinds, wiring
+from cnc_ptp.machine.wiring import Inputs, build_unit, build_units, unit_kinds, wiring
 
 KINDS = unit_kinds(MILL)
 
@@ -296,9 +296,3 @@ def test_other_block_sizes_and_cycle_times() -> None:
         changed = replace(machine(), block_cycles=cycles, cycle_time_us=cycle_time)
         bench = MachineBench("%P\nM03 S600\nG01 X20 F3000\nM05\nM30", machine=changed).run()
         assert bench.errors() == [] and bench.position("x") == 20.0 and not bench.failed
-
-
-def test_consumers_of_the_blocks_of_a_unit() -> None:
-    """PLC and channel read axes and spindle; all but the PLC read the PLC; recorders come on top."""
-    counts = {name: consumers_of(MILL, name, recorders=1) for name in unit_kinds(MILL)}
-    assert counts == {"plc": 6, "channel": 6, "s": 3, "x": 3, "y": 3, "z": 3}
