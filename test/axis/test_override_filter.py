@@ -50,7 +50,15 @@ def test_0_and_100_pass_at_once_and_delete_what_waits(percent: float) -> None:
 
 def test_an_interval_of_0_only_snaps() -> None:
     snapping = OverrideFilter(steps=4, interval_cycles=0)
-    assert [snapping.take(5, percent) for percent in (10.0, 30.0, 60.0, 90.0)] == [0.0, 25.0, 50.0, 100.0]
+    assert [snapping.take(5, percent) for percent in (30.0, 60.0, 90.0)] == [25.0, 50.0, 100.0]
+
+
+@pytest.mark.parametrize(("steps", "step"), [(4, 25.0), (200, 0.5), (1, 100.0)])
+def test_above_0_the_axis_moves(steps: int, step: float) -> None:
+    """What lies below half a step would stand for a stop that nobody asked for."""
+    for percent in (1e-4, 0.1, 0.4 * step, 0.5 * step):
+        assert OverrideFilter(steps=steps, interval_cycles=150).take(0, percent) == step
+    assert OverrideFilter(steps=steps, interval_cycles=150).take(0, 0.0) == 0.0
 
 
 def test_random_values_come_through_at_most_once_an_interval() -> None:

@@ -8,6 +8,7 @@ from machine_support import UnitBench, axis_bench
 
 from cnc_ptp.axis.states import state_name
 from cnc_ptp.machine.blocks import AxisStateCode as S
+from cnc_ptp.machine.blocks import StatusBit
 
 PTP_MOTION = ("moving", "braking", "held", "returning", "halting", "compensating", "external_beside")
 STOPPED = ("stopping", "waiting", "powered_off_in_motion")
@@ -54,7 +55,12 @@ REFUSALS: Texts = {
     ),
     **refused(23027, MOVES, EXTERNAL, "external setpoints are enabled; a PTP start beside them is not permitted"),
     **refused(23005, STOPS, ("on_path",), "the channel path moves the axis; use feed_hold or reset of the channel"),
-    **refused(23017, ("emergency_stop",), ("braking", "halting", *STOPPED), "the axis is in its brake phase"),
+    **refused(
+        23017,
+        ("emergency_stop",),
+        ("braking", "halting", "stopping", "powered_off_in_motion"),
+        "the axis is in its brake phase",
+    ),
     **refused(
         23014,
         REDIRECTIONS,
@@ -112,7 +118,7 @@ WARNINGS: Texts = {
     **warned(("power off",), ("disabled", "powered_off_in_motion"), "power is off already"),
     **warned(STOPS, (*AT_REST, *IN_ERROR), "{command} without effect in {state}"),
     **warned(STOPS[:2], ("stopping", "powered_off_in_motion"), "{command} without effect in {state}"),
-    **warned(STOPS[:2], ("waiting",), "{command} takes the new target back; the axis stops"),
+    **warned(STOPS, ("waiting",), "{command} takes the new target back; the axis stops"),
     **warned(("set_override",), ("halting", *STOPPED), f"{OVERRIDE_IDLE} (the axis stops)"),
     **warned(("set_override",), ("braking",), f"{OVERRIDE_IDLE} (brake phase or level out of reach)"),
     **warned(REDIRECTIONS, ("stopping", "waiting"), "{command} waits for the end of the stop"),
@@ -130,7 +136,7 @@ WARNINGS: Texts = {
 }
 ACTING = {
     *((command, state) for command in REDIRECTIONS for state in ("stopping", "waiting")),
-    *((command, "waiting") for command in ("stop", "halt", "set_override")),
+    *((command, "waiting") for command in (*STOPS, "set_override")),
 }
 """Warnings that tell of an effect later on, or take one back."""
 
@@ -144,10 +150,14 @@ AFTER: dict[tuple[str, str], S] = {
     **led_to(S.CONTINUOUS_MOTION, ENABLES, ("standing",)),
     **led_to(S.STANDSTILL, ("power on",), ("disabled",)),
     **led_to(S.STANDSTILL, ("reset",), ("error_stop",)),
-    **led_to(S.STANDSTILL, STOPS, ("held", "external")),
+    **led_to(S.STANDSTILL, (*STOPS, "reset"), ("held", "external")),
     **led_to(S.STANDSTILL, ("external_disable",), ("external",)),
     **led_to(S.DISABLED, ("power off",), ("standing", "held", "external")),
-    **led_to(S.STOPPING, ("stop",), ("moving", "braking", "returning", "halting", "compensating", "external_beside")),
+    **led_to(
+        S.STOPPING,
+        ("stop", "reset"),
+        ("moving", "braking", "returning", "halting", "compensating", "external_beside"),
+    ),
     **led_to(S.STOPPING, ("emergency_stop",), ("moving", "returning", "compensating", "external_beside")),
     **led_to(
         S.STOPPING,
@@ -203,6 +213,17 @@ def test_every_command_in_every_state(command: str, state: str) -> None:
         if name == "set_override":
             assert ours.pop("override_percent")[-1] == 60.0 and theirs.pop("override_percent")[-1] == 100.0
         assert ours == theirs
+
+
+@pytest.mark.parametrize("state", [*PTP_MOTION, "external"])
+def test_the_reset_of_a_motion_is_a_stop(state: str) -> None:
+    reset, stopped = prepared(state), prepared(state)
+    reset.accepted("reset")
+    stopped.accepted("stop")
+    for bench in (reset, stopped):
+        bench.run(3000)
+    assert reset.columns() == stopped.columns()
+    assert reset.column("status_bits")[-1] & StatusBit.HAS_BEEN_STOPPED
 
 
 def go_on(bench: UnitBench, state: S) -> None:
