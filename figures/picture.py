@@ -297,9 +297,9 @@ def keep_peaks_out(axes: Axes, drawn: list[Curve]) -> None:
 
 def draw_header(axes: Axes, panel: Panel, run: FigureRun, drawn: list[Curve], offset: float) -> None:
     """Title with unit at the left, names of the curves in their colours at the right."""
-    units = " or ".join(dict.fromkeys(run.units.values()))
+    units = " or ".join(f"{unit}{panel.per}" for unit in dict.fromkeys(run.units.values()))
     axes.annotate(
-        f"{panel.title} in {units}{panel.per}",
+        f"{panel.title} in {units}",
         (0.0, 1.0),
         (0.0, offset),
         xycoords="axes fraction",

@@ -164,7 +164,7 @@ def test_several_axes_are_named_and_have_a_colour_each(tmp_path):
     texts = texts_of(svg_text(draw(figure, run_figure(figure)), title=figure.title))
     assert texts.count("x set") == texts.count("y actual") == 3
     assert {"1", "−2"} <= set(texts)
-    assert "move absolute 1, move absolute −2" in texts
+    assert "x: move absolute 1, y: move absolute −2" in texts
 
 
 def test_a_status_is_tinted():
@@ -197,6 +197,27 @@ def test_labels_that_would_overlap_stand_in_rows():
     assert labels[0].at_left
 
 
+def test_errors_are_no_picture_unless_the_head_asks_for_them(tmp_path):
+    fault = "- {at: 0.1, to: x, do: external_enable, mode: absolute}\n" + (
+        "- {at: 0.2, to: x, do: external_setpoints, setpoints: [[0, 50, 0, 0, 1]]}\n"
+    )
+    with pytest.raises(FigureError, match=r"axis x: external setpoint 50\.0 mm is 50 mm away.*no picture was drawn"):
+        run_figure(read_head(written(tmp_path, HEAD, fault)))
+    shown = run_figure(read_head(written(tmp_path, {**HEAD, "errors": "shown"}, fault)))
+    assert [marker.text for marker in shown.markers][-1] == "x: error 23033"
+
+
+def test_errors_of_the_head_have_one_value(tmp_path):
+    with pytest.raises(FigureError, match="'errors: yes' in the head must be 'errors: shown'"):
+        read_head(written(tmp_path, {**HEAD, "errors": "yes"}))
+
+
+def test_commands_of_the_machinery_are_not_marked(tmp_path):
+    couple = "- {at: 0.05, to: y, do: couple, master: x, factor: -0.5}\n"
+    run = run_figure(read_head(written(tmp_path, {**HEAD, "axes": "x, y"}, couple)))
+    assert [marker.text for marker in run.markers] == ["y: couple −0.5"]
+
+
 @pytest.mark.parametrize(
     ("value", "text"), [(2000.0, "2000"), (1696.77, "1696.8"), (3.394, "3.39"), (-5000.0, "−5000"), (-0.001, "0")]
 )
@@ -218,7 +239,8 @@ def test_scenario_is_a_figure(scenario):
     assert figure.machine_path.is_file()
     picture = (PICTURES / f"{figure.name}.svg").read_text(encoding="utf-8")
     assert figure.title in texts_of(picture)
-    assert set(PANELS) <= set(texts_of(picture))
+    titles = {text.split(" in ")[0] for text in texts_of(picture)}
+    assert {panel.split(" in ")[0] for panel in PANELS} <= titles
     assert len(picture.encode()) < 100_000
 
 
