@@ -75,7 +75,7 @@ class ExternalCommands:
         if axis.external.mode not in (None, mode):
             reason = f"external setpoints are enabled as {axis.external.mode}; {mode} does not match"
             axis.refuse(ENABLE, EXTERNAL_MODE, reason)
-        if mode == ABSOLUTE and axis.state == S.DISCRETE_MOTION:
+        if mode == ABSOLUTE and (axis.state == S.DISCRETE_MOTION or axis.ptp.job is not None):
             reason = "absolute setpoints beside a PTP motion are not permitted; use relative"
             axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
 
