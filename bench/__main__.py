@@ -18,7 +18,7 @@ from rich.console import Console
 
 from bench.figures import FULL, SHORT, Effort, Figure, Say, table
 
-TOPICS = ("interpreter", "motion", "recording", "offline", "graph", "service")
+TOPICS = ("interpreter", "motion", "recording", "offline", "graph", "service", "slaves")
 
 
 @contextmanager

@@ -40,20 +40,30 @@ class GraphRun:
     failures: list[str] = field(default_factory=list)
 
 
-def run_graph(machine: str, program: str, *, seconds: float, record: str, free_run: bool, composed: bool) -> GraphRun:
+def run_graph(
+    machine: str,
+    program: str | None,
+    scenario: str | None = None,
+    *,
+    seconds: float,
+    record: str,
+    free_run: bool,
+    composed: bool,
+) -> GraphRun:
     """Runs `seconds` of machine time in a new process, in a ROS domain that others do not use."""
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        return pool.submit(_run, machine, program, seconds, record, free_run, composed).result()
+        job = (machine, program, scenario, seconds, record, free_run)
+        return pool.submit(_run, job, composed).result()
 
 
-def _run(machine: str, program: str, seconds: float, record: str, free_run: bool, composed: bool) -> GraphRun:
+def _run(arguments: tuple[str, str | None, str | None, float, str, bool], composed: bool) -> GraphRun:
     from cnc_ptp.nodes.composed import run_composed
     from cnc_ptp.nodes.supervisor import Job, Supervisor
     from cnc_ptp.parameters import read_machine
 
-    parameters = read_machine(machine)
-    job = Job(machine, program, None, seconds, record, free_run)
+    job = Job(*arguments)
+    parameters, seconds = read_machine(job.machine), arguments[3]
     watch = Watch(memory_at=0.8 * seconds * 1e6 / parameters.cycle_time_us, own=COMPOSED if composed else SUPERVISOR)
 
     def show(monitor: object) -> None:
