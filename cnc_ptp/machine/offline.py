@@ -13,6 +13,7 @@ from cnc_ptp.machine.blocks import (
     CycleTick,
     Event,
     PlcBlock,
+    StatusBit,
 )
 from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.plc_unit import at_rest
@@ -127,12 +128,20 @@ class OfflineMachine:
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit
-            reason = unit.waits_for() if isinstance(unit, ChannelUnit) else ""
+            reason = unit.waits_for() if isinstance(unit, ChannelUnit) else endless_motion(output.block, output.name)
             if reason:
                 reasons.append(reason)
             elif not at_rest(output.block) and not on_path(output.block):
                 return ""
         return "; ".join(reasons)
+
+
+def endless_motion(block: Block, name: str) -> str:
+    """A slave that was decoupled in motion drives on until somebody stops it; empty for all others."""
+    if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.CONTINUOUS_MOTION:
+        return ""
+    drives = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
+    return f"axis {name} drives on without an end" if drives else ""
 
 
 def on_path(block: Block) -> bool:

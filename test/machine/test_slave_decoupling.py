@@ -12,6 +12,7 @@ from slave_support import (
     PROTECTED,
     STOPPED,
     A,
+    D,
     J,
     SlaveBench,
     assert_linear,
@@ -362,3 +363,22 @@ def test_power_off_and_on_of_a_pseudo_master() -> None:
     bench.do("y", "move_absolute", target=0.0)
     bench.settle()
     assert bench.position("y") == 0.0 and bench.errors() == []
+
+
+def test_a_run_that_only_an_endless_pseudo_master_keeps_going_is_ended() -> None:
+    """A modulo axis meets no soft limit; 10 s after the end of everything else it is stopped, and the run has failed."""
+    scenario = f"""
+- {{at: 0, to: c, do: couple, master: x, factor: 1}}
+- {{at: 0, to: "y", do: couple, master: c, factor: -0.5}}
+- {{at: 0, to: x, do: move_absolute, target: 2000, {D}}}
+- {{at: 0.7, to: c, do: decouple}}
+"""
+    bench = SlaveBench(scenario, end_when_idle=True)
+    for outputs in bench.offline.run():
+        bench._take(outputs)
+        assert bench.cycle < 20_000
+    assert bench.errors() == [
+        "P-ERR-22014 plc plc: axis c drives on without an end, but the scenario is through; everything is stopped and the run ends"
+    ]
+    assert bench.failed and not bench.last("c").set_velocity[-1] and bench.position("x") == 2000.0
+    assert_linear(bench, "c", "y", -0.5)
