@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import copysign, sqrt
 from typing import NoReturn
 
 from cnc_ptp.axis.checks import MotionChecks
@@ -111,8 +112,16 @@ class Axis:
         """
         if self.superposed:
             position, velocity, _, _ = self.setpoint(cycle)
-            self.ptp.take_over(cycle, position, velocity, self.ptp.state(cycle)[2])
+            self.ptp.take_over(cycle, position, velocity, self._bearable(velocity, self.ptp.state(cycle)[2]))
             self._end_superposition()
+
+    def _bearable(self, velocity: float, acceleration: float) -> float:
+        """What of an acceleration may be ramped down without leading the axis above P-AXIS-00212 by a²/2J."""
+        if velocity * acceleration <= 0.0:
+            return acceleration
+        jerk = self.own_limits.jerk if self.ptp.job is None else min(self.own_limits.jerk, self.ptp.job.limits.jerk)
+        left = max(0.0, self.parameters.max_velocity - abs(velocity))
+        return copysign(min(abs(acceleration), sqrt(2.0 * jerk * left)), acceleration)
 
     def place(self, cycle: int, position: float) -> None:
         """A standing axis without position control was moved to `position`."""

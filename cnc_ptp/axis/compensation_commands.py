@@ -65,7 +65,7 @@ class CompensationCommands:
         used = min(length, abs(remaining))
         table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
         direction = copysign(1.0, base[1] or remaining)
-        self._check_velocity(max(axis.ptp.highest_velocity(cycle), job.limits.velocity), process_velocity, table)
+        self._check_velocity(max(axis.ptp.highest_velocity(cycle), job.reduced_velocity), process_velocity, table)
         if isfinite(job.target):
             axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
         axis.superposed = True

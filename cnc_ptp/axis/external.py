@@ -200,6 +200,9 @@ class ExternalSetpoints:
             setpoint = self._waiting.popleft()
             if setpoint.direction == 0 and self._driving is None:
                 continue
+            if self._driving is not None and setpoint.cycle <= self._driving.cycle:
+                self._last_cycle = cycle  # an end that was overtaken: it counts, its position is out of date
+                continue
             driving = setpoint._replace(position=setpoint.position - self._reference)
             way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
             if abs(way) > self._limits.velocity * self._cycle_time * (1.0 + 1e-9):

@@ -29,6 +29,7 @@ class SetpointQueue:
         self._waiting: dict[str, Waiting] = {}
         self._arrived: dict[str, list[Row]] = {}
         self._enabled: set[str] = set()
+        self._newest_sent: dict[str, float] = {}
         self._numbers = count()
 
     def __bool__(self) -> bool:
@@ -46,6 +47,7 @@ class SetpointQueue:
     def clear(self) -> None:
         self._waiting.clear()
         self._arrived.clear()
+        self._newest_sent.clear()
 
     def watch(self, inputs: Mapping[str, Block]) -> None:
         """Drops what waits for an axis whose external setpoints have ended."""
@@ -53,10 +55,14 @@ class SetpointQueue:
         enabled = {name for name, block in blocks.items() if block.status_bits[-1] & StatusBit.EXT_SETPOINT}
         for axis in self._enabled - enabled:
             self._waiting.pop(axis, None)
+            self._newest_sent.pop(axis, None)
         self._enabled = enabled
 
     def take(self, first_cycle: int, count: int) -> Iterator[Command]:
-        """The commands of a block of `count` cycles; late rows go out too."""
+        """The commands of a block of `count` cycles; late rows go out too.
+
+        A row that was overtaken goes out by itself: the axis refuses a command as a whole.
+        """
         for axis, arrived in self._arrived.items():
             self._place(axis, arrived, first_cycle, count)
         self._arrived.clear()
@@ -64,10 +70,14 @@ class SetpointQueue:
             rows: list[Row] = []
             while waiting and waiting[0][0] < first_cycle + count:
                 row = heappop(waiting)[2]
+                if row[0] <= self._newest_sent.get(axis, -1):
+                    yield Command(axis, SETPOINTS, {"setpoints": [row]})
+                    continue
                 if rows and rows[-1][0] == row[0]:  # the later of two for one cycle
                     rows.pop()
                 rows.append(row)
             if rows:
+                self._newest_sent[axis] = rows[-1][0]
                 yield Command(axis, SETPOINTS, {"setpoints": rows})
 
     def _place(self, axis: str, arrived: list[Row], first_cycle: int, count: int) -> None:
@@ -75,8 +85,8 @@ class SetpointQueue:
         unplaced = [row for row in arrived if not row[0]][-count:]
         spread = {id(row): first_cycle + n * count // len(unplaced) for n, row in enumerate(unplaced)}
         for row in arrived:
-            cycle = spread.get(id(row), row[0])
-            if not cycle or cycle > first_cycle + self._horizon:
+            cycle = row[0] or spread.get(id(row))
+            if cycle is None or cycle > first_cycle + self._horizon:
                 continue
             if row[-1] == 0:
                 self._waiting[axis] = [entry for entry in self._waiting.get(axis, []) if entry[0] < cycle]
