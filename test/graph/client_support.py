@@ -2,7 +2,10 @@
 
 import time
 from collections.abc import Sequence
+from contextlib import contextmanager
 
+import rclpy
+from graph_support import Running
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
@@ -11,6 +14,7 @@ from cnc_ptp import msg
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import BLOCK_TYPES, BLOCKS, COMMAND, EVENT, EVENTS, PLC_INPUT, SERVICES, block_topic
+from cnc_ptp.parameters import read_machine
 
 TIMEOUT = 60.0
 
@@ -150,3 +154,20 @@ class Client(Node):
         blocks = self.blocks[unit]
         block = blocks[(cycle - blocks[0].first_cycle) // blocks[0].count]
         return getattr(block, field)[cycle - block.first_cycle]
+
+
+@contextmanager
+def beside_composed_run(machine):
+    """A client beside a run of the machine in one process; both end with the block."""
+    graph = Running(machine, "--duration", "600", "--composed")
+    process.initialise()
+    client = Client(read_machine(machine))
+    client.start()
+    client.wait_blocks("x", 3)
+    try:
+        yield client
+    finally:
+        graph.process.terminate()
+        graph.process.wait(timeout=20.0)
+        client.destroy_node()
+        rclpy.try_shutdown()

@@ -3,15 +3,12 @@
 import math
 
 import pytest
-import rclpy
-from client_support import Client
-from graph_support import PTP, Running
+from client_support import beside_composed_run
+from graph_support import PTP
 
 from cnc_ptp import msg
 from cnc_ptp.machine.commands import COMMANDS
-from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
-from cnc_ptp.parameters import read_machine
 
 NAN = math.nan
 QUICK = {"velocity": 2000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50_000.0}
@@ -36,16 +33,8 @@ def test_fields_of_coupling_services():
 
 @pytest.fixture(scope="module")
 def client():
-    graph = Running(PTP, "--duration", "600", "--composed")
-    process.initialise()
-    node = Client(read_machine(PTP))
-    node.start()
-    node.wait_blocks("x", 3)
-    yield node
-    graph.process.terminate()
-    graph.process.wait(timeout=20.0)
-    node.destroy_node()
-    rclpy.try_shutdown()
+    with beside_composed_run(PTP) as node:
+        yield node
 
 
 def stands_at(client, axis, position):

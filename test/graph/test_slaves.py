@@ -5,14 +5,11 @@ from copy import deepcopy
 
 import numpy as np
 import pytest
-import rclpy
 import yaml
-from client_support import Client
+from client_support import beside_composed_run
 from graph_support import PTP, Running, kill, run, verified, wait_until_gone
 
 from cnc_ptp import msg, srv
-from cnc_ptp.nodes import process
-from cnc_ptp.parameters import read_machine
 
 MOVE = "target: {}, velocity: 500, acceleration: 5000, deceleration: 5000, jerk: 50000"
 CASCADE = f"""
@@ -79,16 +76,8 @@ def test_a_dead_master_stops_its_slaves(tmp_path, dead, first):
 
 @pytest.fixture(scope="module")
 def client():
-    graph = Running(PTP, "--duration", "600", "--composed")
-    process.initialise()
-    node = Client(read_machine(PTP))
-    node.start()
-    node.wait_blocks("x", 3)
-    yield node
-    graph.process.terminate()
-    graph.process.wait(timeout=20.0)
-    node.destroy_node()
-    rclpy.try_shutdown()
+    with beside_composed_run(PTP) as node:
+        yield node
 
 
 def couple(client, axis, kind="couple", service=srv.Couple, **fields):
