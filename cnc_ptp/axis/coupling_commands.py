@@ -35,6 +35,9 @@ from cnc_ptp.parameters import AxisParameters
 GROUP = ("above", "master_stands", "master_lost")
 """What the PLC fills in."""
 
+SMALLEST_FACTOR, LARGEST_FACTOR = 1e-6, 1e6
+"""Beyond these a coupling factor is a slip of the pen."""
+
 
 class CouplingCommands:
     """`couple` and its kinds, `set_coupling_factor`, `set_cyclic_factor`, `decouple`; `lead` and `group_error`.
@@ -168,6 +171,9 @@ class CouplingCommands:
     def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:
         if factor == 0.0:
             self._axis.refuse(command, BAD_FACTOR, f"{name} = 0 must be different from 0")
+        if name == "factor" and not SMALLEST_FACTOR <= abs(factor) <= LARGEST_FACTOR:
+            limits = f"between {SMALLEST_FACTOR:g} and {LARGEST_FACTOR:g} or the negative of it"
+            self._axis.refuse(command, BAD_FACTOR, f"{name} = {factor} must be {limits}")
 
     def _check_positive(self, command: str, **values: float) -> None:
         for name, value in values.items():

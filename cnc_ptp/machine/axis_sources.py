@@ -6,17 +6,24 @@ from collections.abc import Mapping
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
-from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, PATH_NOT_ACCEPTED
+from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, OUT_OF_RANGE, PATH_NOT_ACCEPTED
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import StatusBit, state_name
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock
 from cnc_ptp.machine.unit import UPSTREAM_LOST
+from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.parameters import AxisParameters
 
 PATH_TOLERANCE = 1e-9
 """Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
+
+
+def in_range(state: State) -> bool:
+    """False for what no table can be made for, an infinity or a NaN: where factors of a cascade multiply."""
+    p, v, a, _ = state
+    return -LARGEST_STATE <= p <= LARGEST_STATE and abs(v) <= LARGEST_STATE and abs(a) <= LARGEST_STATE
 
 
 class PathSource:
@@ -118,6 +125,9 @@ class MasterSource:
             setpoints = coupling.follow(axis.ptp.state(first_cycle)[0], states)
         except CncError as error:
             axis.give_up_coupling(first_cycle, error.error_id, error.message)
+            return []
+        if not all(in_range(state) for state in setpoints):
+            axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")
             return []
         self._prepare_gantry(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])

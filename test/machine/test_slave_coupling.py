@@ -254,6 +254,14 @@ FAULTS = {
     "factor": (("y", {"master": "x", "factor": 0.0}), "P-ERR-23043 axis y: couple refused: factor = 0 must be different from 0; nothing was changed"),
     "minus zero": (("y", {"master": "x", "factor": -0.0}), "P-ERR-23043 axis y: couple refused: factor = 0 must be different from 0; nothing was changed"),
     "integer zero": (("y", {"master": "x", "factor": 0}), "P-ERR-23043 axis y: couple refused: factor = 0 must be different from 0; nothing was changed"),
+    "huge": (
+        ("y", {"master": "x", "factor": -1e300}),
+        "P-ERR-23043 axis y: couple refused: factor = -1e+300 must be between 1e-06 and 1e+06 or the negative of it; nothing was changed",
+    ),
+    "tiny": (
+        ("y", {"master": "x", "factor": 1e-7}),
+        "P-ERR-23043 axis y: couple refused: factor = 1e-07 must be between 1e-06 and 1e+06 or the negative of it; nothing was changed",
+    ),
     "nan": (("y", {"master": "x", "factor": float("nan")}), "P-ERR-22001 axis y: couple refused: factor = nan is not finite; nothing was changed"),
     "text": (("y", {"master": "x", "factor": "1"}), "P-ERR-22001 axis y: couple refused: factor = '1' is not a number; nothing was changed"),
     "number": (("y", {"master": 1, "factor": 1.0}), "P-ERR-22001 axis y: couple refused: master = 1 is not a text; nothing was changed"),
@@ -355,6 +363,19 @@ def test_decoupling_of_an_axis_that_is_no_slave() -> None:
     assert SlaveBench().denied("y", "decouple") == (
         "P-ERR-23047 axis y: decouple refused: the axis is no slave (it is in Standstill); nothing was changed"
     )
+
+
+@pytest.mark.parametrize("factor", [1e6, -1e6])
+def test_factors_that_multiply_out_of_all_range_are_an_error_and_no_crash(factor: float) -> None:
+    bench = SlaveBench(machine=axes_named("x", "y", "z", "c", soft_limit_negative=-1e13, soft_limit_positive=1e13))
+    bench.send_all([couple(slave, factor, CASCADE[slave]) for slave in "czy"])
+    bench.send_all([start()])
+    bench.run(0.1)
+    assert bench.errors()[:2] == [
+        "P-ERR-23002 axis z: its setpoints as a slave of y are out of all range; the axis stops on its own ramp (ErrorStop)",
+        "P-ERR-23056 axis x: axis z of its group has error 23002; the axis stops on its own ramp (ErrorStop)",
+    ]
+    assert set(bench.column("z", "set_position")) == set(bench.column("c", "set_position")) == {0.0}
 
 
 # what is locked and what stays
