@@ -112,8 +112,15 @@ class PlcUnit(Unit):
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
-            if unit not in self._lost and (block is None or needs_stop(block)):
+            if unit not in self._lost and (block is None or needs_stop(block) or self._let_go(unit, block)):
                 self._outgoing.append(Command(unit, STOP_COMMAND[kind], {}))
+
+    def _let_go(self, unit: str, block: Block) -> bool:
+        """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
+        if not (isinstance(block, AxisBlock) and block.master):
+            return False
+        now = any(command.target == unit and command.command == "decouple" for command in self._outgoing)
+        return now or not self._groups.above(unit)
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` reports no more; the run is a failed one."""

@@ -20,6 +20,7 @@ from slave_support import (
 )
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
+from cnc_ptp.machine.blocks import Command
 
 
 def moving(factor: float = 0.5, *, target: float = 20_000.0, seconds: float = 1.0, **kwargs: object) -> SlaveBench:
@@ -382,3 +383,16 @@ def test_a_run_that_only_an_endless_pseudo_master_keeps_going_is_ended() -> None
     ]
     assert bench.failed and not bench.last("c").set_velocity[-1] and bench.position("x") == 2000.0
     assert_linear(bench, "c", "y", -0.5)
+
+
+@pytest.mark.parametrize("together", [True, False], ids=["same block", "next block"])
+def test_stop_all_stops_a_slave_that_is_just_being_decoupled(together: bool) -> None:
+    bench = moving()
+    bench.units["plc"].input(Command("y", "decouple", {}))
+    if not together:
+        bench.tick()
+    bench.give("plc", "stop_all")
+    bench.settle()
+    assert [bench.state(axis) for axis in "xyz"] == [S.STANDSTILL, S.STANDSTILL, S.SYNCHRONIZED_MOTION]
+    assert bench.errors() == [] and bench.refusals() == []
+    assert_linear(bench, "y", "z", -2.0)
