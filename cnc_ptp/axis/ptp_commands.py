@@ -85,7 +85,7 @@ class PtpCommands:
     # override (2.2)
 
     def do_set_override(self, cycle: int, *, percent: float) -> str | None:
-        """Override of PTP motion, 0 … 100 % in steps of 0.0001 % (less is 0), through the filter if there is one."""
+        """Override of PTP motion, 0 … 100 % rounded to 0.0001 %, through the filter if there is one."""
         axis = self._axis
         highest = min(100.0, axis.parameters.max_override_percent)
         if not 0.0 <= percent <= highest:

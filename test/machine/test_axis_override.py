@@ -180,9 +180,12 @@ def test_a_level_out_of_reach_keeps_the_old_table_or_takes_the_highest_that_is_l
     assert_axis_smooth(bench, acceleration=A, jerk=J)
 
 
-@pytest.mark.parametrize(("percent", "shown"), [(0.0001, 0.0001), (0.00009, 0.0), (100.0, 100.0), (33.33333, 33.33333)])
+@pytest.mark.parametrize(
+    ("percent", "shown"),
+    [(0.0001, 0.0001), (0.00009, 0.0001), (0.00004, 0.0), (100.0, 100.0), (33.33333, 33.3333), (66.66666, 66.6667)],
+)
 def test_override_steps(percent: float, shown: float) -> None:
-    """One step is 1/1,000,000; less is 0 and holds the axis."""
+    """One step is 1/1,000,000; less than half of it is 0 and holds the axis."""
     bench = axis_bench()
     bench.accepted("set_override", percent=percent)
     start(bench, 1000.0)

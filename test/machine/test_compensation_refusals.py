@@ -148,6 +148,22 @@ def test_the_velocity_backwards_too() -> None:
     assert wide.column("set_position")[-1] == pytest.approx(41_000.0)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_velocity_that_the_way_allows_counts(side: float) -> None:
+    """v²/A + v·A/J = 200 mm gives 780.776 mm/s, whatever was asked for; w - w²/A = 50 gives w = 50.51 mm/s."""
+    values = {"length": 100.0, "difference": 50.0, "process_velocity": 100.0, "velocity_increase": 80.0}
+    short = {"target": side * 200.0, "cycles": 50}
+    bench = moving_axis(velocity=1000.0, max_velocity=1000.0, **short)
+    bench.accepted("compensation_start", **values)
+    settle(bench)
+    assert 800.0 < max(map(abs, bench.column("set_velocity"))) < 831.3 and bench.events == []
+    bench = moving_axis(velocity=830.0, max_velocity=831.2, **short)
+    assert bench.refused("compensation_start", **values) == (
+        "P-ERR-23004 axis x: compensation_start refused: the axis would get up to 831.286 mm/s, above the maximum "
+        "831.2 mm/s (P-AXIS-00212); nothing was changed"
+    )
+
+
 def test_a_velocity_that_is_being_left_counts_too() -> None:
     """A new velocity of 500 mm/s has just been given at 2000 mm/s."""
     bench = moving_axis(max_velocity=2200.0)

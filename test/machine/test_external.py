@@ -236,6 +236,35 @@ def test_an_end_in_motion_comes_to_rest_on_the_ramp_of_the_axis(end: str, v: flo
     assert ways == pytest.approx(0.5 * CYCLE_TIME * (speeds[120:-1] + speeds[121:]), abs=J * CYCLE_TIME**3)
 
 
+@pytest.mark.parametrize("late", [0, 1, 20])
+def test_an_end_that_was_overtaken_ends_the_motion_all_the_same(late: int) -> None:
+    """Only its values are out of date: the axis comes to rest from where it is, 400 mm/s without a step."""
+    bench = external_axis(count=1)
+    rows = [[10 + k, 2000.0 * (0.001 * k) ** 2, 4.0 * k, 4000.0, 1] for k in range(101)]
+    feed(bench, rows, 101)
+    bench.accepted("external_setpoints", setpoints=[[*rows[100 - late][:4], 0]])
+    bench.run(1000)
+    v = column(bench, "set_velocity")
+    assert v[110] == 400.0 and v[111] == pytest.approx(404.0)
+    assert v[112] == pytest.approx(404.0 - 0.5 * J * CYCLE_TIME**2)
+    assert v.max() == v[111] and v[-1] == 0.0
+    assert bench.state == 4 and bench.events == []
+
+
+def test_an_end_takes_the_place_of_rows_that_wait() -> None:
+    bench = external_axis()
+    bench.accepted("external_setpoints", setpoints=[[20 + k, 0.1 * k, 100.0, 0.0, 1] for k in range(500)])
+    bench.run(20)
+    bench.accepted("external_setpoints", setpoints=[[60, 4.0, 100.0, 0.0, 0]])
+    bench.accepted("external_setpoints", setpoints=[[400, 5.0, 0.0, 0.0, 1]])
+    bench.run(1000)
+    v = column(bench, "set_velocity")
+    assert v[20:61] == pytest.approx(100.0) and (np.diff(v[60:]) <= 0.0).all()
+    seconds = 2.0 * np.sqrt(100.0 / J)
+    p = column(bench, "set_position")
+    assert p[399] == pytest.approx(4.0 + 0.5 * 100.0 * seconds) and (p[400:] == 5.0).all()
+
+
 @pytest.mark.parametrize("direction", [1, 0])
 def test_a_last_setpoint_without_velocity_stands(direction: int) -> None:
     """The generator's last value of acceleration counts for its cycle and moves nothing more."""

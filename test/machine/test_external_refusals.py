@@ -272,6 +272,32 @@ def test_silence_does_not_speed_up() -> None:
     assert column(bench, "set_velocity")[110:] == pytest.approx(400.0)
 
 
+@pytest.mark.parametrize(("every", "counts"), [(1, 1), (10, 10), (20, 20), (21, 20), (100, 20)])
+def test_the_acceleration_of_a_last_setpoint_counts_for_20_ms_at_most(every: int, counts: int) -> None:
+    """One usual distance of setpoints, and what is more than 20 ms is a pause."""
+    bench = external_axis()
+    rows = [[10 + every * k, 0.5 * 800.0 * (0.001 * every * k) ** 2, 0.8 * every * k, 800.0, 1] for k in range(4)]
+    feed(bench, rows, 3 * every + 180)
+    v = column(bench, "set_velocity")[10 + 3 * every :]
+    assert v == pytest.approx(rows[3][2] + 0.8 * np.minimum(np.arange(len(v)), counts))
+    assert bench.events == []
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_sum_above_the_maximum(sign: float) -> None:
+    """2000 mm/s and a generator that accelerates with 40,000 mm/s²: 2240 mm/s in the sixth cycle of its ramp."""
+    bench = moving_axis(target=sign * 20_000.0, max_velocity=2210.0)
+    bench.accepted("external_enable", mode="relative")
+    feed(bench, generator(sign * 300.0, first_cycle=1000, velocity=1000.0, a=40_000.0), 200)
+    (text,) = bench.event_texts()
+    assert text == (
+        "P-ERR-23036 axis x: the superposed motions add up to 2240 mm/s, above the maximum 2210.0 mm/s "
+        "(P-AXIS-00212); the axis stops on its own ramp (ErrorStop)"
+    )
+    assert_stops_on_its_ramp(bench, 1007)
+    assert np.abs(column(bench, "set_velocity")).max() == pytest.approx(2240.0)
+
+
 def test_silence_at_rest_is_no_fault() -> None:
     bench = external_axis()
     feed(bench, generator(600.0, first_cycle=20)[:-2], 3000)

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from machine_support import CYCLE_TIME, UnitBench, axis_bench
-from superposition_support import COMPENSATING, EXTERNAL, HAS_JOB, A, J, column, generator, has_bit
+from superposition_support import COMPENSATING, EXTERNAL, HAS_JOB, A, column, generator, has_bit
 
 V = 2000.0
 """Largest velocity of the basic motion, mm/s; largest VK; the generator's velocity and acceleration."""
@@ -18,8 +18,6 @@ VP = 500.0
 """Smallest process velocity."""
 RATE = 5000.0
 """Largest AK+ and AK-, mm/s²."""
-RELEASE = 0.5 * EXTERNAL_A**2 / J
-"""Velocity that the generator still gains when it ends under acceleration: a²/(2J)."""
 
 slow = settings(
     max_examples=60, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -94,7 +92,7 @@ def generate(bench: UnitBench, way: float) -> None:
 def check(bench: UnitBench) -> None:
     p, v, a = (column(bench, f"set_{name}") for name in ("position", "velocity", "acceleration"))
     t = CYCLE_TIME
-    highest = V + VK + EXTERNAL_V + RELEASE
+    highest = V + VK + EXTERNAL_V
     assert np.abs(v).max() <= highest * (1 + 1e-9)
     most = A * (1 + VK / VP) + RATE + A
     assert np.abs(a).max() <= most * (1 + 1e-9)
