@@ -159,7 +159,7 @@ def test_the_velocity_that_the_way_allows_counts(side: float) -> None:
     assert 800.0 < max(map(abs, bench.column("set_velocity"))) < 831.3 and bench.events == []
     bench = moving_axis(velocity=830.0, max_velocity=831.2, **short)
     assert bench.refused("compensation_start", **values) == (
-        "P-ERR-23004 axis x: compensation_start refused: the axis would get up to 831.286 mm/s, above the maximum "
+        "P-ERR-23004 axis x: compensation_start refused: the axis would get up to 831.287 mm/s, above the maximum "
         "831.2 mm/s (P-AXIS-00212); nothing was changed"
     )
 
