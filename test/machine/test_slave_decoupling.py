@@ -293,6 +293,19 @@ def test_decoupling_during_the_ramps_of_a_compensation_with_a_target(seconds: fl
     assert bench.position("y") == 9000.0
 
 
+def test_on_the_way_to_a_target_the_velocity_of_a_compensation_stays() -> None:
+    bench = moving(1.0)
+    bench.do("y", "compensation_start", **COMPENSATION)
+    bench.run(1.0)
+    fast = velocity(bench)
+    assert fast > 2200.0
+    bench.do("y", "decouple", target=15_000.0)
+    bench.run(1.0)
+    assert velocity(bench) == pytest.approx(fast, abs=1e-6)
+    bench.settle()
+    assert bench.position("y") == 15_000.0
+
+
 # cascade
 
 
