@@ -11,6 +11,7 @@ from cnc_ptp.axis.compensation import Compensation
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import ExternalSetpoints
 from cnc_ptp.axis.faults import (
+    GANTRY_DIFFERENCE,
     GROUP_ERROR,
     SETPOINT_TOO_FAR,
     SETPOINTS_STOPPED,
@@ -28,6 +29,8 @@ from cnc_ptp.parameters import AxisParameters
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
+PAIR_ERRORS = (GANTRY_DIFFERENCE, GROUP_ERROR)
+"""Errors in which the slave of a gantry pair stops with its master."""
 ROUNDING = 1e-9
 """Part of a velocity limit."""
 
@@ -344,17 +347,33 @@ class Axis:
     def fault(self, cycle: int, error_id: int, reason: str, setpoint: State | None = None) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.
 
+        The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
         `setpoint` within a block, where another source than the own generator has given it.
         """
         self.error_id = error_id
+        if error_id in PAIR_ERRORS and self.coupled and self.coupling is not None and self.coupling.keeps_pair:
+            self._note_propagation(cycle, error_id)
+            text = f"axis {self.name}: {reason}; the axis stops with its master {self.coupling.master} (ErrorStop)"
+            self._report_error(cycle, error_id, text)
+            return
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
             position, velocity, acceleration, _ = setpoint
             self.ptp.take_over(cycle, position, velocity, 0.0 if self.superposed else acceleration)
             self._end_superposition()
         self.absorb(cycle)
-        if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):
-            self._propagated_at = cycle + self._propagation_delay
+        self._note_propagation(cycle, error_id)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
         self.state = S.ERROR_STOP
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
+
+    def _note_propagation(self, cycle: int, error_id: int) -> None:
+        if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):
+            self._propagated_at = cycle + self._propagation_delay
+
+    def end_with_master(self, cycle: int, position: float) -> None:
+        """A slave in error that has come to rest with its master, its basic motion at `position`."""
+        self.ptp.take_over(cycle, position, 0.0, 0.0)
+        self.absorb(cycle)
+        self.target_window.forget()
+        self.state = S.ERROR_STOP

@@ -21,6 +21,9 @@ class Coupling(ABC):
     def __init__(self, master: str, ratio: float) -> None:
         self.master = master
         self.ratio = ratio
+        self.keeps_pair = False
+        """An error of the group leaves the slave on its master, which stops on its ramp: a ramp of its own would tear
+        the two apart."""
 
     @abstractmethod
     def follow(self, position: float, states: Sequence[State]) -> list[State]:
@@ -38,6 +41,7 @@ class LinearCoupling(Coupling):
         """`difference_limit` (mm, deg) of the actual positions makes a gantry pair of the two."""
         super().__init__(master, factor)
         self.difference_limit = difference_limit
+        self.keeps_pair = difference_limit is not None
         self.offset: float | None = None
         self._new_factor: float | None = None
 

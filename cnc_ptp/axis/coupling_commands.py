@@ -246,6 +246,10 @@ class CouplingCommands:
         former = axis.target_velocity()
         axis.coupling = None
         axis.absorb(cycle)
+        if axis.error_id:  # the slave of a gantry pair in error leaves its master: it stops alone
+            axis.ptp.stop(cycle, axis.own_limits, at_least=True)
+            axis.state = S.ERROR_STOP
+            return None
         _, speed, acceleration, _ = axis.ptp.state(cycle)
         if speed == 0.0 and acceleration == 0.0:
             axis.state = axis.rest_state()

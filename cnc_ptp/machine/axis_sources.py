@@ -129,6 +129,9 @@ class MasterSource:
         if not all(in_range(state) for state in setpoints):
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")
             return []
+        if axis.error_id and block.error_id[0] and not (block.set_velocity[0] or block.set_acceleration[0]):
+            axis.end_with_master(first_cycle, setpoints[0][0])
+            return []
         self._prepare_gantry(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
         return setpoints
@@ -174,7 +177,7 @@ class MasterSource:
 
     def watch_gantry(self, cycle: int, setpoint: State, actual_position: float) -> None:
         """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
-        if self._gantry is None or not self._axis.coupled:
+        if self._gantry is None or self._axis.error_id or not self._axis.coupled:
             return
         axis, coupling = self._axis, self._axis.coupling
         assert isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None

@@ -146,7 +146,7 @@ class AxisUnit(Unit):
         for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
             for column, value in zip(columns, self._cycle(cycle, setpoint), strict=True):
                 column.append(value)
-            if axis.error_id != error_id:
+            if axis.error_id != error_id and not axis.coupled:
                 break
 
     def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], columns: Columns) -> int:
