@@ -119,12 +119,25 @@ class Axis:
             self._end_superposition()
 
     def _bearable(self, velocity: float, acceleration: float) -> float:
-        """What of an acceleration may be ramped down without leading the axis above P-AXIS-00212 by a²/2J."""
-        if velocity * acceleration <= 0.0:
-            return acceleration
-        jerk = self.own_limits.jerk if self.ptp.job is None else min(self.own_limits.jerk, self.ptp.job.limits.jerk)
-        left = max(0.0, self.parameters.max_velocity - abs(velocity))
-        return copysign(min(abs(acceleration), sqrt(2.0 * jerk * left)), acceleration)
+        """What of an acceleration may be ramped down: a²/2J of it must not lead the axis above P-AXIS-00212, or through 0.
+
+        Neither may it be more than the axis itself, or the job that has made it, would take.
+        """
+        limits = self.own_limits if self.ptp.job is None else self.ptp.job.limits
+        jerk = min(self.own_limits.jerk, limits.jerk)
+        outwards = velocity * acceleration > 0.0
+        left = max(0.0, self.parameters.max_velocity - abs(velocity)) if outwards else abs(velocity)
+        most = max(self.own_limits[1:3] + limits[1:3])
+        bearable = min(most, sqrt(2.0 * jerk * left) * (1.0 + ROUNDING))
+        return acceleration if abs(acceleration) <= bearable else copysign(bearable, acceleration)
+
+    def leave_master(self, cycle: int) -> None:
+        """The own generator goes on where the coupling has led the axis, with what it can bear of the acceleration."""
+        self.absorb(cycle)
+        position, velocity, acceleration, _ = self.ptp.state(cycle)
+        bearable = self._bearable(velocity, acceleration)
+        if bearable != acceleration:
+            self.ptp.take_over(cycle, position, velocity, bearable)
 
     def place(self, cycle: int, position: float) -> None:
         """A standing axis without position control was moved to `position`."""
@@ -360,6 +373,8 @@ class Axis:
             position, velocity, acceleration, _ = setpoint
             self.ptp.take_over(cycle, position, velocity, 0.0 if self.superposed else acceleration)
             self._end_superposition()
+        if self.coupled:
+            self.leave_master(cycle)
         self.absorb(cycle)
         self._note_propagation(cycle, error_id)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
@@ -370,6 +385,13 @@ class Axis:
     def _note_propagation(self, cycle: int, error_id: int) -> None:
         if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):
             self._propagated_at = cycle + self._propagation_delay
+
+    def end_alone(self, cycle: int) -> None:
+        """A slave in error whose master does not stop: its own ramp."""
+        self.leave_master(cycle)
+        self.ptp.stop(cycle, self.own_limits, at_least=True)
+        self.target_window.forget()
+        self.state = S.ERROR_STOP
 
     def end_with_master(self, cycle: int, position: float) -> None:
         """A slave in error that has come to rest with its master, its basic motion at `position`."""

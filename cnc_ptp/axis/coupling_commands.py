@@ -245,7 +245,7 @@ class CouplingCommands:
         axis = self._axis
         former = axis.target_velocity()
         axis.coupling = None
-        axis.absorb(cycle)
+        axis.leave_master(cycle)
         if axis.error_id:  # the slave of a gantry pair in error leaves its master: it stops alone
             axis.ptp.stop(cycle, axis.own_limits, at_least=True)
             axis.state = S.ERROR_STOP

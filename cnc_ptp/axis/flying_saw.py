@@ -93,4 +93,5 @@ class FlyingSaw(Coupling):
 
     def change_source(self, before: float, now: float) -> None:
         self._begin += now - before
+        self._master_position += now - before
         self._linear.change_source(before, now)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
+from cnc_ptp.axis.faults import GANTRY_DIFFERENCE
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
 from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
@@ -45,7 +46,8 @@ class AxisGroups:
 
     def _delay(self, name: str) -> int:
         parameters = self._axes[name]
-        if not parameters.error_propagation_delayed:
+        torn = self._blocks[name].error_id[-1] == GANTRY_DIFFERENCE
+        if torn or not parameters.error_propagation_delayed:
             return 0
         return round(parameters.error_propagation_delay / self._cycle_time)
 
@@ -71,19 +73,23 @@ class AxisGroups:
         """The commands of a block, couplings with what their axis needs to know; masters are told of their slaves."""
         started: set[str] = set()
         completed = []
+        edges = {slave: [master] for slave, master in self._masters.items()}
         for command in commands:
             master = command.arguments.get("master")
             if command.command in COUPLINGS and isinstance(master, str):
-                stands = self._stands(master) and not started & {master, *self.above(master)}
-                command.arguments = {**command.arguments, "above": self.above(master), "master_stands": stands}
-                if master in lost:
-                    command.arguments["master_lost"] = True
-                if command.target not in (master, *command.arguments["above"]):
-                    self._masters.setdefault(command.target, master)
+                above = reachable(edges, master)
+                stands = self._stands(master) and not started & {master, *above}
+                group = {"above": above, "master_stands": stands, "master_lost": master in lost}
+                command.arguments = {**command.arguments, **group}
+                if command.target not in (master, *above):
+                    edges.setdefault(command.target, []).append(master)
+                    self._masters[command.target] = master
             elif command.command in STARTS:
                 started.add(command.target)
             elif command.command == "decouple":
                 self._masters.pop(command.target, None)
+                if not command.arguments:  # what has arguments may be refused for them
+                    edges.pop(command.target, None)
             completed.append(command)
         return completed + list(self._lead_commands())
 
@@ -106,3 +112,14 @@ class AxisGroups:
             if self._leads.get(slave) != master:
                 yield Command(master, "lead", {"slave": slave, "on": True})
         self._leads = now
+
+
+def reachable(edges: Mapping[str, Iterable[str]], name: str) -> list[str]:
+    """All masters above an axis when each coupling that there was, or may come, in this block holds.
+
+    An axis may refuse a `couple`, and a `decouple` with arguments: whatever it says, no circle can come about.
+    """
+    found: list[str] = []
+    for master in edges.get(name, ()):
+        found += [each for each in (master, *reachable(edges, master)) if each not in found]
+    return found

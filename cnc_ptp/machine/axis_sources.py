@@ -55,6 +55,12 @@ class PathSource:
         self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
         return setpoints
 
+    def forbid(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """A channel may not move an axis that follows a master."""
+        if self._owning_channel(inputs) is not None:
+            reason = "the channel moves the path while the axis is a slave"
+            self._axis.fault(first_cycle, PATH_NOT_ACCEPTED, reason)
+
     def _owning_channel(self, inputs: Mapping[str, Block]) -> ChannelBlock | None:
         for block in inputs.values():
             if isinstance(block, ChannelBlock) and block.path_active and self._axis.name in block.axes:
@@ -86,6 +92,10 @@ class PathSource:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
 
 
+PAIR_PATIENCE = 4
+"""Blocks in which the error of a gantry slave must have reached its master."""
+
+
 class MasterSource:
     """The master of a coupled axis: its set values, or its actual values where these are the ones to follow."""
 
@@ -102,6 +112,7 @@ class MasterSource:
         self._first_cycle = 0
         self._gantry: list[float] | None = None
         self._gantry_distance: float | None = None
+        self._blocks_in_error = 0
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
         """The setpoints of the coupling; none when the axis is not coupled or cannot follow."""
@@ -116,6 +127,7 @@ class MasterSource:
             return []
         if coupling is not self._coupling:
             self._coupling, self._actual, self._gantry_distance = coupling, block.couples_actual, None
+            self._blocks_in_error = 0
         else:
             self._allow_placing(coupling, block)
         self._rest = block.set_position[-1] if block.set_velocity[-1] == block.set_acceleration[-1] == 0.0 else None
@@ -129,19 +141,29 @@ class MasterSource:
         if not all(in_range(state) for state in setpoints):
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")
             return []
-        if axis.error_id and block.error_id[0] and not (block.set_velocity[0] or block.set_acceleration[0]):
-            axis.end_with_master(first_cycle, setpoints[0][0])
+        if axis.error_id and self._pair_ends(first_cycle, setpoints[0][0], block):
             return []
         self._prepare_gantry(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
         return setpoints
+
+    def _pair_ends(self, first_cycle: int, position: float, block: AxisBlock) -> bool:
+        """The slave of a gantry pair in error: it ends with its master, or alone where the master does not stop."""
+        self._blocks_in_error += 1
+        if not (block.set_velocity[0] or block.set_acceleration[0]):
+            self._axis.end_with_master(first_cycle, position)
+            return True
+        if block.error_id[0] or self._blocks_in_error <= PAIR_PATIENCE:
+            return False
+        self._axis.end_alone(first_cycle)
+        return True
 
     def _allow_placing(self, coupling: Coupling, block: AxisBlock) -> None:
         """A standing master that counts from elsewhere (it was moved without enable) does not take its slave along."""
         before, now = self._rest, block.set_position[0]
         if self._actual or block.couples_actual or before is None or before == now:
             return
-        if block.state[0] in (S.DISABLED, S.STANDSTILL, S.ERROR_STOP) and block.set_velocity[0] == 0.0:
+        if block.set_velocity[0] == 0.0:
             coupling.change_source(before, now)
 
     def _states(self, coupling: Coupling, block: AxisBlock) -> list[State]:

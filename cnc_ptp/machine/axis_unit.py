@@ -122,6 +122,8 @@ class AxisUnit(Unit):
         axis = self._axis
         columns: Columns = [[] for _ in range(FIELDS)]
         axis.advance(first_cycle)
+        if axis.coupled:
+            self._path.forbid(first_cycle, inputs)
         source = self._master if axis.coupled else self._path
         self._follow(first_cycle, source.setpoints(first_cycle, inputs), columns)
         while len(columns[0]) < count:

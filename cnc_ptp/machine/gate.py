@@ -27,7 +27,7 @@ class BlockGate:
         self._last_tick_came = False
         self._open: tuple[CycleTick, dict[str, Block]] | None = None
         self._master: str | None = None
-        self._master_blocks: dict[int, Block] = {}
+        self._master_blocks: dict[str, dict[int, Block]] = {}
         self.duplicates = 0
         """Ticks and blocks that came a second time and were not used again."""
 
@@ -60,22 +60,23 @@ class BlockGate:
 
     def follow(self, master: str | None) -> None:
         """The axis whose blocks are needed from the open tick on; None: of no one."""
-        if master != self._master:
-            self._master = master
-            self._master_blocks.clear()
+        self._master = master
 
     def add_master_block(self, master: str, block: Block) -> None:
-        """Takes a block of the master that is followed; one from before the open tick is of no use."""
-        if master == self._master and block.first_cycle >= self._needed_of_master():
-            self._master_blocks[block.first_cycle] = block
+        """Takes a block of an axis that is, was or will be the master; one from before the next tick is of no use."""
+        if block.first_cycle >= self._needed_of_master():
+            self._master_blocks.setdefault(master, {})[block.first_cycle] = block
 
     def _needed_of_master(self) -> int:
         return self._next_cycle if self._open is None else self._open[0].first_cycle
 
+    def _of_master(self) -> dict[int, Block]:
+        return {} if self._master is None else self._master_blocks.get(self._master, {})
+
     def missing(self) -> list[str]:
         """Sources that the next tick waits for; [clock] when no tick is there; empty when it can be computed."""
         if self._open is not None:
-            waits = self._master is not None and self._needed_of_master() not in self._master_blocks
+            waits = self._master is not None and self._needed_of_master() not in self._of_master()
             return [self._master] if waits and self._master is not None else []
         if not self._ticks:
             return [CLOCK]
@@ -89,7 +90,7 @@ class BlockGate:
     def skipped(self) -> list[str]:
         """Of the missing sources, those that have sent a later block already: the needed one is lost."""
         if self._open is not None:
-            return self.missing() if self._master_blocks else []
+            return self.missing() if self._of_master() else []
         if not self._ticks:
             return []
         tick = self._ticks[0]
@@ -121,7 +122,10 @@ class BlockGate:
         tick, inputs = self._open
         self._open = None
         if self._master is not None:
-            inputs = {**inputs, self._master: self._master_blocks.pop(tick.first_cycle)}
+            inputs = {**inputs, self._master: self._of_master()[tick.first_cycle]}
+        for blocks in self._master_blocks.values():
+            for cycle in [cycle for cycle in blocks if cycle <= tick.first_cycle]:
+                del blocks[cycle]
         return tick, inputs
 
     def drop(self, source: str) -> None:

@@ -77,6 +77,14 @@ class PlcUnit(Unit):
         self._failed = False
         self._reported: Mapping[str, Block] = {}
 
+    def is_coupled(self, axis: str) -> bool:
+        """True for a slave, as it has reported."""
+        block = self._reported.get(axis)
+        return isinstance(block, AxisBlock) and bool(block.master)
+
+    def is_lost(self, unit: str) -> bool:
+        return unit in self._lost
+
     def input(self, command: Command) -> None:
         """A command from outside (topic, button): goes out with the next block."""
         self._outgoing.append(command)

@@ -15,6 +15,7 @@ from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.unit import UPSTREAM_LOST
 from cnc_ptp.nodes.requests import given_arguments
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 
@@ -37,6 +38,9 @@ class CouplingServices:
             arguments = self._arguments(command, request)
         except CncError as error:
             response.accepted, response.error_id, response.message = False, error.error_id, error.message
+            return response
+        if self._node.unit.is_lost(axis):
+            response.error_id, response.message = UPSTREAM_LOST, f"axis {axis}: {command} refused: its node is lost"
             return response
         answer = Future()
         self._waiting[axis, command].append(answer)

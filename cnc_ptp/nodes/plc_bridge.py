@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -95,11 +96,19 @@ class PlcBridgeNode(UnitNode):
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
         """Not valid, or no number: the factor stays as it is."""
         topic = f"/{unit}/coupling_factor"
+        if not self._is_coupled(unit):
+            self._last.pop(topic, None)  # what comes first after the next coupling is a change
+            message.valid = False
         if not message.valid:
             self._factors.pop(topic, None)
             return None
+        if not math.isfinite(message.factor):
+            return None
         self._factors[topic] = time.monotonic()
         return Command(unit, "set_cyclic_factor", {"factor": message.factor})
+
+    def _is_coupled(self, axis: str) -> bool:
+        return isinstance(self.unit, PlcUnit) and self.unit.is_coupled(axis)
 
     def _watch_factors(self) -> None:
         """A factor whose topic falls silent freezes: the last one holds, and people are told."""
