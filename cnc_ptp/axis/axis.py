@@ -119,7 +119,7 @@ class Axis:
             self._end_superposition()
 
     def _bearable(self, velocity: float, acceleration: float) -> float:
-        """What of an acceleration may be ramped down: a²/2J of it must not lead the axis above P-AXIS-00212, or through 0.
+        """What of an acceleration may be ramped down: a²/2J must not lead the axis above P-AXIS-00212, or through 0.
 
         Neither may it be more than the axis itself, or the job that has made it, would take.
         """
