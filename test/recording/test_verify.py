@@ -61,6 +61,9 @@ SAMPLES = [
         "requests",
         "blocks_done",
         "blocks_total",
+        "master",
+        "target_velocity",
+        "couples_actual",
     )
     and not (unit == "channel" and field.startswith("set_"))
 ]
