@@ -171,7 +171,7 @@ class CouplingCommands:
     def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:
         if factor == 0.0:
             self._axis.refuse(command, BAD_FACTOR, f"{name} = 0 must be different from 0")
-        if name == "factor" and not SMALLEST_FACTOR <= abs(factor) <= LARGEST_FACTOR:
+        if not SMALLEST_FACTOR <= abs(factor) <= LARGEST_FACTOR:
             limits = f"between {SMALLEST_FACTOR:g} and {LARGEST_FACTOR:g} or the negative of it"
             self._axis.refuse(command, BAD_FACTOR, f"{name} = {factor} must be {limits}")
 

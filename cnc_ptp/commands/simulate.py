@@ -22,6 +22,7 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     Severity,
     command_note,
+    event_note,
 )
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
@@ -59,7 +60,8 @@ class Result:
                 f"P-ERR-{event.error_id} {event.text}" for event in output.events if event.severity == Severity.ERROR
             ]
             notes = (command_note(record.accepted, record.error_id, record.message) for record in output.records)
-            self.notes += [note for note in notes if note and note not in self.notes]
+            warnings = (event_note(event.severity, event.error_id, event.text) for event in output.events)
+            self.notes += [note for note in (*notes, *warnings) if note and note not in self.notes]
 
 
 def simulate(

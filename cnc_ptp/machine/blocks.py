@@ -97,6 +97,12 @@ def command_note(accepted: bool, error_id: int, message: str) -> str:
     return f"refused: P-ERR-{error_id} {message}"
 
 
+def event_note(severity: int, error_id: int, text: str) -> str:
+    """What people should hear of a warning that came by itself; refusals are told by their command."""
+    by_itself = severity == Severity.WARNING and " refused: " not in text
+    return f"warning: P-WARN-{error_id} {text}" if by_itself else ""
+
+
 @dataclass(slots=True)
 class Event:
     """A state change, warning or error (Event.msg)."""
