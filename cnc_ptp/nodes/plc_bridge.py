@@ -94,12 +94,12 @@ class PlcBridgeNode(UnitNode):
         return Command(unit, command, {"on": message.on if message.valid else idle})
 
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
-        """Not valid, or no number: the factor stays as it is."""
+        """Not valid, no number, or no slave: nothing changes."""
         topic = f"/{unit}/coupling_factor"
-        if not self._is_coupled(unit):
+        coupled = self._is_coupled(unit)
+        if not coupled:
             self._last.pop(topic, None)  # what comes first after the next coupling is a change
-            message.valid = False
-        if not message.valid:
+        if not (coupled and message.valid):
             self._factors.pop(topic, None)
             return None
         if not math.isfinite(message.factor):
