@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from cnc_ptp.parameters import notices
 from cnc_ptp.parameters.channels import axis_entries, main_spindle_number, spindle_entries
+from cnc_ptp.parameters.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.synchronisation import Synchronisation, synchronisation
@@ -75,6 +76,7 @@ class AxisParameters:
     powered_at_start: bool
     referenced_at_start: bool
     start_position: float
+    control: ControlParameters
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,20 +174,21 @@ class MachineParameters:
 
 def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> MachineParameters:
     of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
+    cycle_time = machine.kernel("P-MACH-00001")
     return MachineParameters(
         cycle_time_us=int(machine.number("P-MACH-00001")),
         block_cycles=int(machine.number("P-MACH-00002")),
         watchdog_ms=int(machine.number("P-MACH-00003")),
         life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
         channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
-        axes={unit.node: axis_view(unit) for unit in of_kind["axis"]},
+        axes={unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]},
         spindles={unit.node: spindle_view(unit) for unit in of_kind["spindle"]},
         warnings=tuple(notices.machine_warnings(sets)),
         sets={"machine": machine, **sets},
     )
 
 
-def axis_view(parameters: ParameterSet) -> AxisParameters:
+def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     gear = active_gear(parameters)
     rotary = parameters.axis_type == "R"
     modulo = rotary and bool(int(parameters.number("P-AXIS-00015")) & MODULO)
@@ -231,6 +234,7 @@ def axis_view(parameters: ParameterSet) -> AxisParameters:
         powered_at_start=bool(parameters.number("P-SIM-00004")),
         referenced_at_start=bool(parameters.number("P-SIM-00005")),
         start_position=parameters.kernel("P-SIM-00003"),
+        control=control_view(parameters, gear, cycle_time),
     )
 
 

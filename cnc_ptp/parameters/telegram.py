@@ -1,0 +1,103 @@
+"""Cyclic telegrams: which objects go to and come from a drive, and what these mean.
+
+Sources: TF5200 feedforward 4, friction 2.4; SERCOS IDN and CiA 402 object numbers; PROFIdrive signals of telegram 5.
+"""
+
+from __future__ import annotations
+
+from cnc_ptp.parameters.parameter_set import ParameterSet
+
+COMMAND_OBJECTS: dict[str, str] = {
+    "S-0-0036": "velocity",
+    "S-0-0047": "position",
+    "S-0-0080": "torque",
+    "S-0-0037": "additive_velocity",
+    "S-0-0081": "additive_torque",
+    "60FF": "velocity",
+    "607A": "position",
+    "6071": "torque",
+    "60B1": "additive_velocity",
+    "60B2": "additive_torque",
+    "NSOLL_B": "velocity",
+    "XERR": "lag",
+    "M_ADD1": "additive_torque",
+    "DA_WORD": "velocity",
+}
+FEEDBACK_OBJECTS: dict[str, str] = {
+    "S-0-0051": "position",
+    "S-0-0040": "velocity",
+    "S-0-0084": "torque",
+    "6064": "position",
+    "606C": "velocity",
+    "6077": "torque",
+    "G1_XIST1": "position",
+    "NIST_B": "velocity",
+    "MIST_GLATT": "torque",
+}
+EVERYTHING = frozenset({"velocity", "position", "torque", "lag", "additive_velocity", "additive_torque"})
+ALL_FEEDBACK = frozenset({"position", "velocity", "torque"})
+PLAIN = (frozenset({"velocity"}), frozenset({"position"}))
+PRESETS: dict[int, tuple[frozenset[str], frozenset[str]]] = {
+    1: PLAIN,
+    2: PLAIN,
+    3: (frozenset({"lag", "additive_velocity"}), frozenset({"position", "velocity"})),
+    4: (EVERYTHING, ALL_FEEDBACK),
+    5: PLAIN,
+    6: PLAIN,
+    7: PLAIN,
+    8: PLAIN,
+    16: (frozenset(), frozenset()),
+    32: PLAIN,
+}
+"""What a drive type (P-AXIS-00020) exchanges where no telegram is configured."""
+ANALOGUE = (1, 6)
+"""Drive types whose command is a voltage of ±10 V."""
+OPERATION_MODES = {
+    "DRIVE_POSITION_CONTROL": "position",
+    "CNC_POSITION_CONTROL": "velocity",
+    "DSC_POSITION_CONTROL": "lag",
+}
+INTERFACES = ("velocity", "lag", "position", "torque")
+
+
+def command_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    """The configured objects of the command telegram by name, S-0-0037."""
+    return _objects(parameters, "P-MACH-00020", "mdt", ("P-MACH-00022", "P-MACH-00023"))
+
+
+def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    return _objects(parameters, "P-MACH-00021", "at", ("P-MACH-00025", "P-MACH-00026"))
+
+
+def commands(parameters: ParameterSet) -> frozenset[str]:
+    """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity."""
+    objects = command_objects(parameters)
+    if not objects:
+        return PRESETS[int(parameters.number("P-AXIS-00020"))][0]
+    quantities = {COMMAND_OBJECTS[name] for name in objects if name in COMMAND_OBJECTS}
+    if "XERR" in objects and "NSOLL_B" in objects:
+        quantities = quantities - {"velocity"} | {"additive_velocity"}
+    return frozenset(quantities)
+
+
+def feedback(parameters: ParameterSet) -> frozenset[str]:
+    objects = feedback_objects(parameters)
+    if not objects:
+        return PRESETS[int(parameters.number("P-AXIS-00020"))][1]
+    return frozenset(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)
+
+
+def interface(parameters: ParameterSet) -> str:
+    """What the NC commands: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
+    available = commands(parameters)
+    mode = OPERATION_MODES.get(parameters.text("P-AXIS-00320"))
+    return mode or next((quantity for quantity in INTERFACES if quantity in available), "none")
+
+
+def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[str, ...]:
+    objects = list(parameters.names(names))
+    for index in parameters.used_indexes(f"antr.sercos.{array}"):
+        name, number = parameters.text(elements[0], index), parameters.number(elements[1], index)
+        if name or number:
+            objects.append(name.replace("_", "-") or f"S-0-{number:04d}")
+    return tuple(objects)
