@@ -16,7 +16,7 @@ from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.stop_commands import StopCommands
-from cnc_ptp.control.drive import Drive, SimulatedDrive
+from cnc_ptp.control.drives import Drive, FirstOrderDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.machine.axis_sources import MasterSource, PathSource
 from cnc_ptp.machine.blocks import AxisBlock, Block, CycleTick, Severity
@@ -61,7 +61,7 @@ class AxisUnit(Unit):
             following_error_limit=parameters.following_error_limit,
             monitoring=parameters.following_error_monitoring,
         )
-        self._drive: Drive = drive or SimulatedDrive(
+        self._drive: Drive = drive or FirstOrderDrive(
             cycle_time=cycle_time,
             time_constant=parameters.drive_time_constant,
             encoder_increment=parameters.encoder_increment,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import ClassVar, NoReturn
 
 from cnc_ptp.axis.states import state_name
-from cnc_ptp.control.drive import Drive, SimulatedDrive
+from cnc_ptp.control.drives import Drive, FirstOrderDrive
 from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
@@ -45,7 +45,7 @@ class SpindleUnit(Unit):
             following_error_limit=parameters.following_error_limit,
             monitoring=parameters.following_error_monitoring,
         )
-        self._drive: Drive = drive or SimulatedDrive(
+        self._drive: Drive = drive or FirstOrderDrive(
             cycle_time=cycle_time,
             time_constant=parameters.drive_time_constant,
             encoder_increment=parameters.encoder_increment,

@@ -8,14 +8,14 @@ import random
 import numpy as np
 import pytest
 
-from cnc_ptp.control.drive import SimulatedDrive
+from cnc_ptp.control.drives import FirstOrderDrive
 from cnc_ptp.control.position_controller import PositionController
 
 T = 0.001
 
 
-def drive(time_constant: float, increment: float = 0.0, start: float = 0.0) -> SimulatedDrive:
-    return SimulatedDrive(cycle_time=T, time_constant=time_constant, encoder_increment=increment, start_position=start)
+def drive(time_constant: float, increment: float = 0.0, start: float = 0.0) -> FirstOrderDrive:
+    return FirstOrderDrive(cycle_time=T, time_constant=time_constant, encoder_increment=increment, start_position=start)
 
 
 def matrix_exponential(matrix: np.ndarray) -> np.ndarray:

@@ -1,0 +1,26 @@
+"""What a position controller needs of a drive, whatever is behind it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Drive(Protocol):
+    """A drive of one axis or spindle; a real one would exchange its process data in `step`.
+
+    Axis units: mm, mm/s (deg, deg/s). Torques are Nm at the motor shaft, or N where a linear axis has no feed constant.
+    """
+
+    position: float
+    """Actual position as the telegram gives it, mm or deg."""
+    velocity: float
+    """Actual velocity, mm/s or deg/s."""
+    torque: float
+    """Actual torque, Nm or N; 0.0 where the drive does not report one."""
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        """Holds the command for one cycle and takes over the new actual values.
+
+        `command` is what the drive's interface asks for: velocity in mm/s (deg/s), position or lag in mm (deg), torque
+        in Nm (N).
+        """
