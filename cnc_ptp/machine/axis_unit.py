@@ -28,7 +28,7 @@ MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
 
 Row = tuple[float | int, ...]
 """One cycle: the fields of AxisBlock with a value per cycle."""
-FIELDS = 16
+FIELDS = 17
 Columns = list[Any]
 """The same of many cycles, field by field."""
 
@@ -182,6 +182,7 @@ class AxisUnit(Unit):
             nothing,
             nothing,
             nothing,
+            nothing,
             [axis.override_percent] * n,
             [axis.state] * n,
             bits,
@@ -215,6 +216,7 @@ class AxisUnit(Unit):
             drive.velocity,
             following_error,
             command,
+            0.0,
             0.0,
             0.0,
             0.0,

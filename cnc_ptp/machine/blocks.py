@@ -195,6 +195,7 @@ class AxisBlock:
     additive_velocity: list[float]
     additive_torque: list[float]
     friction_current: list[float]
+    actual_torque: list[float]
     override_percent: list[float]
     state: list[int]
     status_bits: list[int]

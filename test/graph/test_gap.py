@@ -209,7 +209,7 @@ def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
 
 def test_converted_blocks_are_the_same():
     """What the node publishes is what its unit has computed."""
-    block = AxisBlock(10, 1, *([0.1 * n] for n in range(13)), [1], [2], [3], "y", 7.5, True)
+    block = AxisBlock(10, 1, *([0.1 * n] for n in range(14)), [1], [2], [3], "y", 7.5, True)
     again = convert.message_to_block(convert.block_to_message(block, convert.time_message(5)))
     of_the_block = ("first_cycle", "count", "master", "target_velocity", "couples_actual")
     for name in AxisBlock.__slots__:

@@ -120,7 +120,7 @@ def test_enabling_and_starting_a_pushed_master_does_not_throw_its_slave() -> Non
 
 
 def axis_block(first_cycle: int) -> AxisBlock:
-    return AxisBlock(first_cycle, 10, *([0.0] * 10 for _ in range(13)), *([0] * 10 for _ in range(3)))
+    return AxisBlock(first_cycle, 10, *([0.0] * 10 for _ in range(14)), *([0] * 10 for _ in range(3)))
 
 
 def test_the_gate_keeps_blocks_of_a_master_that_come_before_they_are_needed() -> None:

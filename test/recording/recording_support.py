@@ -41,7 +41,7 @@ class Blocks:
         return [self.random.random() < 0.5 for _ in range(count)]
 
     def axis(self, first: int, count: int = 10) -> AxisBlock:
-        columns = [self.floats(count) for _ in range(13)]
+        columns = [self.floats(count) for _ in range(14)]
         return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (8, 32, 32)))
 
     def spindle(self, first: int, count: int = 10) -> SpindleBlock:
@@ -149,6 +149,7 @@ def _axis(first: int, number: int) -> AxisBlock:
         [v * 0.999 for v in velocity],
         [v / 16.7 for v in velocity],
         velocity,
+        zero,
         zero,
         zero,
         zero,
