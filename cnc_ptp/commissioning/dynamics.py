@@ -1,0 +1,176 @@
+"""The drive as a first-order lag with dead time, fitted to command velocity and actual velocity.
+
+Model, exact for a command that is held over a cycle: v[k+1] = g·u[k-d] + (v[k] - g·u[k-d])·exp(-T/Ta); T cycle time,
+u command velocity, d dead time in cycles, g gain (1 where the scaling is right). Source: TF5200 feedforward, figure 1.
+The sum of the squares of (simulated - recorded velocity) is the smallest possible (output error), so that noise on the
+recorded velocity does not bend the result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.signal import lfilter
+
+from cnc_ptp.commissioning.faults import NO_COMMAND, NO_FIT, NO_MOTION, NOT_EXCITED, TOO_SHORT, refusal
+from cnc_ptp.commissioning.trace import Array, AxisTrace, Span
+
+LONGEST_DEAD_TIME = 20
+"""Cycles (P-SIM-00018)."""
+SHORTEST = 0.1
+"""Seconds of recording."""
+SLOWEST_POLE = 0.9999
+POLES = (0.0, *(round(0.02 + 0.04 * index, 2) for index in range(25)), 0.99, 0.995, SLOWEST_POLE)
+"""Of the first search."""
+AFTERWARDS = 0.1
+"""Seconds after the end of a motion that still belong to it."""
+MOST_CYCLES = 100_000
+LARGEST_MISFIT = 0.2
+"""Misfit above which the drive is no first-order lag at all."""
+LEAST_CHANGE = 0.05
+"""Part of the velocity that has to change within the recording: a constant one says nothing about a lag."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveFit:
+    """What was found. Times in s.
+
+    `misfit`: root mean square of (simulated - recorded velocity) over that of (velocity - its mean).
+    """
+
+    time_constant: float
+    dead_cycles: int
+    gain: float
+    misfit: float
+    cycles: int
+    cycle_time: float
+
+    @property
+    def dead_time(self) -> float:
+        return self.dead_cycles * self.cycle_time
+
+    @property
+    def delay(self) -> float:
+        """Ta + dead time: how far the velocity is behind its command in a long ramp."""
+        return self.time_constant + self.dead_time
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """Command and actual velocity of a stretch without gaps."""
+
+    command: Array
+    actual: Array
+
+
+def fit_drive(trace: AxisTrace) -> DriveFit:
+    """Ta, dead time and gain of the drive, from the stretches in which the axis moves.
+
+    Raises CncError 27003 too short, 27004 no motion, 27012 velocity never changes, 27014 no command, 27013 no fit.
+    """
+    pieces = _pieces(trace)
+    dead_times = sorted((_coarse(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)), key=lambda found: found[0])
+    error, pole, dead = min((_fine(pieces, found) for found in dead_times[:3]), key=lambda found: found[0])
+    time_constant = 0.0 if pole <= 1e-9 else -trace.cycle_time / math.log(pole)
+    actual = np.concatenate([piece.actual for piece in pieces])
+    misfit = math.sqrt(error) / float(np.linalg.norm(actual - actual.mean()))
+    if misfit > LARGEST_MISFIT or pole >= SLOWEST_POLE:
+        raise refusal(
+            NO_FIT,
+            trace.axis,
+            "the actual velocity does not follow the command velocity like a first-order lag (misfit "
+            f"{100.0 * misfit:.0f} %, at most {100.0 * LARGEST_MISFIT:.0f} %); nothing was made, look for errors and "
+            "the torque limit in the recording",
+        )
+    return DriveFit(time_constant, dead, _errors(pieces, pole, dead)[1], misfit, len(actual), trace.cycle_time)
+
+
+def _pieces(trace: AxisTrace) -> list[_Piece]:
+    spans = [span for span in trace.unbroken() if (span[1] - span[0]) * trace.cycle_time >= SHORTEST]
+    if not spans:
+        raise refusal(
+            TOO_SHORT,
+            trace.axis,
+            f"{trace.seconds:g} s were recorded, at least {SHORTEST:g} s without a gap are needed; nothing was made",
+        )
+    if not np.any(trace.actual_velocity) or not np.any(trace.set_velocity):
+        raise refusal(NO_MOTION, trace.axis, f"does not move in the recorded {trace.seconds:g} s; nothing was made")
+    command = trace.command_velocity + trace.additive_velocity
+    if not np.any(command):
+        raise refusal(
+            NO_COMMAND,
+            trace.axis,
+            "the recording holds no command velocity, as the drive closes the position loop itself; nothing was made",
+        )
+    if float(np.ptp(trace.actual_velocity)) < LEAST_CHANGE * float(np.max(np.abs(trace.actual_velocity))):
+        raise refusal(
+            NOT_EXCITED,
+            trace.axis,
+            "the velocity hardly changes in the recording, which says nothing about the drive; nothing was made, "
+            "record starts and stops",
+        )
+    moving = [stretch for span in spans for stretch in _moving(trace, span)]
+    return [_Piece(command[first:end], trace.actual_velocity[first:end]) for first, end in _first_cycles(moving)]
+
+
+def _moving(trace: AxisTrace, span: Span) -> list[Span]:
+    """Stretches in which the axis is to move, and what follows of it for AFTERWARDS seconds.
+
+    At rest, friction holds an axis whatever small velocity is commanded: that is no lag.
+    """
+    first, end = span
+    tail = round(AFTERWARDS / trace.cycle_time)
+    wanted = np.flatnonzero(trace.set_velocity[first:end]) + first
+    if not len(wanted):
+        return []
+    breaks = np.flatnonzero(np.diff(wanted) > tail)
+    starts = [int(wanted[0]), *wanted[breaks + 1].tolist()]
+    ends = [*wanted[breaks].tolist(), int(wanted[-1])]
+    return [(low, min(high + tail, end)) for low, high in zip(starts, ends, strict=True)]
+
+
+def _first_cycles(spans: Sequence[Span]) -> list[Span]:
+    """As many as are useful: more cycles make the answer later, not better."""
+    kept, total = [], 0
+    for first, end in spans:
+        kept.append((first, min(end, first + MOST_CYCLES - total)))
+        total += end - first
+        if total >= MOST_CYCLES:
+            break
+    return kept
+
+
+def _coarse(pieces: Sequence[_Piece], dead: int) -> tuple[float, int, int]:
+    """(sum of squared errors, place in POLES, dead cycles) of the best pole of the grid."""
+    errors = [_errors(pieces, pole, dead)[0] for pole in POLES]
+    place = int(np.argmin(errors))
+    return errors[place], place, dead
+
+
+def _fine(pieces: Sequence[_Piece], coarse: tuple[float, int, int]) -> tuple[float, float, int]:
+    """(sum of squared errors, pole exp(-T/Ta), dead cycles) of the best pole between the neighbours in the grid."""
+    error, place, dead = coarse
+    bounds = (POLES[max(place - 1, 0)], POLES[min(place + 1, len(POLES) - 1)])
+    found = minimize_scalar(
+        lambda pole: _errors(pieces, pole, dead)[0], bounds=bounds, method="bounded", options={"xatol": 1e-12}
+    )
+    return (float(found.fun), float(found.x), dead) if found.fun <= error else (error, POLES[place], dead)
+
+
+def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, float]:
+    """Sum of squared errors and the best gain: the simulated velocity is g · forced part + free part."""
+    forced, wanted = [np.zeros(0)], [np.zeros(0)]
+    for piece in pieces:
+        usable = len(piece.actual) - dead - 1
+        if usable > 0:
+            free = piece.actual[dead] * pole ** np.arange(1, usable + 1)
+            forced.append(lfilter([1.0 - pole], [1.0, -pole], piece.command[:usable]))
+            wanted.append(piece.actual[dead + 1 :] - free)
+    simulated, target = np.concatenate(forced), np.concatenate(wanted)
+    power = float(simulated @ simulated)
+    gain = float(simulated @ target) / power if power > 0.0 else 0.0
+    return float(np.sum((gain * simulated - target) ** 2)), gain

@@ -1,0 +1,154 @@
+"""Motions that excite an axis for its identification: forth and back from one place, within its limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from cnc_ptp.commissioning.faults import BAD_VELOCITIES, NO_ROOM, refusal
+
+EDGE = 0.01
+"""Part of the travel that stays free at either end."""
+PAUSE = 0.2
+"""Seconds of rest between two motions, beside the settling."""
+SPEEDS = 30
+RANGE = 5000.0
+"""Highest over lowest speed."""
+LOWEST_INCREMENTS = 50.0
+"""Increments of the encoder in a second at the lowest speed."""
+LOWEST_SPEED = 0.02
+"""mm/s (deg/s): the table counts µm/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """Where and how fast an axis may move; mm, s (deg, s). An axis without soft limits has infinite ones."""
+
+    axis: str
+    unit: str
+    position: float
+    low: float
+    high: float
+    max_velocity: float
+    acceleration: float
+    deceleration: float
+    jerk: float
+    encoder_increment: float = 0.0
+
+    @property
+    def travel(self) -> float:
+        return self.high - self.low
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """One motion: begins `at` s, goes `distance` (with sign) at `velocity`, lasts `duration` s."""
+
+    at: float
+    distance: float
+    velocity: float
+    duration: float
+
+
+def ramp_time(velocity: float, acceleration: float, jerk: float) -> float:
+    """Seconds from rest to `velocity` with limited jerk: v/a + a/j, or 2·sqrt(v/j) where a is not reached."""
+    if velocity * jerk >= acceleration * acceleration:
+        return velocity / acceleration + acceleration / jerk
+    return 2.0 * math.sqrt(velocity / jerk)
+
+
+def motion_time(room: Room, velocity: float, steady: float) -> float:
+    """Seconds from rest to rest with `steady` seconds of constant velocity."""
+    return (
+        ramp_time(velocity, room.acceleration, room.jerk) + steady + ramp_time(velocity, room.deceleration, room.jerk)
+    )
+
+
+def way(room: Room, velocity: float, steady: float) -> float:
+    """mm (deg) of such a motion: half the velocity in the ramps, as they are symmetric."""
+    return 0.5 * velocity * (motion_time(room, velocity, steady) + steady)
+
+
+def highest_velocity(room: Room, steady: float) -> float:
+    """The highest velocity at which the axis has room for `steady` seconds; mm/s (deg/s)."""
+    usable = room.travel * (1.0 - 2.0 * EDGE)
+    if way(room, room.max_velocity, steady) <= usable:
+        return room.max_velocity
+    low, high = 0.0, room.max_velocity
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if way(room, middle, steady) <= usable else (low, middle)
+    return low
+
+
+def speed_ladder(room: Room, steady: float) -> list[float]:
+    """Speeds from slow to as fast as there is room for, evenly spaced in their logarithm, with three digits.
+
+    Raises CncError 27010 where there is no room to move.
+    """
+    high = highest_velocity(room, steady)
+    low = max(high / RANGE, LOWEST_INCREMENTS * room.encoder_increment, LOWEST_SPEED)
+    if high < 2.0 * low:
+        raise refusal(
+            NO_ROOM,
+            room.axis,
+            f"the soft limits leave {room.travel:g} {room.unit} (P-AXIS-00177, P-AXIS-00178), too little to drive "
+            f"{steady:g} s with constant velocity; nothing was started",
+        )
+    ratio = (high / low) ** (1.0 / (SPEEDS - 1))
+    return [min(high, float(f"{low * ratio**index:.3g}")) for index in range(SPEEDS)]
+
+
+def check_speeds(room: Room, speeds: Sequence[float], steady: float) -> list[float]:
+    """Speeds that somebody asks for, in ascending order. Raises CncError 27011 for one that cannot be driven."""
+    for speed in speeds:
+        if not 0.0 < speed <= room.max_velocity:
+            raise refusal(
+                BAD_VELOCITIES,
+                room.axis,
+                f"the velocity {speed:g} {room.unit}/s is not above 0 and up to {room.max_velocity:g} {room.unit}/s "
+                "(P-AXIS-00212); nothing was started",
+            )
+        needed, usable = way(room, speed, steady), room.travel * (1.0 - 2.0 * EDGE)
+        if needed > usable:
+            raise refusal(
+                BAD_VELOCITIES,
+                room.axis,
+                f"{speed:g} {room.unit}/s need {needed:.4g} {room.unit} of way, the soft limits leave {usable:.4g} "
+                f"{room.unit} (P-AXIS-00177, P-AXIS-00178); nothing was started",
+            )
+    return sorted(set(speeds))
+
+
+def forth_and_back(room: Room, speeds: Sequence[float], *, steady: float, settling: float) -> list[Motion]:
+    """A motion to where there is room, then each speed forth and back; `settling` s of rest before each motion."""
+    longest = max(way(room, speed, steady) for speed in speeds)
+    start, side = _start(room, longest)
+    motions: list[Motion] = []
+    time = settling
+    if start != room.position:
+        distance = start - room.position
+        velocity = room.max_velocity
+        # At most the whole way at velocity and both ramps, even if the velocity is not reached.
+        duration = abs(distance) / velocity + motion_time(room, velocity, 0.0)
+        motions.append(Motion(time, distance, velocity, duration))
+        time += duration + PAUSE + settling
+    for speed in speeds:
+        for direction in (side, -side):
+            duration = motion_time(room, speed, steady)
+            motions.append(Motion(time, direction * way(room, speed, steady), speed, duration))
+            time += duration + PAUSE + settling
+    return motions
+
+
+def _start(room: Room, longest: float) -> tuple[float, float]:
+    """Where to start and in which direction first: where the axis stands, if there is room."""
+    if math.isinf(room.travel):
+        return room.position, 1.0
+    edge = EDGE * room.travel
+    if room.low + edge <= room.position <= room.high - edge - longest:
+        return room.position, 1.0
+    if room.low + edge + longest <= room.position <= room.high - edge:
+        return room.position, -1.0
+    return room.low + edge, 1.0

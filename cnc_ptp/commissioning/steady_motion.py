@@ -1,0 +1,63 @@
+"""Phases of constant velocity in a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from cnc_ptp.commissioning.trace import Array, AxisTrace, Span
+
+SAME = 1e-7
+"""Relative change of a setpoint from cycle to cycle that is still a constant velocity."""
+LARGEST_DRIFT = 1e-3
+"""Relative change over a whole phase."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyPhase:
+    """Rows first … end - 1 move with the constant set velocity `velocity` (mm/s, deg/s, with its sign), settled."""
+
+    velocity: float
+    first: int
+    end: int
+
+    def __len__(self) -> int:
+        return self.end - self.first
+
+
+def steady_phases(trace: AxisTrace, *, settling: float, shortest: float) -> list[SteadyPhase]:
+    """Phases in which the set velocity is constant and not zero, without their first `settling` seconds.
+
+    What then lasts less than `shortest` seconds is left out.
+    """
+    skipped, least = round(settling / trace.cycle_time), max(1, round(shortest / trace.cycle_time))
+    phases = []
+    for span in trace.unbroken():
+        for first, end in _constant(trace.set_velocity, span):
+            velocity = float(trace.set_velocity[first])
+            if velocity and end - first - skipped >= least:
+                phases.append(SteadyPhase(velocity, first + skipped, end))
+    return phases
+
+
+def longest_steady(trace: AxisTrace) -> float:
+    """Seconds of the longest motion with constant velocity, settling included."""
+    spans = (span for whole in trace.unbroken() for span in _constant(trace.set_velocity, whole))
+    lengths = [end - first for first, end in spans if trace.set_velocity[first]]
+    return max(lengths, default=0) * trace.cycle_time
+
+
+def _constant(values: Array, span: Span) -> list[Span]:
+    """Stretches of `span` in which a value stays as it is from cycle to cycle and does not drift away slowly."""
+    first, end = span
+    part = values[first:end]
+    steps = np.abs(np.diff(part)) > SAME * np.abs(part[1:])
+    edges = [0, *(np.flatnonzero(steps) + 1).tolist(), len(part)]
+    pairs = pairwise(edges)
+    return [(first + low, first + high) for low, high in pairs if _holds(part[low:high])]
+
+
+def _holds(values: Array) -> bool:
+    return bool(np.ptp(values) <= LARGEST_DRIFT * abs(float(values[0])))

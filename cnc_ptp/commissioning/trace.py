@@ -1,0 +1,69 @@
+"""One axis over time as arrays: what all analyses start from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Span = tuple[int, int]
+"""First index and index after the last one."""
+
+
+@dataclass(frozen=True, slots=True)
+class AxisTrace:
+    """Columns (n,) with one value a cycle, in the order of the cycles; mm, s, N (linear) or deg, s, Nm.
+
+    `actual_torque` is None where no torque was recorded. A row holds what the drive reported before its cycle and what
+    it was commanded in it.
+    """
+
+    axis: str
+    cycle_time: float
+    cycle: npt.NDArray[np.int64]
+    set_velocity: Array
+    actual_position: Array
+    actual_velocity: Array
+    command_velocity: Array
+    additive_velocity: Array
+    actual_torque: Array | None
+
+    @classmethod
+    def of_rows(cls, axis: str, cycle_time: float, rows: Mapping[str, Any] | npt.NDArray[Any]) -> AxisTrace:
+        """Of the fields of AxisState messages (a mapping, or a structured array (n,)), repeated cycles once."""
+        names = rows.dtype.names or () if isinstance(rows, np.ndarray) else tuple(rows)
+        cycle, order = np.unique(np.asarray(rows["cycle"]).astype(np.int64), return_index=True)
+
+        def column(name: str) -> Array:
+            return np.asarray(rows[name], dtype=np.float64)[order]
+
+        return cls(
+            axis,
+            cycle_time,
+            cycle,
+            column("set_velocity"),
+            column("actual_position"),
+            column("actual_velocity"),
+            column("command_velocity"),
+            column("additive_velocity"),
+            column("actual_torque") if "actual_torque" in names else None,
+        )
+
+    def __len__(self) -> int:
+        return len(self.cycle)
+
+    @property
+    def seconds(self) -> float:
+        """Recorded time."""
+        return len(self) * self.cycle_time
+
+    def unbroken(self) -> Iterator[Span]:
+        """Stretches without a missing cycle."""
+        edges = np.flatnonzero(np.diff(self.cycle) != 1) + 1
+        bounds = [0, *edges.tolist(), len(self)]
+        return ((first, end) for first, end in pairwise(bounds) if end > first)
