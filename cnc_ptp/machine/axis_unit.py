@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf
 from typing import Any, ClassVar, cast
 
 from cnc_ptp.axis.axis import Axis
@@ -16,8 +15,10 @@ from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.stop_commands import StopCommands
-from cnc_ptp.control.drives import Drive, FirstOrderDrive
-from cnc_ptp.control.position_controller import PositionController
+from cnc_ptp.control.commands import ControlCommands
+from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.drives import Drive, make_drive
+from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.machine.axis_sources import MasterSource, PathSource
 from cnc_ptp.machine.blocks import AxisBlock, Block, CycleTick, Severity
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
@@ -56,28 +57,24 @@ class AxisUnit(Unit):
         self._axis = Axis(
             parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
         )
-        self._controller = PositionController(
-            kv=parameters.kv,
-            following_error_limit=parameters.following_error_limit,
-            monitoring=parameters.following_error_monitoring,
-        )
-        self._drive: Drive = drive or FirstOrderDrive(
+        self._loop = ControlLoop(
+            parameters.control,
             cycle_time=cycle_time,
-            time_constant=parameters.drive_time_constant,
-            encoder_increment=parameters.encoder_increment,
-            start_position=parameters.start_position,
+            limits=CouplingLimits(parameters.max_velocity, parameters.max_acceleration, parameters.jerk),
+            drive=drive or make_drive(parameters.control, cycle_time),
         )
         known = axes or {parameters.name: parameters}
         self._path = PathSource(self._axis)
         self._master = MasterSource(self._axis, axes=known, cycle_time=cycle_time)
         self._commands = (
             self,
-            PowerCommands(self._axis, actual_position=lambda: self._drive.position),
+            PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             PtpCommands(self._axis),
             StopCommands(self._axis),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
+            ControlCommands(self._loop, f"axis {parameters.name}"),
         )
 
     def _report_error(self, cycle: int, error_id: int, text: str) -> None:
@@ -156,33 +153,23 @@ class AxisUnit(Unit):
 
         Returns their number.
         """
-        axis, drive, controller = self._axis, self._drive, self._controller
-        limit = controller.following_error_limit if controller.monitoring else inf
+        axis, loop = self._axis, self._loop
         closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
+        watched = closed and loop.monitor.on
         cycles = []
-        for position, _, _, _ in setpoints:
-            actual = drive.position
-            error = position - actual
-            if closed and not -limit <= error <= limit:
+        for setpoint in setpoints:
+            if watched and loop.too_far(setpoint):
                 break
-            command = controller.command_velocity(error) if closed else 0.0
-            cycles.append((actual, drive.velocity, error, command))
-            drive.step(command)
+            cycles.append(loop.step(setpoint, closed))
         n = len(cycles)
         if n == 0:
             return 0
         setpoints = setpoints[:n]
-        nothing = [0.0] * n
         common = axis.common_bits(0)
         bits = [common | axis.motion_bits(s, c[0]) for s, c in zip(setpoints, cycles, strict=True)]
         values: Columns = [
             *zip(*setpoints, strict=True),
             *zip(*cycles, strict=True),
-            nothing,
-            nothing,
-            nothing,
-            nothing,
-            nothing,
             [axis.override_percent] * n,
             [axis.state] * n,
             bits,
@@ -193,44 +180,30 @@ class AxisUnit(Unit):
         return n
 
     def _cycle(self, cycle: int, base: State) -> Row:
-        axis, drive = self._axis, self._drive
+        axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
-        position, velocity, acceleration, jerk = setpoint
-        following_error = position - drive.position
+        actual_position = loop.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
         axis.watch(cycle, setpoint)
-        self._master.watch_gantry(cycle, setpoint, drive.position)
-        axis.watch_target(cycle, setpoint, drive.position)
-        command = 0.0
-        if axis.powered or axis.moving(cycle):
-            if axis.error_id == 0 and self._controller.exceeds_limit(following_error):
-                self._following_error_fault(cycle, setpoint, following_error)
-            command = self._controller.command_velocity(following_error)
-        row = (
-            position,
-            velocity,
-            acceleration,
-            jerk,
-            drive.position,
-            drive.velocity,
-            following_error,
-            command,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
+        self._master.watch_gantry(cycle, setpoint, actual_position)
+        axis.watch_target(cycle, setpoint, actual_position)
+        closed = axis.powered or axis.moving(cycle)
+        if closed and axis.error_id == 0 and loop.too_far(setpoint):
+            self._following_error_fault(cycle, setpoint, setpoint[0] - actual_position)
+        control = loop.step(setpoint, closed)
+        return (
+            *setpoint,
+            *control,
             axis.override_percent,
             axis.state,
-            axis.status_bits(cycle, setpoint, drive.position),
+            axis.status_bits(cycle, setpoint, control.actual_position),
             axis.error_id,
         )
-        drive.step(command)
-        return row
 
     def _following_error_fault(self, cycle: int, setpoint: State, following_error: float) -> None:
         axis = self._axis
-        limit = axis.parameters.following_error_limit
-        reason = f"following error {following_error:.4f} {axis.unit} exceeds {limit} {axis.unit} (P-AXIS-00168)"
+        monitor, velocity = self._loop.monitor, setpoint[1]
+        limit = f"{round(monitor.limit(velocity), 4)} {axis.unit} ({monitor.source(velocity)})"
+        reason = f"following error {following_error:.4f} {axis.unit} exceeds {limit}"
         axis.fault(cycle, FOLLOWING_ERROR, reason, setpoint)

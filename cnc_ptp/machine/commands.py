@@ -50,6 +50,8 @@ COUPLING: Arguments = {
 }
 """A master, and what the PLC fills in: the masters of the master, whether it stands, whether its node is lost."""
 
+FEEDFORWARD: Arguments = {"on": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
+
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "axis": {
         "power": {"on": SWITCH},
@@ -99,6 +101,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_coupling_factor": {"factor": NUMBER},
         "set_cyclic_factor": {"factor": NUMBER},
         "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_POSITIVE},
+        "set_feedforward": FEEDFORWARD,
+        "reset_feedforward": {},
+        "set_friction_compensation": {"on": SWITCH},
         "lead": {"slave": TEXT, "on": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,

@@ -127,10 +127,13 @@ class PlantParameters:
 
 @dataclass(frozen=True, slots=True)
 class ModuloError:
-    """Increments that `turns` modulo turns are short of (P-AXIS-00124, 00125); 0 mm (deg) = no compensation."""
+    """Encoder increments that a modulo turn is short of (P-AXIS-00124 / P-AXIS-00125); 0 = no compensation."""
 
     turn: float
-    correction_per_turn: float
+    """Modulo range, deg."""
+    increment: float
+    """deg an increment."""
+    increments_per_turn: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,13 +285,12 @@ def friction_parameters(parameters: ParameterSet) -> FrictionParameters:
 
 def modulo_error(parameters: ParameterSet, gear: int) -> ModuloError:
     """P-AXIS-00124 increments in P-AXIS-00125 turns, where P-AXIS-00120 switches the compensation on."""
-    if parameters.axis_type == "T" or not parameters.number("P-AXIS-00120"):
-        return ModuloError(0.0, 0.0)
-    turns = parameters.number("P-AXIS-00125", gear)
+    turns = parameters.number("P-AXIS-00125", gear) if parameters.axis_type != "T" else 0
+    if not turns or not parameters.number("P-AXIS-00120"):
+        return ModuloError(0.0, 0.0, 0.0)
     turn = parameters.kernel("P-AXIS-00126", gear) - parameters.kernel("P-AXIS-00127", gear)
     increment = float(1 / (10_000 * resolution(parameters, gear)))
-    correction = parameters.number("P-AXIS-00124", gear) * increment / turns if turns else 0.0
-    return ModuloError(turn, correction)
+    return ModuloError(turn, increment, parameters.number("P-AXIS-00124", gear) / turns)
 
 
 def plant_parameters(parameters: ParameterSet, gear: int) -> PlantParameters:

@@ -29,11 +29,8 @@ class AxisParameters:
     """Positions wrap from modulo_high to modulo_low; then the soft limits are infinite."""
     modulo_low: float
     modulo_high: float
-    drive_type: int
     virtual: bool
     """Has no drive (P-AXIS-00020 = 16)."""
-    kv: float
-    """Gain of the position controller, 1/s."""
     max_velocity: float
     rapid_velocity: float
     reference_velocity: float
@@ -45,14 +42,9 @@ class AxisParameters:
     jerk: float
     soft_limit_negative: float
     soft_limit_positive: float
-    following_error_monitoring: bool
-    following_error_limit: float
-    """While the axis moves."""
-    following_error_standstill_limit: float
     position_window: float
     encoder_increment: float
     """mm or ° an increment; 0.0 is an ideal measuring system."""
-    drive_time_constant: float
     override_type: int
     """PTP override: 1 reduced, 2 original, 3 and 4 the same iterated."""
     override_steps: int
@@ -200,9 +192,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         modulo=modulo,
         modulo_low=parameters.kernel("P-AXIS-00127", gear) if modulo else 0.0,
         modulo_high=parameters.kernel("P-AXIS-00126", gear) if modulo else 0.0,
-        drive_type=int(parameters.number("P-AXIS-00020")),
         virtual=int(parameters.number("P-AXIS-00020")) == VIRTUAL_AXIS,
-        kv=parameters.kernel("P-AXIS-00099", gear),
         max_velocity=max_velocity,
         rapid_velocity=parameters.kernel("P-AXIS-00209", gear),
         reference_velocity=parameters.kernel("P-MACH-00008") or max_velocity,
@@ -213,12 +203,8 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         jerk=jerk(parameters, gear),
         soft_limit_negative=-math.inf if modulo else parameters.kernel("P-AXIS-00177"),
         soft_limit_positive=math.inf if modulo else parameters.kernel("P-AXIS-00178"),
-        following_error_monitoring=parameters.number("P-AXIS-00172", gear) in MONITORING_TYPES,
-        following_error_limit=parameters.kernel("P-AXIS-00168", gear),
-        following_error_standstill_limit=parameters.kernel("P-AXIS-00169", gear),
         position_window=parameters.kernel("P-AXIS-00236", gear),
         encoder_increment=encoder_increment(parameters, gear),
-        drive_time_constant=parameters.kernel("P-SIM-00001"),
         override_type=int(parameters.number("P-MACH-00007")),
         override_steps=int(parameters.number("P-MACH-00010")),
         override_interval=parameters.number("P-MACH-00011") / 1000.0,

@@ -89,9 +89,27 @@ def _fields(block: Block) -> Iterable[tuple[str, Any]]:
     return ((name, getattr(block, name)) for name in type(block).__dataclass_fields__)
 
 
+def changed(parameters: AxisParameters, **changes: Any) -> AxisParameters:
+    """Other parameters of an axis, those of its control loop by their old short names too."""
+    control = parameters.control
+    plant, monitoring = control.plant, control.monitoring
+    if "kv" in changes:
+        control = replace(control, kv=changes["kv"])
+        plant = replace(plant, kv=changes.pop("kv"))
+    if "drive_time_constant" in changes:
+        plant = replace(plant, time_constant=changes.pop("drive_time_constant"))
+    if "following_error_limit" in changes:
+        monitoring = replace(monitoring, moving_limit=changes.pop("following_error_limit"))
+    if "following_error_monitoring" in changes:
+        monitoring = replace(monitoring, kind=4 if changes.pop("following_error_monitoring") else 0)
+    shared = {name: changes[name] for name in ("encoder_increment", "start_position") if name in changes}
+    control = replace(control, plant=replace(plant, **shared), monitoring=monitoring)
+    return replace(parameters, **{"control": control} | changes)
+
+
 def axis_parameters(**changes: Any) -> AxisParameters:
     """The x axis of config/ptp.yaml: ideal drive, V 10000 mm/s, A 5000 mm/s², J 50000 mm/s³, ±100 m."""
-    return replace(PTP.axes["x"], **changes)
+    return changed(PTP.axes["x"], **changes)
 
 
 def axis_bench(*, count: int = 10, **changes: Any) -> UnitBench:
@@ -194,7 +212,8 @@ def machine(source: MachineParameters = MILL, **units: Mapping[str, Any]) -> Mac
     changes: dict[str, Any] = {}
     for kind in ("axes", "spindles", "channels"):
         of_kind = getattr(source, kind)
-        changes[kind] = {name: replace(value, **units.get(name, {})) for name, value in of_kind.items()}
+        change = changed if kind == "axes" else replace
+        changes[kind] = {name: change(value, **units.get(name, {})) for name, value in of_kind.items()}
     return replace(source, **changes)
 
 

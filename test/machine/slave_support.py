@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from machine_support import PTP, MachineBench
+from machine_support import PTP, MachineBench, changed
 
 from cnc_ptp.machine.blocks import Command, CommandRecord
 from cnc_ptp.parameters import MachineParameters
@@ -94,7 +94,7 @@ class SlaveBench(MachineBench):
 
 def axes_named(*names: str, block_cycles: int = 10, **changes: Any) -> MachineParameters:
     """A machine of equal linear axes in this order (those of config/ptp.yaml), with the given changes."""
-    axes = {name: replace(PTP.axes["x"], name=name, **changes) for name in names}
+    axes = {name: changed(PTP.axes["x"], name=name, **changes) for name in names}
     return replace(PTP, axes=axes, block_cycles=block_cycles)
 
 

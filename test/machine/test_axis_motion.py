@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 from axis_motion_support import ramp_way, reachable, start, time_of_arrival
 from axis_states_support import DYNAMICS, A, J, V
-from machine_support import CYCLE_TIME, PTP, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
+from machine_support import (
+    CYCLE_TIME,
+    PTP,
+    UnitBench,
+    assert_axis_smooth,
+    axis_bench,
+    changed,
+    position_after,
+    seven_phases,
+)
 
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisStateCode as S
@@ -162,7 +169,7 @@ def test_a_velocity_that_the_users_own_ramps_reach_is_not_reduced(kind: int) -> 
 
 def rotary_bench(start_position: float = 0.0, **changes: object) -> UnitBench:
     """The c axis of config/ptp.yaml: 360 degrees, V 3600 °/s, A 5000 °/s², J 50000 °/s³."""
-    parameters = replace(PTP.axes["c"], start_position=start_position, **changes)  # type: ignore[arg-type]
+    parameters = changed(PTP.axes["c"], start_position=start_position, **changes)  # type: ignore[arg-type]
     return UnitBench(AxisUnit(parameters, cycle_time=CYCLE_TIME), count=100)
 
 

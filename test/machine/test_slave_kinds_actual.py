@@ -21,10 +21,10 @@ class HandDrive:
     """A drive that obeys its command, and a hand that pushes it when it is open: `push` in mm/s, added."""
 
     def __init__(self) -> None:
-        self.position = self.velocity = self.push = 0.0
+        self.position = self.velocity = self.torque = self.push = 0.0
 
-    def step(self, command_velocity: float) -> None:
-        self.velocity = command_velocity + self.push
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        self.velocity = command + self.push
         self.position += self.velocity * CYCLE_TIME
 
 

@@ -35,7 +35,22 @@ UNITS = {
         "µs",
         "ms",
     ),
-    *("0.01/s", "0.1 %", "increments", "increments/rev", "revolutions", "rpm", "cycles", "bit", "1/s", "1/°", "s/°²"),
+    *(
+        "0.01/s",
+        "0.1 %",
+        "increments",
+        "increments/rev",
+        "revolutions",
+        "rpm",
+        "cycles",
+        "bit",
+        "bytes",
+        "kg·m² (kg)",
+        "Nm (N)",
+        "1/s",
+        "1/°",
+        "s/°²",
+    ),
     *("kg·m²", "N", "Nm", "drive current"),
 }
 

@@ -34,9 +34,9 @@ def test_mill() -> None:
     assert [axis.jerk for axis in mill.axes.values()] == [50_000.0, 45_000.0, 37_500.0]
     for axis in mill.axes.values():
         assert axis.deceleration != axis.acceleration
-        assert (axis.kv, axis.drive_time_constant, axis.encoder_increment) == (50.0, 0.003, 0.0001)
+        assert (axis.control.kv, axis.control.plant.time_constant, axis.encoder_increment) == (50.0, 0.003, 0.0001)
         assert axis.following_error_monitoring
-        assert axis.following_error_limit > axis.max_velocity / axis.kv
+        assert axis.control.monitoring.moving_limit > axis.max_velocity / axis.control.kv
     assert mill.axes["x"].max_velocity == 500.0
     assert mill.spindles["s"].max_speed_deg_s == 12_000 * 6.0
     assert mill.spindles["s"].acceleration == 36_000.0
@@ -57,7 +57,7 @@ def test_ptp() -> None:
         axis = ptp.axes[name]
         assert (axis.soft_limit_negative, axis.soft_limit_positive) == (-100_000.0, 100_000.0)
         assert (axis.max_velocity, axis.max_acceleration) == (10_000.0, 50_000.0)
-        assert (axis.drive_time_constant, axis.encoder_increment) == (0.0, 0.0)
+        assert (axis.control.plant.time_constant, axis.encoder_increment) == (0.0, 0.0)
     c = ptp.axes["c"]
     assert (c.rotary, c.modulo, c.modulo_low, c.modulo_high, c.soft_limit_positive) == (
         True,

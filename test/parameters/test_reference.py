@@ -78,7 +78,7 @@ def test_forms_of_ranges() -> None:
     assert "unit     0.1 µm / 0.0001°" in describe("P-AXIS-00177")
     assert "range" not in describe("P-MACH-00005")
     assert "default  []" in describe("P-MACH-00005")
-    assert "  Accepted and checked, but without effect in this version." in describe("P-AXIS-00223").splitlines()
+    assert "  Accepted and checked, but without effect in this version." in describe("P-AXIS-00179").splitlines()
 
 
 @pytest.mark.parametrize(

@@ -81,9 +81,7 @@ def test_machine_of_defaults() -> None:
         modulo=False,
         modulo_low=0.0,
         modulo_high=0.0,
-        drive_type=4,
         virtual=False,
-        kv=10.0,
         max_velocity=200.0,
         rapid_velocity=166.666,
         reference_velocity=200.0,
@@ -94,12 +92,8 @@ def test_machine_of_defaults() -> None:
         jerk=20_000.0,
         soft_limit_negative=-10_000.0,
         soft_limit_positive=10_000.0,
-        following_error_monitoring=False,
-        following_error_limit=10.0,
-        following_error_standstill_limit=2.0,
         position_window=0.05,
         encoder_increment=0.0001,
-        drive_time_constant=0.0,
         override_type=1,
         override_steps=0,
         override_interval=0.15,
@@ -115,6 +109,7 @@ def test_machine_of_defaults() -> None:
         powered_at_start=True,
         referenced_at_start=True,
         start_position=0.0,
+        control=machine.axes["x"].control,
     )
 
 
@@ -191,7 +186,7 @@ def test_reference_velocity() -> None:
 
 @pytest.mark.parametrize(("kind", "on"), [(0, False), (1, True), (2, True), (3, False), (4, True), (5, False)])
 def test_following_error_monitoring(kind: int, on: bool) -> None:
-    assert axis(f"getriebe.0: {{slep_ueberw_typ: {kind}, slep_max: 250000}}").following_error_monitoring is on
+    assert axis(f"getriebe.0: {{slep_ueberw_typ: {kind}, slep_max: 250000}}").control.monitoring.kind == kind
     assert spindle(f"getriebe.0: {{slep_ueberw_typ: {kind}}}").following_error_monitoring is on
 
 

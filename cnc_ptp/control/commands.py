@@ -1,0 +1,55 @@
+"""Commands that act below the setpoint: feedforward and friction compensation of an axis or spindle."""
+
+from __future__ import annotations
+
+from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.errors import CncError
+
+BAD_WEIGHT = 23060
+NO_FRICTION_COMPENSATION = 70495
+FULL_WEIGHT = 100.0
+
+
+class ControlCommands:
+    """do_set_feedforward, do_reset_feedforward, do_set_friction_compensation for one control loop."""
+
+    def __init__(self, loop: ControlLoop, subject: str) -> None:
+        """`subject` for messages: "axis x", "spindle s"."""
+        self._loop = loop
+        self._subject = subject
+        self._on = False
+        self._weight_percent = FULL_WEIGHT
+
+    def use(self, loop: ControlLoop) -> None:
+        """Another gear: what was selected holds in its loop too."""
+        self._loop = loop
+        loop.feedforward.select(self._on, self._weight_percent)
+
+    def do_set_feedforward(
+        self, cycle: int, *, on: bool | None = None, weight_percent: float | None = None
+    ) -> str | None:
+        """G135/G137 (`on`) and G136 (`weight_percent`, 0 … 100); what is left out stays. Refusal 23060."""
+        if weight_percent is not None and not 0.0 <= weight_percent <= FULL_WEIGHT:
+            reason = f"weight_percent = {weight_percent} is not within 0 ... 100 (G136)"
+            self._refuse("set_feedforward", BAD_WEIGHT, reason)
+        self._on = self._on if on is None else on
+        self._weight_percent = self._weight_percent if weight_percent is None else float(weight_percent)
+        self._loop.feedforward.select(self._on, self._weight_percent)
+        if on and self._loop.feedforward.mode == 0:
+            return f"{self._subject}: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
+        return None
+
+    def do_reset_feedforward(self, cycle: int) -> None:
+        """Start of an NC program: feedforward off, weight 100 %; P-AXIS-00255 keeps it on."""
+        self._on, self._weight_percent = False, FULL_WEIGHT
+        self._loop.feedforward.select(False, FULL_WEIGHT)
+
+    def do_set_friction_compensation(self, cycle: int, *, on: bool) -> None:
+        """COMP ON FRICT and COMP OFF FRICT; stays after the program end. Refusal 70495."""
+        if on and not self._loop.friction.permitted:
+            reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
+            self._refuse("set_friction_compensation", NO_FRICTION_COMPENSATION, reason)
+        self._loop.friction.switch(on)
+
+    def _refuse(self, command: str, error_id: int, reason: str) -> None:
+        raise CncError(error_id, f"{self._subject}: {command} refused: {reason}; nothing was changed")

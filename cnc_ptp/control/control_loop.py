@@ -1,0 +1,173 @@
+"""One axis below its setpoint: position controller, feedforward, friction compensation and drive, cycle by cycle.
+
+    setpoint ─▶ delay line ─▶ position controller ─▶ + ─▶ drive ─▶ actual position
+        └────▶ feedforward, friction compensation ──┴──────▲ additive velocity and torque
+
+The delay line is there only where something must be known before the setpoint counts (P-AXIS-00165 on PROFIdrive,
+P-COMP-00044). Sources: TF5200 feedforward figures 1 and 2, friction figures 4 and 6.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import NamedTuple
+
+from cnc_ptp.control.drives import Drive, VirtualDrive
+from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
+from cnc_ptp.control.friction_compensation import FrictionCompensation
+from cnc_ptp.control.lag_monitor import LagMonitor
+from cnc_ptp.control.modulo_compensation import ModuloCompensation
+from cnc_ptp.control.velocity_controller import VelocityController
+from cnc_ptp.parameters.control_view import ControlParameters
+
+State = tuple[float, float, float, float]
+HISTORY = 16
+"""Setpoints that are kept: 4 cycles of lead, 6 of delay, and their neighbours."""
+
+
+class ControlCycle(NamedTuple):
+    """What one cycle showed and commanded; mm, mm/s (deg, deg/s), Nm (N), friction current in the unit of the drive."""
+
+    actual_position: float
+    actual_velocity: float
+    following_error: float
+    """Set position of this cycle - actual position."""
+    command_velocity: float
+    """Position controller and conventional feedforward."""
+    feedforward_velocity: float
+    additive_velocity: float
+    additive_torque: float
+    friction_current: float
+    actual_torque: float
+
+
+class ControlLoop:
+    """Position control of one axis or spindle in one gear."""
+
+    def __init__(
+        self, parameters: ControlParameters, *, cycle_time: float, limits: CouplingLimits, drive: Drive
+    ) -> None:
+        """`cycle_time` in s; `limits` of the axis, within which feedforward is coupled in and out."""
+        self.drive = drive
+        self._virtual = drive if isinstance(drive, VirtualDrive) else None
+        self.kv = parameters.kv
+        self.monitor = LagMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
+        self.delay_cycles = _delay_cycles(parameters)
+        self.feedforward = Feedforward(
+            parameters.feedforward,
+            cycle_time=cycle_time,
+            kv=parameters.kv,
+            torque_per_acceleration=parameters.scaling.torque_per_acceleration,
+            limits=limits,
+            delay_cycles=self.delay_cycles,
+        )
+        self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles)
+        self._torque_per_digit = 1.0 / parameters.scaling.torque if parameters.scaling.torque else 0.0
+        self._modulo = ModuloCompensation(parameters.modulo_error)
+        self._interface = parameters.drive.interface
+        self._velocity_controller = VelocityController(
+            gain=parameters.drive.velocity_gain,
+            integral_time=parameters.drive.velocity_integral_time,
+            torque_per_acceleration=parameters.scaling.torque_per_acceleration,
+            cycle_time=cycle_time,
+        )
+        self._history: deque[State] = deque(maxlen=HISTORY)
+        self._plain = parameters.feedforward.mode == 0 and not parameters.friction.permitted
+        self._plain = self._plain and self._interface == "velocity" and self.delay_cycles == 0
+
+    @property
+    def position(self) -> float:
+        """Actual position, mm (deg)."""
+        position = self.drive.position
+        return position + self._modulo.correction(position) if self._modulo.on else position
+
+    def too_far(self, setpoint: State) -> bool:
+        """True when the following error of this cycle is above what P-AXIS-00172 permits; changes nothing."""
+        if self._virtual is not None:
+            return False
+        return self.monitor.exceeded(self._set_position(setpoint) - self.position, setpoint[1])
+
+    def step(self, setpoint: State, closed: bool) -> ControlCycle:
+        """Closes the loop for one cycle; open, the drive gets command 0 and nothing is remembered."""
+        drive = self.drive
+        if self._virtual is not None:
+            self._virtual.follow(setpoint[0], setpoint[1])
+            return ControlCycle(setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        position, velocity, torque = self.position, drive.velocity, drive.torque
+        following_error = setpoint[0] - position
+        if not closed:
+            self._open(setpoint)
+            return ControlCycle(position, velocity, following_error, 0.0, 0.0, 0.0, 0.0, 0.0, torque)
+        if self._plain:
+            self.monitor.advance(following_error, setpoint[1])
+            command = self.kv * following_error
+            drive.step(command)
+            return ControlCycle(position, velocity, following_error, command, 0.0, 0.0, 0.0, 0.0, torque)
+        return self._full_step(setpoint, position, velocity, torque)
+
+    def _full_step(self, setpoint: State, position: float, velocity: float, torque: float) -> ControlCycle:
+        history = self._history
+        if history:
+            history.appendleft(setpoint)
+        else:
+            history.extend([setpoint] * HISTORY)
+        set_position = history[self.delay_cycles][0]
+        lag = set_position - position
+        self.monitor.advance(lag, setpoint[1])
+        feedforward, friction = self.feedforward, self.friction
+        if feedforward.active:
+            feedforward.update(history)
+        friction.update(history)
+        additive_torque = feedforward.additive_torque + friction.current * self._torque_per_digit
+        command = self.kv * lag + feedforward.velocity
+        self._command(command, set_position, lag, velocity, feedforward.additive_velocity, additive_torque)
+        return ControlCycle(
+            position,
+            velocity,
+            setpoint[0] - position,
+            command,
+            feedforward.velocity,
+            feedforward.additive_velocity,
+            additive_torque,
+            friction.current,
+            torque,
+        )
+
+    def _command(
+        self,
+        command: float,
+        set_position: float,
+        lag: float,
+        velocity: float,
+        additive_velocity: float,
+        additive_torque: float,
+    ) -> None:
+        """Hands the command over in the way that the drive takes it; a drive's own position loop has the same Kv."""
+        if self._interface == "velocity":
+            self.drive.step(command, additive_velocity, additive_torque)
+        elif self._interface == "torque":
+            torque = self._velocity_controller.torque(command + additive_velocity - velocity)
+            self.drive.step(torque + additive_torque)
+        else:
+            shift = self.feedforward.velocity / self.kv
+            base = lag if self._interface == "lag" else set_position
+            self.drive.step(base + shift, additive_velocity, additive_torque)
+
+    def _open(self, setpoint: State) -> None:
+        self._history.clear()
+        self.monitor.forget()
+        self.feedforward.forget()
+        self.friction.forget()
+        self._velocity_controller.forget()
+        self.drive.step(self.drive.position if self._interface == "position" else 0.0)
+
+    def _set_position(self, setpoint: State) -> float:
+        """The set position that the position controller works with in this cycle."""
+        behind = self.delay_cycles
+        return self._history[behind - 1][0] if behind and self._history else setpoint[0]
+
+
+def _delay_cycles(parameters: ControlParameters) -> int:
+    """Cycles by which the position controller works behind the setpoint, so that others can look ahead."""
+    lead = parameters.feedforward.lead_cycles if parameters.feedforward.mode else 0
+    return max(lead, parameters.friction.reversal_lookahead if parameters.friction.permitted else 0)

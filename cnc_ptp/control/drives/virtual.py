@@ -1,0 +1,19 @@
+"""The virtual axis: no drive at all, actual values are the set values (P-AXIS-00020 = 16)."""
+
+from __future__ import annotations
+
+
+class VirtualDrive:
+    """Shows what it is told to; `step` moves nothing."""
+
+    def __init__(self, *, start_position: float) -> None:
+        self.position = start_position
+        self.velocity = 0.0
+        self.torque = 0.0
+
+    def follow(self, position: float, velocity: float) -> None:
+        """Takes over the setpoint of a cycle, mm and mm/s (deg, deg/s)."""
+        self.position, self.velocity = position, velocity
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        """Nothing to be commanded."""

@@ -1,0 +1,237 @@
+"""Feedforward: what velocity, acceleration and jerk of the setpoint ask of the drive before a following error arises.
+
+The command is held for a cycle, so each value is the mean over the cycle that it is held: v + aT/2 + jT²/6 and
+a + jT/2. Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from math import floor, sqrt
+from typing import NamedTuple
+
+from cnc_ptp.parameters.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
+
+State = tuple[float, float, float, float]
+"""Position, velocity, acceleration, jerk of a setpoint."""
+
+
+class Feedforward:
+    """Values of one axis: `update` once a cycle, then the three outputs hold.
+
+    velocity             conventional part, added to the output of the position controller, mm/s (deg/s)
+    additive_velocity    additive velocity command of the drive, mm/s (deg/s)
+    additive_torque      additive torque command of the drive, Nm (N)
+    """
+
+    __slots__ = (
+        "_acceleration_at",
+        "_always_active",
+        "_coupling",
+        "_jerk_gain",
+        "_means",
+        "_parts",
+        "_prefilter",
+        "_velocity_at",
+        "additive_torque",
+        "additive_velocity",
+        "mode",
+        "velocity",
+    )
+
+    def __init__(
+        self,
+        parameters: FeedforwardParameters,
+        *,
+        cycle_time: float,
+        kv: float,
+        torque_per_acceleration: float,
+        limits: CouplingLimits,
+        delay_cycles: int,
+    ) -> None:
+        """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint.
+
+        `torque_per_acceleration` in Nm (N) for 1 mm/s² (deg/s²), `kv` in 1/s, `cycle_time` in s.
+        """
+        self.mode = parameters.mode
+        behind = float(delay_cycles - parameters.lead_cycles)
+        mode = parameters.mode
+        velocity_delay = parameters.velocity_delay / cycle_time if mode & ADD_VEL else 0.0
+        acceleration_delay = parameters.acceleration_delay / cycle_time if mode & (ADD_ACC | ADD_JERK) else 0.0
+        self._velocity_at = MeanValue(behind + velocity_delay, cycle_time)
+        self._acceleration_at = MeanValue(behind + acceleration_delay, cycle_time)
+        self._parts = _parts(parameters, kv, torque_per_acceleration)
+        self._prefilter: deque[tuple[float, float, float]] = deque(maxlen=parameters.prefilter_cycles)
+        self._means = parameters.prefilter_cycles > 1
+        self._coupling = Coupling(limits, cycle_time=cycle_time, kv=kv)
+        self._always_active = parameters.always_active
+        self.velocity = self.additive_velocity = self.additive_torque = 0.0
+        self.select(parameters.always_active, 100.0)
+        self._coupling.settle()
+
+    @property
+    def active(self) -> bool:
+        """True while it puts anything out, also while it is being coupled out."""
+        return self.mode != 0 and self._coupling.active
+
+    def select(self, on: bool, weight_percent: float) -> None:
+        """G135 or G137 with the weight of G136; P-AXIS-00255 keeps it on. It is coupled in or out softly."""
+        self._coupling.target = weight_percent / 100.0 if on or self._always_active else 0.0
+
+    def forget(self) -> None:
+        """The loop is open: nothing goes out, what was selected holds from the next closed cycle on."""
+        self.velocity = self.additive_velocity = self.additive_torque = 0.0
+        self._prefilter.clear()
+        self._coupling.settle()
+
+    def update(self, history: deque[State]) -> None:
+        """The values of this cycle; `history` has the newest setpoint at its left end."""
+        mean_velocity, mean_acceleration = (
+            self._velocity_at.velocity(history),
+            self._acceleration_at.acceleration(history),
+        )
+        mean_jerk = self._acceleration_at.jerk(history)
+        if self._means:
+            self._prefilter.append((mean_velocity, mean_acceleration, mean_jerk))
+            count = len(self._prefilter)
+            mean_velocity, mean_acceleration, mean_jerk = (
+                sum(values) / count for values in zip(*self._prefilter, strict=True)
+            )
+        p = self._parts
+        velocity = p.velocity * mean_velocity + p.acceleration * mean_acceleration + p.jerk * mean_jerk
+        additive = p.additive_velocity * mean_velocity
+        torque = p.torque * mean_acceleration + p.jerk_torque * mean_jerk
+        coupling = self._coupling
+        if coupling.factor != coupling.target:
+            coupling.step(velocity + additive, history[0])
+        factor = coupling.factor
+        self.velocity, self.additive_velocity, self.additive_torque = (
+            factor * velocity,
+            factor * additive,
+            factor * torque,
+        )
+
+
+class Parts(NamedTuple):
+    """Factors of mean velocity, acceleration and jerk in the three outputs."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+    additive_velocity: float
+    torque: float
+    jerk_torque: float
+
+
+def _parts(parameters: FeedforwardParameters, kv: float, torque_per_acceleration: float) -> Parts:
+    """Conventional: v, Ta · a, (jerk_fact) · Ta/Kv · j; additive: v, J · a, J · jerk_fact · j (jerk_fact in s)."""
+    mode, weight = parameters.mode, parameters.weight
+    velocity = weight * parameters.velocity_weight if mode & VEL else 0.0
+    acceleration = weight if mode & ACC else 0.0
+    jerk = weight * parameters.jerk_weight if mode & JERK else 0.0
+    return Parts(
+        velocity=0.0 if mode & ADD_VEL else velocity,
+        acceleration=0.0 if mode & ADD_ACC else acceleration * parameters.time_constant,
+        jerk=0.0 if mode & ADD_JERK else jerk * parameters.time_constant / kv,
+        additive_velocity=velocity if mode & ADD_VEL else 0.0,
+        torque=acceleration * parameters.torque_weight * torque_per_acceleration if mode & ADD_ACC else 0.0,
+        jerk_torque=jerk * torque_per_acceleration if mode & ADD_JERK else 0.0,
+    )
+
+
+class MeanValue:
+    """Mean of velocity, acceleration or jerk over the cycle that began `behind` cycles before the newest setpoint.
+
+    A fraction of a cycle takes the end of one setpoint's cycle and the begin of the next one's. Exact for a jerk that
+    is constant in each cycle.
+    """
+
+    __slots__ = ("_first", "_index", "_second", "_split")
+
+    def __init__(self, behind: float, cycle_time: float) -> None:
+        """`behind` >= 0 in cycles, `cycle_time` in s."""
+        whole = floor(behind + 1e-9)
+        fraction = max(0.0, behind - whole)
+        fraction = 0.0 if fraction < 1e-9 else fraction
+        self._index = whole
+        self._split = fraction > 0.0
+        t, s = cycle_time, (1.0 - fraction) * cycle_time
+        self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
+        self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
+
+    @property
+    def depth(self) -> int:
+        """How many setpoints of the past it looks at."""
+        return self._index + 1 + self._split
+
+    def velocity(self, history: deque[State]) -> float:
+        _, v, a, j = history[self._index]
+        p, q, r = self._second
+        mean = p * v + q * a + r * j
+        if self._split:
+            _, v, a, j = history[self._index + 1]
+            p, q, r = self._first
+            mean += p * v + q * a + r * j
+        return mean
+
+    def acceleration(self, history: deque[State]) -> float:
+        _, _, a, j = history[self._index]
+        mean = self._second[0] * a + self._second[1] * j
+        if self._split:
+            _, _, a, j = history[self._index + 1]
+            mean += self._first[0] * a + self._first[1] * j
+        return mean
+
+    def jerk(self, history: deque[State]) -> float:
+        mean = self._second[0] * history[self._index][3]
+        return mean + self._first[0] * history[self._index + 1][3] if self._split else mean
+
+
+class CouplingLimits(NamedTuple):
+    """What the axis can do: velocity mm/s (deg/s), acceleration, jerk."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+class Coupling:
+    """Factor of a feedforward that is coupled in and out softly.
+
+    While it changes at the rate r, a feedforward velocity F accelerates the axis by r·F beside the setpoint, and the
+    lag that is made up costs about r·F/Kv of velocity. The sum stays within the axis' acceleration and, coupled in,
+    within its velocity; r changes at most by jerk/F. With no room left it waits.
+    """
+
+    __slots__ = ("_cycle_time", "_kv", "_limits", "_rate", "factor", "target")
+
+    def __init__(self, limits: CouplingLimits, *, cycle_time: float, kv: float) -> None:
+        self._limits, self._cycle_time, self._kv = limits, cycle_time, kv
+        self._rate = 0.0
+        self.factor = self.target = 0.0
+
+    @property
+    def active(self) -> bool:
+        return self.factor != 0.0 or self.target != 0.0
+
+    def settle(self) -> None:
+        """The factor is what was selected at once: nothing moves."""
+        self.factor, self._rate = self.target, 0.0
+
+    def step(self, full: float, setpoint: State) -> None:
+        """One cycle nearer to the target; `full` is the feedforward velocity at factor 1, mm/s (deg/s)."""
+        missing = self.target - self.factor
+        size, t, limits = abs(full), self._cycle_time, self._limits
+        room = max(0.0, limits.acceleration - abs(setpoint[2]))
+        if missing > 0.0:
+            room = min(room, self._kv * max(0.0, limits.velocity - abs(setpoint[1])))
+        if size * abs(missing) <= room * t or size == 0.0:
+            self.settle()
+            return
+        rate_change = limits.jerk * t / size
+        rate = min(room / size, self._rate + rate_change, sqrt(2.0 * limits.jerk / size * abs(missing)))
+        if rate * t >= abs(missing):
+            self.settle()
+            return
+        self._rate = rate
+        self.factor += rate * t if missing > 0.0 else -rate * t

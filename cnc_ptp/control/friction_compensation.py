@@ -1,0 +1,110 @@
+"""Friction compensation: an additional motor current over the commanded velocity, weighted around reversals.
+
+Source: TF5200 friction 2.1 (table, weighting before and after a reversal), 5.2.2.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections import deque
+from itertools import pairwise
+
+from cnc_ptp.parameters.control_view import FrictionParameters
+
+State = tuple[float, float, float, float]
+
+
+class FrictionTable:
+    """Current over |velocity|: linear between the entries, constant outside; odd in the velocity."""
+
+    __slots__ = ("_currents", "_slopes", "_velocities")
+
+    def __init__(self, velocities: tuple[float, ...], currents: tuple[float, ...]) -> None:
+        """`velocities` ascending from 0 on in mm/s (deg/s), `currents` in the unit of the drive."""
+        self._velocities, self._currents = velocities, currents
+        points = list(zip(velocities, currents, strict=True))
+        self._slopes = [(i1 - i0) / (v1 - v0) for (v0, i0), (v1, i1) in pairwise(points)]
+
+    def current(self, velocity: float) -> float:
+        """For the magnitude of `velocity`, without its sign."""
+        speed, velocities = abs(velocity), self._velocities
+        above = bisect_right(velocities, speed)
+        if above == 0:
+            return self._currents[0]
+        if above == len(velocities):
+            return self._currents[-1]
+        return self._currents[above - 1] + self._slopes[above - 1] * (speed - velocities[above - 1])
+
+
+class FrictionCompensation:
+    """The current of one axis, cycle by cycle; `current` in the unit of the drive holds after `update`."""
+
+    __slots__ = (
+        "_behind",
+        "_delayed",
+        "_direction",
+        "_lookahead",
+        "_position_delay",
+        "_reversed_at",
+        "_table",
+        "current",
+        "on",
+        "permitted",
+    )
+
+    def __init__(self, parameters: FrictionParameters, *, delay_cycles: int) -> None:
+        """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint."""
+        self.permitted = parameters.permitted
+        self.on = parameters.active
+        self._table = FrictionTable(parameters.velocities, parameters.currents) if parameters.velocities else None
+        self._lookahead = min(parameters.reversal_lookahead, delay_cycles)
+        self._behind = delay_cycles
+        self._position_delay = parameters.position_delay
+        self._delayed: deque[float] = deque([0.0] * parameters.delay_cycles)
+        self._direction = 0.0
+        self._reversed_at: float | None = None
+        self.current = 0.0
+
+    def switch(self, on: bool) -> None:
+        """COMP ON FRICT, COMP OFF FRICT."""
+        self.on = on
+
+    def forget(self) -> None:
+        """The loop is open: no current, and no motion from which the next one could turn back."""
+        self._direction, self._reversed_at, self.current = 0.0, None, 0.0
+        for index in range(len(self._delayed)):
+            self._delayed[index] = 0.0
+
+    def update(self, history: deque[State]) -> None:
+        """The current of this cycle; `history` has the newest setpoint at its left end."""
+        position, velocity, _, _ = history[self._behind]
+        value = 0.0
+        if velocity != 0.0:
+            self._note_direction(position, velocity)
+            if self.on and self._table is not None:
+                value = self._table.current(velocity) * self._weight(position, velocity, history)
+                value = value if velocity > 0.0 else -value
+        if self._delayed:
+            self._delayed.append(value)
+            value = self._delayed.popleft()
+        self.current = value
+
+    def _note_direction(self, position: float, velocity: float) -> None:
+        direction = 1.0 if velocity > 0.0 else -1.0
+        if direction != self._direction:
+            if self._direction != 0.0:
+                self._reversed_at = position
+            self._direction = direction
+
+    def _weight(self, position: float, velocity: float, history: deque[State]) -> float:
+        weight = 1.0
+        if self._reversed_at is not None:
+            way = abs(position - self._reversed_at)
+            if way < self._position_delay:
+                weight = way / self._position_delay
+            else:
+                self._reversed_at = None
+        for cycles in range(1, self._lookahead + 1):
+            if history[self._behind - cycles][1] * velocity < 0.0:
+                return min(weight, cycles / self._lookahead)
+        return weight

@@ -1,0 +1,92 @@
+"""Monitoring of the following error: fixed, linear in the velocity, or after an estimation filter.
+
+Sources: P-AXIS-00167, 00168, 00169, 00172 (axis list); TF5200 axis position lag, types 1, 2 and 4. The formulas of the
+factor P-AXIS-00167 are lost in the texts at hand and read so that 1024 switches the monitoring off.
+"""
+
+from __future__ import annotations
+
+from math import ceil, inf
+
+from cnc_ptp.parameters.control_view import LagMonitoring
+
+ESTIMATED, LINEAR, FIXED = 1, 2, 4
+SCALE = 1024
+SETTLING = 5.0
+"""Time constants 1/Kv that the lag of a motion has to fall before the axis counts as standing."""
+
+
+class LagMonitor:
+    """Says for each cycle which following error is too large; `advance` once a cycle."""
+
+    __slots__ = (
+        "_above",
+        "_cycle_time",
+        "_estimate",
+        "_factor",
+        "_kind",
+        "_moving",
+        "_needed",
+        "_rest",
+        "_settling",
+        "_standing",
+    )
+
+    def __init__(self, parameters: LagMonitoring, *, kv: float, cycle_time: float) -> None:
+        """`kv` in 1/s, `cycle_time` in s."""
+        off = parameters.kind in (ESTIMATED, LINEAR) and parameters.dynamic >= SCALE
+        self._kind = 0 if off else parameters.kind
+        self._moving, self._standing = parameters.moving_limit, parameters.standstill_limit
+        self._cycle_time = cycle_time
+        self._factor = parameters.dynamic / SCALE
+        if self._kind == LINEAR:
+            self._factor = SCALE / (SCALE - parameters.dynamic) / kv
+        self._estimate = 0.0
+        self._above = self._rest = 0
+        self._settling = ceil(SETTLING / kv / cycle_time)
+        self._needed = round(parameters.filter_time / cycle_time)
+
+    @property
+    def on(self) -> bool:
+        return self._kind in (ESTIMATED, LINEAR, FIXED)
+
+    def source(self, velocity: float) -> str:
+        """The parameter that sets `limit`, for messages."""
+        standing = velocity == 0.0 and self._rest >= self._settling and self._kind != ESTIMATED
+        kinds = {ESTIMATED: "P-AXIS-00167, estimated", LINEAR: "P-AXIS-00167, linear", FIXED: "P-AXIS-00168"}
+        if standing:
+            return "P-AXIS-00169"
+        return "P-AXIS-00168" if self.limit(velocity) == self._moving else kinds[self._kind]
+
+    def limit(self, velocity: float) -> float:
+        """Largest following error at a set velocity, mm (deg).
+
+        Type 4: P-AXIS-00168, standing P-AXIS-00169. Type 2: v/Kv · 1024/(1024 - P-AXIS-00167), at least P-AXIS-00168;
+        standing P-AXIS-00169. Type 1: e' = e · P-AXIS-00167/1024 + |v| · T, within P-AXIS-00169 and P-AXIS-00168.
+        """
+        if self._kind in (FIXED, LINEAR):
+            if velocity == 0.0 and self._rest >= self._settling:
+                return self._standing
+            return max(self._moving, abs(velocity) * self._factor) if self._kind == LINEAR else self._moving
+        if self._kind == ESTIMATED:
+            return min(self._moving, max(self._standing, self._next_estimate(velocity)))
+        return inf
+
+    def exceeded(self, following_error: float, velocity: float) -> bool:
+        """True when the error has been above the limit for longer than the filter time; changes nothing."""
+        return abs(following_error) > self.limit(velocity) and self._above >= self._needed
+
+    def advance(self, following_error: float, velocity: float) -> None:
+        """This cycle is over."""
+        self._rest = self._rest + 1 if velocity == 0.0 else 0
+        if self._needed:
+            self._above = self._above + 1 if abs(following_error) > self.limit(velocity) else 0
+        if self._kind == ESTIMATED:
+            self._estimate = self._next_estimate(velocity)
+
+    def forget(self) -> None:
+        """The loop is open."""
+        self._estimate, self._above, self._rest = 0.0, 0, 0
+
+    def _next_estimate(self, velocity: float) -> float:
+        return self._estimate * self._factor + abs(velocity) * self._cycle_time
