@@ -10,7 +10,8 @@ from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBlock
-from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Function, SpindleFunction
+from cnc_ptp.machine.control_functions import control_commands, reset_commands
+from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, ControlFunction, Function, SpindleFunction
 from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, Synchronisation
 
 AFTER_MOTION = Synchronisation.MNS_SNS
@@ -74,6 +75,10 @@ class FunctionOutput:
                 self._output(function, synchronisation, block, outputs)
         return outputs
 
+    def at_program_start(self) -> list[Command]:
+        """What a program start sets back to its initial state."""
+        return reset_commands(self._channel)
+
     def stop_spindles(self, keep: Container[str] = ()) -> list[Command]:
         """M05 for every spindle that the channel has set turning, except the nodes in `keep`."""
         stopped = [name for name in self._directions if self._spindles[name].node not in keep]
@@ -82,6 +87,8 @@ class FunctionOutput:
         return [Command(self._spindles[name].node, "stop", {}) for name in stopped]
 
     def _synchronisation(self, function: Function) -> Synchronisation:
+        if isinstance(function, ControlFunction):
+            return Synchronisation.NO_SYNCH
         if isinstance(function, AuxiliaryFunction):
             return self._channel.m_functions[function.number] if function.letter == "M" else Synchronisation.MOS
         spindle = self._spindles[function.spindle]
@@ -92,6 +99,8 @@ class FunctionOutput:
     ) -> None:
         if isinstance(function, SpindleFunction):
             self._spindle_function(function, self._spindles[function.spindle], synchronisation, block, outputs)
+        elif isinstance(function, ControlFunction):
+            outputs.commands += control_commands(self._channel, function)
         elif synchronisation & TYPES:
             waits = bool(synchronisation & (WAIT_BEFORE | WAIT_AFTER))
             request = self._request(block, function.letter, "", function.number, 0.0, waits)

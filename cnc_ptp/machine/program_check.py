@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Source, SpindleFunction
+from cnc_ptp.nc.canonical import CanonicalBlock, CompensationSwitch, ControlFunction, Function, Source, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
+from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters
@@ -16,6 +17,7 @@ SOFT_LIMIT_POSITIVE = 120002
 SOFT_LIMIT_NEGATIVE = 120003
 SPINDLE_TOO_FAST = 22010
 UNKNOWN_M_FUNCTION = 22011
+NO_FRICTION_COMPENSATION = 70495
 NO_CHANNEL = 26112
 DEG_S_PER_RPM = 6.0
 
@@ -108,14 +110,25 @@ class ProgramCheck:
                 text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
                 raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
 
-    def _function(self, function: SpindleFunction | AuxiliaryFunction, source: Source) -> None:
+    def _function(self, function: Function, source: Source) -> None:
         if isinstance(function, SpindleFunction):
             limit = self._speeds[function.spindle]
             if function.speed_rpm is not None and function.speed_rpm > limit:
                 above = f"{function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
                 text = f"spindle {function.spindle}: {above}"
                 raise ProgramError(SPINDLE_TOO_FAST, text, source, 1)
+        elif isinstance(function, ControlFunction):
+            if isinstance(function, CompensationSwitch):
+                self._compensation(function, source)
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
             text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
             raise ProgramError(UNKNOWN_M_FUNCTION, text, source, 1)
+
+    def _compensation(self, function: CompensationSwitch, source: Source) -> None:
+        """Raises ProgramError 70495 where friction compensation is switched on that the axis does not permit."""
+        axis = self._axes[self._axis_names.index(function.axis)]
+        if function.on and not axis.control.friction.permitted:
+            refused = f"axis {function.axis}: friction compensation cannot be switched on"
+            text = f"{refused}, lr_param.frict_comp is 0 (P-AXIS-00522)"
+            raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))

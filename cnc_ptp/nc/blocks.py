@@ -6,8 +6,8 @@ else, which also finds the column of an error.
 
 from collections.abc import Sequence
 
-from cnc_ptp.nc import faults
-from cnc_ptp.nc.canonical import Source, number
+from cnc_ptp.nc import compensation, faults, feedforward
+from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, bracket_words, normalise, tokens
 from cnc_ptp.nc.program import Block, GCode, MCode, SpindleWords
 from cnc_ptp.nc.vocabulary import (
@@ -97,6 +97,7 @@ class _BlockWords:
         self.m: list[MCode] = []
         self.words: dict[str, float] = {}
         self.spindles: list[SpindleWords] = []
+        self.controls: list[SpindleFeedforward | CompensationSwitch] = []
         self.direct: float | None = None
         self.call = ""
 
@@ -162,7 +163,13 @@ class _BlockWords:
             raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
 
     def bracket(self, token: Token) -> None:
-        """A spindle's own words: `S2[M3 REV1000]`."""
+        """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
+        if token.name[0] in AXIS_LETTERS:
+            self.controls.append(compensation.bracket(token, self.source))
+            return
+        if token.name[0] == "S" and feedforward.is_in(token):
+            self.controls.append(feedforward.bracket(token, self.source))
+            return
         if token.name[0] != "S":
             column = token.column + token.shown.index("[")
             raise faults.UNEXPECTED_CHARACTER.at(self.source, column, character="[")
@@ -212,6 +219,7 @@ class _BlockWords:
             flow,
             skip,
             functions,
+            controls=tuple(self.controls),
         )
 
 

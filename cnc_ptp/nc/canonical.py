@@ -4,10 +4,10 @@ Positions are absolute, in mm (deg for rotary axes), one value for each axis of 
 All types are immutable and cheap to create (one of each per program block).
 
 Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, spindle, other M,
-however the line orders them. When it goes out and who waits for it (before the motion, after it, at the next G01) is
-decided at run time by its synchronisation type (P-CHAN-00041, 00045, 00047, 00049, 00081), which the language does not
-know. `after` is kept for functions that the language itself binds to the block's end. M00, M01 and the program end
-stand in `stop` and act when motion and functions are done.
+however the line orders them; behind them feedforward and compensations. When it goes out and who waits for it (before
+the motion, after it, at the next G01) is decided at run time by its synchronisation type (P-CHAN-00041, 00045, 00047,
+00049, 00081), which the language does not know. `after` is kept for functions that the language itself binds to the
+block's end. M00, M01 and the program end stand in `stop` and act when motion and functions are done.
 """
 
 from typing import NamedTuple
@@ -70,7 +70,45 @@ class AuxiliaryFunction(NamedTuple):
     number: int
 
 
-Function = SpindleFunction | AuxiliaryFunction
+class AxisFeedforward(NamedTuple):
+    """G135 (`on`), G137 (not `on`) and G136 of a block for the channel's axes; None: the selection stays.
+
+    `weights`: percent by axis; the axes that are not named keep theirs.
+    """
+
+    on: bool | None
+    weights: tuple[tuple[str, float], ...]
+
+
+class SpindleFeedforward(NamedTuple):
+    """The same for one spindle; `weight` in percent, None: it stays."""
+
+    spindle: str
+    on: bool | None
+    weight: float | None
+
+    @property
+    def name(self) -> str:
+        """The spindle as programmed."""
+        return self.spindle
+
+
+class CompensationSwitch(NamedTuple):
+    """`X[COMP ON FRICT]`: switches compensations of an axis on or off."""
+
+    axis: str
+    on: bool
+    kinds: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The axis as programmed."""
+        return self.axis
+
+
+ControlFunction = AxisFeedforward | SpindleFeedforward | CompensationSwitch
+"""Functions for position controllers."""
+Function = SpindleFunction | AuxiliaryFunction | ControlFunction
 Motion = LinearMove | CircularMove | Dwell
 
 
@@ -99,10 +137,23 @@ def format_block(block: CanonicalBlock) -> str:
 def _function(function: Function) -> str:
     if isinstance(function, AuxiliaryFunction):
         return f"{function.letter}{function.number}"
+    if isinstance(function, ControlFunction):
+        return _control(function)
     words = [] if function.m is None else [f"M{function.m}"]
     if function.speed_rpm is not None:
         words.append(f"REV{number(function.speed_rpm)}")
     return f"{function.spindle}[{' '.join(words)}]"
+
+
+def _control(function: ControlFunction) -> str:
+    if isinstance(function, CompensationSwitch):
+        return f"{function.axis}[COMP {'ON' if function.on else 'OFF'} {' '.join(function.kinds)}]"
+    selection = [] if function.on is None else ["G135" if function.on else "G137"]
+    if isinstance(function, SpindleFeedforward):
+        weight = [] if function.weight is None else [f"G136={number(function.weight)}"]
+        return f"{function.spindle}[{' '.join(selection + weight)}]"
+    weights = [f"{axis}{number(value)}" for axis, value in function.weights]
+    return " ".join(selection + (["G136", *weights] if weights else []))
 
 
 def _motion(motion: Motion) -> str:

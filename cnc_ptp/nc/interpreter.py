@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Motion, Source
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, Motion, Source
+from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.lexer import column_of
@@ -102,6 +103,8 @@ def _resolve(
     if block.error is not None:
         raise block.error
     path = G_CODES[state.path]
+    control: tuple[Function, ...] = ()
+    moves = True
     for code in block.codes:
         if code.motion is not None:
             path = code
@@ -109,10 +112,15 @@ def _resolve(
                 state.path = code.number
         elif code.select is not None:
             code.select(state)
+        elif code.function is not None:
+            control += code.function(channel, state, block, code)
+            moves = moves and not code.takes_axes
     motion: Motion | None = None
-    if (block.words or path.own_words) and path.motion is not None:
+    if moves and (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
     before = block_functions(channel, state, block) if block.functions and not path.own_words else ()
+    if control or block.controls:
+        before += control + bracketed_controls(channel, block, before)
     if motion is not None and not isinstance(motion, Dwell):
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None

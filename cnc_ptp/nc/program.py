@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from cnc_ptp.nc.canonical import Function, Motion, Source
+from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward
 from cnc_ptp.nc.faults import ProgramError
 
 
@@ -13,7 +13,8 @@ class GCode(NamedTuple):
 
     `group`: of one group only one code may stand in a block. `select` changes the modal state. `motion` makes the code
     a path function: it builds the motion of a block, and of the blocks after it if `modal`. `words` are the words that
-    this motion uses besides axes and F; `own_words`: it reads all words of its block by itself (dwell).
+    this motion uses besides axes and F; `own_words`: it reads all words of its block by itself (dwell). `function`
+    makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
     """
 
     number: int
@@ -23,6 +24,8 @@ class GCode(NamedTuple):
     modal: bool = True
     words: frozenset[str] = frozenset()
     own_words: bool = False
+    function: "Callable[[Channel, ModalState, Block, GCode], tuple[Function, ...]] | None" = None
+    takes_axes: bool = False
 
     @property
     def name(self) -> str:
@@ -58,7 +61,7 @@ class Block(NamedTuple):
     `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `call` the
     subroutine, `flow` what the block does to the order of execution (see MCode), `skip` the bit of its skip level (0:
     never skipped), `functions` whether it has any M, S, T, D; `error` is set for a line with a syntax error, which is
-    raised when it is reached.
+    raised when it is reached; `controls` holds brackets with feedforward and COMP.
     """
 
     source: Source
@@ -72,6 +75,7 @@ class Block(NamedTuple):
     skip: int = 0
     functions: bool = False
     error: ProgramError | None = None
+    controls: tuple[SpindleFeedforward | CompensationSwitch, ...] = ()
 
 
 class Program(NamedTuple):

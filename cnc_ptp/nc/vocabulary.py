@@ -3,7 +3,7 @@
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """
 
-from cnc_ptp.nc import functions, motions
+from cnc_ptp.nc import feedforward, functions, motions
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
 INITIAL_G = ("G00", "G17", "G90", "G162", "G165")
@@ -44,6 +44,9 @@ G_CODES: dict[int, GCode] = {
         _plane(17),
         _plane(18),
         _plane(19),
+        GCode(feedforward.ON, feedforward.SELECTION, function=feedforward.block_function),
+        GCode(feedforward.WEIGHTS, "feedforward weights", function=feedforward.block_function, takes_axes=True),
+        GCode(feedforward.OFF, feedforward.SELECTION, function=feedforward.block_function),
         _dimension(90, True),
         _dimension(91, False),
         _centre(161, True),
@@ -80,7 +83,7 @@ FUNCTION_WORDS = motions.FUNCTION_WORDS
 AXIS_LETTERS = frozenset("ABCQUVWXYZ")
 """Letters with which an axis name can begin (X, X1, Y_ACHSE)."""
 
-BRACKET_WORDS = ("M3", "M4", "M5", "REV")
+BRACKET_WORDS = ("M3", "M4", "M5", "REV", "G135", "G136", "G137")
 """What the brackets of a spindle take."""
 
 MAX_SKIP_LEVEL = 10

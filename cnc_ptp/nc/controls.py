@@ -1,0 +1,35 @@
+"""Brackets with feedforward or COMP of a block -> canonical functions, once their axis or spindle is known."""
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleFeedforward, SpindleFunction
+from cnc_ptp.nc.lexer import column_of
+from cnc_ptp.nc.program import Block, Channel
+
+
+def bracketed_controls(
+    channel: Channel, block: Block, before: tuple[Function, ...]
+) -> tuple[SpindleFeedforward | CompensationSwitch, ...]:
+    """The control functions in brackets, in their order; `before`: the block's other functions.
+
+    Raises 20797, 20180 for axes and spindles that the channel has not, 21069 and 21037 for one that is named twice.
+    """
+    spindles = {function.spindle for function in before if isinstance(function, SpindleFunction)}
+    axes: set[str] = set()
+    for control in block.controls:
+        if isinstance(control, CompensationSwitch):
+            _check(block, control.axis, channel.axes, axes, faults.AXIS_UNKNOWN, faults.COMP_TWICE)
+        else:
+            _check(block, control.spindle, channel.spindles, spindles, faults.SPINDLE_UNKNOWN, faults.SPINDLE_TWICE)
+    return block.controls
+
+
+def _check(
+    block: Block, name: str, known: tuple[str, ...], used: set[str], unknown: faults.Fault, twice: faults.Fault
+) -> None:
+    """Raises for a name that is not `known` or `used` already; notes it."""
+    column = column_of(block.source, name)
+    if name not in known:
+        raise unknown.at(block.source, column, word=name, known=", ".join(known) or "none")
+    if name in used:
+        raise twice.at(block.source, column, axis=name, spindle=name)
+    used.add(name)
