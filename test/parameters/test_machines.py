@@ -35,7 +35,7 @@ def test_mill() -> None:
     for axis in mill.axes.values():
         assert axis.deceleration != axis.acceleration
         assert (axis.control.kv, axis.control.plant.time_constant, axis.encoder_increment) == (50.0, 0.003, 0.0001)
-        assert axis.following_error_monitoring
+        assert axis.control.monitoring.kind == 4
         assert axis.control.monitoring.moving_limit > axis.max_velocity / axis.control.kv
     assert mill.axes["x"].max_velocity == 500.0
     assert mill.spindles["s"].max_speed_deg_s == 12_000 * 6.0
