@@ -320,7 +320,7 @@ class ChannelUnit(Unit):
             blocks = self._check.blocks(program, self._motion.position, modal)
         self._modal = ModalState()
         self._modal_at_end = modal if command == "mdi" else ModalState()
-        self._sequence.begin(blocks)
+        self._sequence.begin(blocks, program=command == "start")
         self._just_started = True
 
     def _prepared_blocks(self, command: str, program: Program) -> list[CanonicalBlock] | None:

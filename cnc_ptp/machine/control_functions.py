@@ -22,9 +22,8 @@ def control_commands(channel: ChannelParameters, function: ControlFunction) -> l
 
 
 def reset_commands(channel: ChannelParameters) -> list[Command]:
-    """Program start: feedforward off and weights 100 % (TF5200 feedforward 3), on all axes and spindles."""
-    nodes = [axis.node for axis in channel.axes] + [spindle.node for spindle in channel.spindles]
-    return [Command(node, "reset_feedforward", {}) for node in nodes]
+    """Program start: feedforward off and weights 100 % (TF5200 feedforward 3)."""
+    return [Command(axis.node, "reset_feedforward", {}) for axis in channel.axes]
 
 
 def _axis_feedforward(channel: ChannelParameters, function: AxisFeedforward) -> list[Command]:

@@ -129,6 +129,6 @@ class ProgramCheck:
         """Raises ProgramError 70495 where friction compensation is switched on that the axis does not permit."""
         axis = self._axes[self._axis_names.index(function.axis)]
         if function.on and not axis.control.friction.permitted:
-            refused = f"axis {function.axis}: friction compensation cannot be switched on"
-            text = f"{refused}, lr_param.frict_comp is 0 (P-AXIS-00522)"
+            reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
+            text = f"axis {function.axis}: {reason}"
             raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))

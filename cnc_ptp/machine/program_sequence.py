@@ -53,8 +53,10 @@ class ProgramSequence:
 
     # from outside
 
-    def begin(self, blocks: Sequence[CanonicalBlock]) -> None:
-        """Starts a program from its first block."""
+    def begin(self, blocks: Sequence[CanonicalBlock], *, program: bool) -> None:
+        """Starts from the first block; a `program` begins with feedforward off, MDI blocks with what is set."""
+        if program:
+            self._outputs.commands += self._functions.at_program_start()
         self.blocks = blocks
         self.blocks_done = 0
         self.phase = Phase.NEXT
