@@ -24,11 +24,13 @@ LONGEST_DEAD_TIME = 20
 SHORTEST = 0.1
 """Seconds of recording."""
 SLOWEST_POLE = 0.9999
-POLES = (0.0, *(round(0.02 + 0.04 * index, 2) for index in range(25)), 0.99, 0.995, SLOWEST_POLE)
+POLES = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.94, 0.98, SLOWEST_POLE)
 """Of the first search."""
+NEGLIGIBLE = 1e-12
+"""What is left of a start velocity after so many cycles that it does not count."""
 AFTERWARDS = 0.1
 """Seconds after the end of a motion that still belong to it."""
-MOST_CYCLES = 100_000
+MOST_CYCLES = 20_000
 LARGEST_MISFIT = 0.2
 """Misfit above which the drive is no first-order lag at all."""
 LEAST_CHANGE = 0.05
@@ -73,8 +75,7 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
     Raises CncError 27003 too short, 27004 no motion, 27012 velocity never changes, 27014 no command, 27013 no fit.
     """
     pieces = _pieces(trace)
-    dead_times = sorted((_coarse(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)), key=lambda found: found[0])
-    error, pole, dead = min((_fine(pieces, found) for found in dead_times[:3]), key=lambda found: found[0])
+    error, pole, dead = min((_fit(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)), key=lambda found: found[0])
     time_constant = 0.0 if pole <= 1e-9 else -trace.cycle_time / math.log(pole)
     actual = np.concatenate([piece.actual for piece in pieces])
     misfit = math.sqrt(error) / float(np.linalg.norm(actual - actual.mean()))
@@ -144,21 +145,20 @@ def _first_cycles(spans: Sequence[Span]) -> list[Span]:
     return kept
 
 
-def _coarse(pieces: Sequence[_Piece], dead: int) -> tuple[float, int, int]:
-    """(sum of squared errors, place in POLES, dead cycles) of the best pole of the grid."""
+def _fit(pieces: Sequence[_Piece], dead: int) -> tuple[float, float, int]:
+    """(sum of squared errors, pole exp(-T/Ta), dead cycles) of the best pole with this dead time.
+
+    The best pole of POLES, then between its neighbours.
+    """
     errors = [_errors(pieces, pole, dead)[0] for pole in POLES]
     place = int(np.argmin(errors))
-    return errors[place], place, dead
-
-
-def _fine(pieces: Sequence[_Piece], coarse: tuple[float, int, int]) -> tuple[float, float, int]:
-    """(sum of squared errors, pole exp(-T/Ta), dead cycles) of the best pole between the neighbours in the grid."""
-    error, place, dead = coarse
     bounds = (POLES[max(place - 1, 0)], POLES[min(place + 1, len(POLES) - 1)])
     found = minimize_scalar(
-        lambda pole: _errors(pieces, pole, dead)[0], bounds=bounds, method="bounded", options={"xatol": 1e-12}
+        lambda pole: _errors(pieces, pole, dead)[0], bounds=bounds, method="bounded", options={"xatol": 1e-10}
     )
-    return (float(found.fun), float(found.x), dead) if found.fun <= error else (error, POLES[place], dead)
+    return (
+        (float(found.fun), float(found.x), dead) if found.fun <= errors[place] else (errors[place], POLES[place], dead)
+    )
 
 
 def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, float]:
@@ -167,9 +167,11 @@ def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, fl
     for piece in pieces:
         usable = len(piece.actual) - dead - 1
         if usable > 0:
-            free = piece.actual[dead] * pole ** np.arange(1, usable + 1)
+            rest = piece.actual[dead + 1 :].copy()
+            free = min(usable, 1 if pole < NEGLIGIBLE else math.ceil(math.log(NEGLIGIBLE) / math.log(pole)))
+            rest[:free] -= piece.actual[dead] * pole ** np.arange(1, free + 1)
             forced.append(lfilter([1.0 - pole], [1.0, -pole], piece.command[:usable]))
-            wanted.append(piece.actual[dead + 1 :] - free)
+            wanted.append(rest)
     simulated, target = np.concatenate(forced), np.concatenate(wanted)
     power = float(simulated @ simulated)
     gain = float(simulated @ target) / power if power > 0.0 else 0.0

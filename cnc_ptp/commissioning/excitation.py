@@ -58,16 +58,29 @@ def ramp_time(velocity: float, acceleration: float, jerk: float) -> float:
     return 2.0 * math.sqrt(velocity / jerk)
 
 
+def ramp_times(room: Room, velocity: float) -> tuple[float, float]:
+    """Seconds up to `velocity` and down again."""
+    return ramp_time(velocity, room.acceleration, room.jerk), ramp_time(velocity, room.deceleration, room.jerk)
+
+
+def steady_time(room: Room, velocity: float, steady: float) -> float:
+    """Seconds of constant velocity, at least `steady`.
+
+    A start reduces a velocity that ramps with the smaller acceleration on both sides could not reach (TX1250 2.1), so
+    the way has to be long enough for those.
+    """
+    ramps = ramp_times(room, velocity)
+    return max(steady, max(ramps) - 0.5 * sum(ramps))
+
+
 def motion_time(room: Room, velocity: float, steady: float) -> float:
-    """Seconds from rest to rest with `steady` seconds of constant velocity."""
-    return (
-        ramp_time(velocity, room.acceleration, room.jerk) + steady + ramp_time(velocity, room.deceleration, room.jerk)
-    )
+    """Seconds from rest to rest with at least `steady` seconds of constant velocity."""
+    return sum(ramp_times(room, velocity)) + steady_time(room, velocity, steady)
 
 
 def way(room: Room, velocity: float, steady: float) -> float:
     """mm (deg) of such a motion: half the velocity in the ramps, as they are symmetric."""
-    return 0.5 * velocity * (motion_time(room, velocity, steady) + steady)
+    return velocity * (0.5 * sum(ramp_times(room, velocity)) + steady_time(room, velocity, steady))
 
 
 def highest_velocity(room: Room, steady: float) -> float:

@@ -101,9 +101,9 @@ def _whole(axis: str, digits: float) -> int:
 def _scaling_factor(frictions: Sequence[float], digits: float) -> int:
     smallest = min(abs(friction) for friction in frictions) * digits
     largest = max(abs(friction) for friction in frictions) * digits
-    fine = (factor for factor in SCALES if 0.5 * factor / 1000.0 <= FINE_ENOUGH * smallest)
-    fits = [factor for factor in SCALES if largest * 1000.0 / factor <= LARGEST]
-    return next(fine, fits[-1] if fits else SCALES[0])
+    fits = [factor for factor in SCALES if largest * 1000.0 / factor <= LARGEST] or [SCALES[0]]
+    fine = (factor for factor in fits if 0.5 * factor / 1000.0 <= FINE_ENOUGH * smallest)
+    return next(fine, fits[-1])
 
 
 def _distinct(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:

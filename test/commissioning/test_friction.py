@@ -1,0 +1,143 @@
+"""Friction over velocity from synthetic recordings: a Stribeck curve with weight, noise, transients and stick-slip."""
+
+import numpy as np
+import pytest
+from commissioning_support import T, friction_run, phases, stribeck, trace_of
+
+from cnc_ptp.commissioning.friction import friction_curve
+from cnc_ptp.commissioning.steady_motion import steady_phases
+from cnc_ptp.errors import CncError
+
+SPEEDS = (0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0, 200.0)
+
+
+def refused(trace, **options):
+    with pytest.raises(CncError) as refusal:
+        friction_curve(trace, **{"settling": 0.1, **options})
+    return str(refusal.value)
+
+
+def test_the_stribeck_curve_comes_back():
+    curve = friction_curve(friction_run(SPEEDS), settling=0.1)
+    assert [point.speed for point in curve.points] == pytest.approx(SPEEDS)
+    for point in curve.points:
+        assert point.friction == pytest.approx(stribeck(point.speed), rel=1e-12)
+        assert point.scatter == pytest.approx(0.0, abs=1e-9)
+        assert point.seconds == pytest.approx(0.8)
+    assert curve.one_way == () and curve.uneven == ()
+
+
+def test_weight_is_told_apart_and_noise_averages_out():
+    noise, load = 20.0, -75.0
+    curve = friction_curve(friction_run(SPEEDS, load=load, noise=noise), settling=0.1)
+    # 400 cycles a direction: standard deviation of the mean of both 20 / sqrt(800) N, of a batch of 80 cycles 20 / sqrt(80).
+    for point in curve.points:
+        assert abs(point.friction - stribeck(point.speed)) < 5 * noise / np.sqrt(800)
+        assert abs(point.load - load) < 5 * noise / np.sqrt(800)
+        assert 0.3 < point.scatter / (noise / np.sqrt(80)) < 2.0
+
+
+def test_settling_is_thrown_away():
+    run = friction_run(SPEEDS, transient=500.0)
+    for point in friction_curve(run, settling=0.1).points:
+        assert point.friction == pytest.approx(stribeck(point.speed))
+    for point in friction_curve(run, settling=0.05).points:
+        assert point.friction == pytest.approx(stribeck(point.speed) + 500.0 / 9.0)
+
+
+def test_several_phases_of_one_speed_are_one_point():
+    velocity = phases([5.0, 5.004, 4.996, 50.0])
+    curve = friction_curve(trace_of(set_velocity=velocity, actual_torque=10.0 * np.sign(velocity)), settling=0.1)
+    assert [point.speed for point in curve.points] == pytest.approx([5.0, 50.0])
+    assert [point.seconds for point in curve.points] == pytest.approx([2.4, 0.8])
+
+
+def test_speeds_of_one_direction_and_uneven_ones_are_named():
+    velocity = np.concatenate([phases([3.0, 30.0]), phases([7.0, 70.0], both=False)])
+    run = trace_of(set_velocity=velocity, actual_torque=10.0 * np.sign(velocity))
+    sticks = np.abs(velocity) == 3.0
+    slipping = np.where(np.arange(len(velocity)) % 40 < 20, 2.0, 0.0)
+    run.actual_velocity[sticks] = (velocity * slipping)[sticks]
+    curve = friction_curve(run, settling=0.1)
+    assert [point.speed for point in curve.points] == pytest.approx([30.0])
+    assert curve.one_way == (7.0, 70.0)
+    assert curve.uneven == (-3.0, 3.0)
+
+
+def test_phases_stop_at_gaps_and_ramps():
+    """A velocity of 10 mm/s over 1 s in which 100 cycles were lost, then a slow ramp, then a slow sine."""
+    velocity = np.concatenate(
+        [np.full(900, 10.0), np.linspace(10.0, 11.0, 1000), 10.0 * np.sin(np.arange(5000) * 1e-3)]
+    )
+    cycle = np.arange(len(velocity)) + np.where(np.arange(len(velocity)) < 400, 0, 100)
+    found = steady_phases(trace_of(set_velocity=velocity, cycle=cycle), settling=0.1, shortest=0.05)
+    assert [(phase.first, phase.end) for phase in found] == [(100, 400), (500, 901)]
+    assert {phase.velocity for phase in found} == {10.0}
+
+
+def test_repeated_and_unordered_cycles_count_once():
+    velocity = phases(SPEEDS)
+    order = np.random.default_rng(3).permutation(np.repeat(np.arange(len(velocity)), 2))
+    torque = np.sign(velocity) * 7.0
+    run = trace_of(
+        cycle=order, set_velocity=velocity[order], actual_torque=torque[order], actual_velocity=velocity[order]
+    )
+    assert len(run) == len(velocity) and np.array_equal(run.set_velocity, velocity)
+
+
+@pytest.mark.parametrize(
+    ("trace", "text"),
+    [
+        (
+            trace_of(set_velocity=np.full(20, 5.0), actual_torque=np.ones(20)),
+            "P-ERR-27003 axis x: 0.02 s were recorded, at least 0.05 s are needed; nothing was made",
+        ),
+        (
+            trace_of(set_velocity=np.zeros(0)),
+            "P-ERR-27003 axis x: 0 s were recorded, at least 0.05 s are needed; nothing was made",
+        ),
+        (
+            trace_of(set_velocity=np.zeros(500), actual_torque=np.ones(500)),
+            "P-ERR-27004 axis x: does not move in the recorded 0.5 s; nothing was made",
+        ),
+        (
+            trace_of(set_velocity=phases([5.0]), actual_torque=None),
+            "P-ERR-27005 axis x: the recording holds no actual_torque (it was made by an older version); nothing was made, "
+            "record again",
+        ),
+        (
+            trace_of(set_velocity=phases([5.0]), actual_torque=np.zeros(len(phases([5.0])))),
+            "P-ERR-27005 axis x: the drive reported no torque (actual_torque is 0 in all cycles); nothing was made. The "
+            "telegram needs S-0-0084 or object 6077, a simulated drive has friction with simulation.model CASCADED "
+            "(P-SIM-00006)",
+        ),
+        (
+            friction_run([5.0], seconds=0.14),
+            "P-ERR-27006 axis x: no motion with constant velocity lasts 0.1 s to settle and 0.05 s more (the longest lasts "
+            "0.14 s); nothing was made",
+        ),
+        (
+            friction_run([5.0, 8.0], both=False),
+            "P-ERR-27007 axis x: no speed was driven in both directions (constant velocities: 5, 8); weight and friction "
+            "cannot be told apart, no table was made, drive each speed forth and back",
+        ),
+        (
+            trace_of(
+                set_velocity=phases([5.0]),
+                actual_velocity=np.zeros(len(phases([5.0]))),
+                actual_position=np.zeros(len(phases([5.0]))),
+                actual_torque=phases([5.0]),
+            ),
+            "P-ERR-27006 axis x: moves unevenly at every constant velocity (-5, 5): it sticks and slips, or had not settled; "
+            "no table was made, drive faster or longer",
+        ),
+    ],
+)
+def test_recordings_that_say_nothing_are_refused(trace, text):
+    assert refused(trace) == text
+
+
+def test_cycle_time_is_that_of_the_recording():
+    velocity = phases([5.0], cycle_time=4 * T)
+    run = trace_of(cycle_time=4 * T, set_velocity=velocity, actual_torque=np.sign(velocity))
+    assert friction_curve(run, settling=0.1).points[0].seconds == pytest.approx(0.8)

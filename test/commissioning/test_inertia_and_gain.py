@@ -1,0 +1,127 @@
+"""Inertia from torque, stability limit and proposal of the position controller gain."""
+
+import math
+
+import numpy as np
+import pytest
+from commissioning_support import T, stribeck, trace_of
+from scipy.integrate import cumulative_trapezoid
+
+from cnc_ptp.commissioning.dynamics import DriveFit
+from cnc_ptp.commissioning.gain import propose_gain, spectral_radius, stability_limit
+from cnc_ptp.commissioning.inertia import fit_inertia
+
+
+def torque_run(k=0.05, load=0.0, noise=0.0, quantum=0.0, friction=stribeck):
+    """Smooth motions with M = k·a + friction(v) + load; the torque of a row is that of the cycle before it."""
+    fine = 20
+    time = np.arange(3000 * fine) * T / fine
+    velocity = 200.0 * np.sin(2 * np.pi * time) * np.sin(0.5 * np.pi * time) ** 2
+    acceleration = np.gradient(velocity, time)
+    torque = k * acceleration + np.sign(velocity) * friction(np.abs(velocity)) + load
+    position = cumulative_trapezoid(velocity, time, initial=0.0)
+    mean = np.concatenate([[0.0], torque.reshape(-1, fine).mean(axis=1)[:-1]])
+    mean = mean + noise * np.random.default_rng(2).standard_normal(len(mean))
+    actual = velocity[::fine]
+    if quantum:
+        actual = np.round(actual / quantum) * quantum
+    return trace_of(
+        set_velocity=velocity[::fine], actual_velocity=actual, actual_position=position[::fine], actual_torque=mean
+    )
+
+
+def test_inertia_and_friction_come_back():
+    fit = fit_inertia(torque_run(friction=lambda v: 120.0 + 0.3 * v, load=-60.0))
+    assert fit.torque_per_acceleration == pytest.approx(0.05, rel=1e-3)
+    assert fit.coulomb == pytest.approx(120.0, rel=1e-3)
+    assert fit.viscous == pytest.approx(0.3, rel=1e-2)
+    assert fit.deviation < 1e-4
+
+
+@pytest.mark.parametrize(("noise", "quantum"), [(20.0, 0.0), (0.0, 2.0), (20.0, 2.0)])
+def test_noise_and_quantisation_average_out(noise, quantum):
+    fit = fit_inertia(torque_run(noise=noise, quantum=quantum))
+    assert fit.torque_per_acceleration == pytest.approx(0.05, rel=0.03)
+    assert abs(fit.torque_per_acceleration - 0.05) < 6 * fit.deviation
+
+
+def test_without_torque_or_acceleration_there_is_no_inertia():
+    run = torque_run()
+    columns = {name: getattr(run, name) for name in ("set_velocity", "actual_velocity", "actual_position")}
+    assert fit_inertia(trace_of(**columns, actual_torque=None)) is None
+    assert fit_inertia(trace_of(**columns, actual_torque=np.zeros(3000))) is None
+    constant = np.full(3000, 50.0)
+    assert fit_inertia(trace_of(set_velocity=constant, actual_torque=np.ones(3000))) is None
+    assert fit_inertia(trace_of(set_velocity=constant[:20], actual_torque=np.ones(20))) is None
+    noise = np.random.default_rng(1).standard_normal(3000)
+    assert fit_inertia(trace_of(**columns, actual_torque=noise)) is None
+
+
+def runs_away(kv, time_constant, dead, cycles=40_000):
+    """Whether the loop grows: a simulation of controller, dead time, lag and integrator, cycle by cycle."""
+    pole = math.exp(-T / time_constant) if time_constant else 0.0
+    position, velocity, waiting = 1.0, 0.0, [0.0] * dead
+    largest = [0.0, 0.0]
+    for cycle in range(cycles):
+        waiting.append(-kv * position)
+        command = waiting.pop(0)
+        surplus = velocity - command
+        position += command * T + surplus * time_constant * (1.0 - pole)
+        velocity = command + surplus * pole
+        half = 2 * cycle // cycles
+        largest[half] = max(largest[half], abs(position))
+        if abs(position) > 1e6:
+            return True
+    return largest[1] > largest[0]
+
+
+@pytest.mark.parametrize("time_constant", [0.0, 0.0005, 0.003, 0.02])
+@pytest.mark.parametrize("dead", [0, 1, 4])
+def test_the_limit_is_where_the_loop_begins_to_run_away(time_constant, dead):
+    limit = stability_limit(time_constant, dead, T)
+    assert not runs_away(0.98 * limit, time_constant, dead)
+    assert runs_away(1.02 * limit, time_constant, dead)
+
+
+@pytest.mark.parametrize("time_constant", [0.0005, 0.003, 0.02])
+def test_the_limit_without_dead_time_is_the_closed_form(time_constant):
+    """Jury's criterion of z² + … : Kv < (1 - p)/(L - p·T) and, where it is positive, Kv < 2(1 + p)/(T(1 + p) - 2L)."""
+    pole = math.exp(-T / time_constant)
+    lag = time_constant * (1.0 - pole)
+    limits = [(1.0 - pole) / (lag - pole * T), 2.0 * (1.0 + pole) / (T * (1.0 + pole) - 2.0 * lag)]
+    assert stability_limit(time_constant, 0, T) == pytest.approx(min(x for x in limits if x > 0.0), rel=1e-9)
+
+
+def test_the_limit_of_an_ideal_drive():
+    assert stability_limit(0.0, 0, T) == pytest.approx(2.0 / T)
+    assert stability_limit(0.0, 1, T) == pytest.approx(1.0 / T)
+
+
+@pytest.mark.parametrize(
+    ("time_constant", "dead"), [(0.003, 0), (0.003, 2), (0.010, 4), (0.0, 0), (0.0, 5), (0.0004, 0)]
+)
+def test_the_proposal_does_not_overshoot(time_constant, dead):
+    """The damping of the slowest poles is at least 0.9: no overshoot above 0.2 %, and far from the limit."""
+    proposal = propose_gain(DriveFit(time_constant, dead, 1.0, 0.0, 1000, T))
+    assert proposal.total == pytest.approx(time_constant + dead * T + T / 2)
+    assert proposal.limit == stability_limit(time_constant, dead, T)
+    assert proposal.proposed <= proposal.limit / 3.0
+    assert proposal.proposed < proposal.fastest
+    assert spectral_radius(proposal.proposed, time_constant, dead, T) < 1.0
+    position, velocity, waiting, highest = 0.0, 0.0, [0.0] * dead, 0.0
+    pole = math.exp(-T / time_constant) if time_constant else 0.0
+    for _ in range(2000):
+        waiting.append(proposal.proposed * (1.0 - position))
+        command = waiting.pop(0)
+        surplus = velocity - command
+        position += command * T + surplus * time_constant * (1.0 - pole)
+        velocity = command + surplus * pole
+        highest = max(highest, position)
+    assert 1.0 - 1e-6 < highest < 1.002
+
+
+def test_the_proposal_of_the_mill():
+    """Ta = 3 ms, T = 1 ms: 1 / (4 · 3.5 ms)."""
+    proposal = propose_gain(DriveFit(0.003, 0, 1.0, 0.0, 1000, T))
+    assert proposal.proposed == pytest.approx(71.43, abs=0.01)
+    assert proposal.fastest == pytest.approx(142.86, abs=0.01)
