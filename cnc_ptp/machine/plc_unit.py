@@ -65,7 +65,7 @@ class PlcUnit(Unit):
         self._end_when_idle = end_when_idle
         self._groups = AxisGroups(axes or {}, cycle_time=cycle_time)
         self._outgoing: list[Command] = []
-        self.setpoints = SetpointQueue(cycle_time=cycle_time)
+        self.setpoints = SetpointQueue(cycle_time=cycle_time, warn=self._warn)
         """External setpoints that scenario and topics give."""
         self._auto_acknowledge = True
         self._pending: dict[int, HandshakeRequest] = {}
@@ -144,6 +144,9 @@ class PlcUnit(Unit):
         text = f"plc {self.name}: {reason}; everything is stopped and the run ends"
         self.event(cycle, Severity.ERROR, error_id, text)
         self.do_stop_all(cycle)
+
+    def _warn(self, cycle: int, number: int, text: str) -> None:
+        self.event(cycle, Severity.WARNING, number, text)
 
     # one block
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from heapq import heappop, heappush
 from itertools import count
 
+from cnc_ptp.axis.faults import BAD_SETPOINT
 from cnc_ptp.machine.blocks import AxisBlock, Block, Command, StatusBit
 from cnc_ptp.machine.setpoint_file import Row
 
@@ -13,6 +14,8 @@ SETPOINTS = "external_setpoints"
 HORIZON = 60.0
 """Seconds that a setpoint of a topic may lie ahead."""
 
+Warn = Callable[[int, int, str], None]
+"""Takes a warning: cycle, number, text."""
 Waiting = list[tuple[float, int, Row]]
 """A heap: cycle, order of arrival, row."""
 
@@ -23,8 +26,9 @@ class SetpointQueue:
     What waits is dropped when the axis' external setpoints end: nothing of it may move the axis after the next enable.
     """
 
-    def __init__(self, *, cycle_time: float) -> None:
-        """`cycle_time` in s."""
+    def __init__(self, *, cycle_time: float, warn: Warn) -> None:
+        """`cycle_time` in s; `warn` hears of rows of topics that are dropped."""
+        self._warn = warn
         self._horizon = round(HORIZON / cycle_time)
         self._waiting: dict[str, Waiting] = {}
         self._arrived: dict[str, list[Row]] = {}
@@ -81,12 +85,18 @@ class SetpointQueue:
                 yield Command(axis, SETPOINTS, {"setpoints": rows})
 
     def _place(self, axis: str, arrived: list[Row], first_cycle: int, count: int) -> None:
-        """An end of the motion takes back what was sent for later; a row too far ahead is none."""
+        """An end of the motion takes back what was sent for later; a row too far ahead is dropped."""
         unplaced = [row for row in arrived if not row[0]][-count:]
         spread = {id(row): first_cycle + n * count // len(unplaced) for n, row in enumerate(unplaced)}
         for row in arrived:
             cycle = row[0] or spread.get(id(row))
-            if cycle is None or cycle > first_cycle + self._horizon:
+            if cycle is None:
+                continue
+            if cycle > first_cycle + self._horizon:
+                ahead = f"it lies more than {HORIZON:g} s ahead of cycle {first_cycle}"
+                self._warn(
+                    first_cycle, BAD_SETPOINT, f"axis {axis}: external setpoint for cycle {cycle} dropped: {ahead}"
+                )
                 continue
             if row[-1] == 0:
                 self._waiting[axis] = [entry for entry in self._waiting.get(axis, []) if entry[0] < cycle]

@@ -16,12 +16,15 @@ HORIZON = 60_000
 """60 s in cycles of 1 ms."""
 
 
+WARNINGS: list[tuple[int, int, str]] = []
+
+
 def row(cycle: int, position: float = 0.0, direction: int = 1) -> Row:
     return [cycle, position, 0.0, 0.0, direction]
 
 
 def new_queue() -> SetpointQueue:
-    return SetpointQueue(cycle_time=CYCLE_TIME)
+    return SetpointQueue(cycle_time=CYCLE_TIME, warn=lambda cycle, number, text: WARNINGS.append((cycle, number, text)))
 
 
 def rows_of(commands: Sequence[Command], axis: str = "x") -> list[Row]:
@@ -147,12 +150,17 @@ def test_rows_with_and_without_a_cycle() -> None:
 
 def test_a_row_of_a_topic_more_than_60_s_ahead_is_none() -> None:
     queue = new_queue()
+    WARNINGS.clear()
     queue.arrive("x", row(1000 + HORIZON))
     queue.arrive("x", row(1001 + HORIZON))
     queue.arrive("x", row(10**12))
     assert taken(queue, 1000) == [] and queue
     assert cycles(taken(queue, 1000 + HORIZON)) == [1000 + HORIZON]
     assert not queue
+    assert [(cycle, number) for cycle, number, _ in WARNINGS] == [(1000, 23032), (1000, 23032)]
+    assert WARNINGS[0][2] == (
+        "axis x: external setpoint for cycle 61001 dropped: it lies more than 60 s ahead of cycle 1000"
+    )
 
 
 def test_rows_of_a_scenario_may_lie_as_far_ahead_as_they_like() -> None:
