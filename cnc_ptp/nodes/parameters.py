@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterType
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    ParameterType,
+    SetParametersResult,
+)
 from rclpy.node import Node
 
-from cnc_ptp.parameters import MachineParameters, RosDescriptor, ros_descriptors
+from cnc_ptp.parameters import MachineParameters, ParameterSet, RosDescriptor, ros_descriptors
+from cnc_ptp.parameters.runtime_change import change_refusal
 
 TYPES = {
     "int": ParameterType.PARAMETER_INTEGER,
@@ -23,6 +31,15 @@ def declare_parameters(node: Node, machine: MachineParameters, name: str) -> Non
     entries = ros_descriptors(machine.raw(name))
     parameters: list[Any] = [(entry.ros_name, _value(entry), _descriptor(entry)) for entry in entries]
     node.declare_parameters("", parameters, ignore_override=True)
+
+
+def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersResult | None:
+    """The answer to a change that is refused for a reason of its own; None where "read-only" says all."""
+    for parameter in wanted:
+        error = change_refusal(own, parameter.name, parameter.value)
+        if error is not None:
+            return SetParametersResult(successful=False, reason=str(error))
+    return None
 
 
 def _value(entry: RosDescriptor) -> Any:

@@ -23,7 +23,7 @@ from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.parameters import declare_parameters
+from cnc_ptp.nodes.parameters import declare_parameters, refused_change
 from cnc_ptp.nodes.requests import given_arguments
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
@@ -91,7 +91,9 @@ class UnitNode(Node):
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
         self._said = self._checked = now
-        declare_parameters(self, machine, MACHINE if unit.kind == PLC else unit.name)
+        own = MACHINE if unit.kind == PLC else unit.name
+        self._own_parameters = machine.raw(own)
+        declare_parameters(self, machine, own)
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
@@ -122,6 +124,11 @@ class UnitNode(Node):
         for source in self._gate.sources:
             block_type, received = BLOCK_TYPES[self._kinds[source]], partial(self._on_block, source)
             self._needed.append(self.create_subscription(block_type, block_topic(source), received, BLOCKS))
+
+    def set_parameters_atomically(self, parameter_list: Any) -> Any:
+        """Refuses: all parameters are read-only; those with a reason of their own give it."""
+        refused = refused_change(self._own_parameters, parameter_list)
+        return refused or super().set_parameters_atomically(parameter_list)
 
     def _make_services(self) -> None:
         for command, service_type in SERVICES[self.unit.kind].items():

@@ -15,7 +15,7 @@ from client_support import Client
 from diagnostic_msgs.msg import DiagnosticArray
 from graph_support import Running, run, small_machine, verified, wait_for_handler
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters, SetParametersAtomically
 from sensor_msgs.msg import JointState
 
 from cnc_ptp import action, msg
@@ -366,6 +366,19 @@ def test_parameters(client):
     assert not result.successful and "read-only" in result.reason
     plc = ask(GetParameters, "/plc/get_parameters", names=["watchdog_ms"]).values[0]
     assert plc.integer_value == 200
+
+
+def test_the_table_size_of_friction_compensation_is_fixed_after_start_up(client):
+    wanted = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=30)
+    parameters = [Parameter(name="frict_comp.max_points", value=wanted)]
+    one_by_one = client.ask(SetParameters, "/y/set_parameters", parameters=parameters).results[0]
+    together = client.ask(SetParametersAtomically, "/y/set_parameters_atomically", parameters=parameters).result
+    for result in (one_by_one, together):
+        assert (result.successful, result.reason) == (
+            False,
+            "P-ERR-110641 axis y: frict_comp.max_points = 20 (P-COMP-00062) cannot be changed to 30 after start-up;"
+            " nothing was changed, set it in the machine file and start again",
+        )
 
 
 @pytest.mark.parametrize(("options", "content"), [([], b"of yesterday"), (["--composed"], None)], ids=str)
