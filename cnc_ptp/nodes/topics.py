@@ -65,6 +65,8 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_coupling_factor": srv.SetCouplingFactor,
         "set_cyclic_factor": srv.SetCouplingFactor,
         "decouple": srv.Decouple,
+        "set_feedforward": srv.SetFeedforward,
+        "set_friction_compensation": srv.SetSwitch,
     },
     "spindle": {
         "start": srv.StartSpindle,
