@@ -173,6 +173,7 @@ def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, fl
             forced.append(lfilter([1.0 - pole], [1.0, -pole], piece.command[:usable]))
             wanted.append(rest)
     simulated, target = np.concatenate(forced), np.concatenate(wanted)
-    power = float(simulated @ simulated)
-    gain = float(simulated @ target) / power if power > 0.0 else 0.0
+    # Not @: the threads of BLAS make sums of this size many times slower on a busy machine.
+    power = float(np.sum(simulated * simulated))
+    gain = float(np.sum(simulated * target)) / power if power > 0.0 else 0.0
     return float(np.sum((gain * simulated - target) ** 2)), gain
