@@ -15,7 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.report_figures import path_figures, time_figure
-from cnc_ptp.recording.statistics import last_diagnostics, summary
+from cnc_ptp.recording.statistics import last_diagnostics, summary, torque_units
 
 MOST_ROWS = 1000
 NUMBERS = ("time in s", "cycle", "line", "messages", "from s", "to s")  # columns of numbers
@@ -165,7 +165,7 @@ def _times(recorded: Recorded, units: dict[str, str]) -> str:
     if not recorded.states:
         return _section("Over time", "", "The recording holds no states.")
     note = "Drag in one plot to zoom all of them, double click to see the whole run; click a legend entry to hide it."
-    return _section("Over time", _plot(time_figure(recorded, units), "time"), note)
+    return _section("Over time", _plot(time_figure(recorded, units, torque_units(recorded)), "time"), note)
 
 
 def _plot(figure: go.Figure, name: str) -> str:

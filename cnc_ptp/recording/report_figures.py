@@ -52,9 +52,15 @@ class Row:
     legend: bool = False  # the row has its own legend
 
 
-def time_figure(recorded: Recorded, units: Mapping[str, str]) -> go.Figure:
-    """All quantities over time, one above the other; zooming one of them zooms all. `units`: mm or deg by axis."""
-    rows = [row for row in _rows(recorded, units) if row.lines]
+def time_figure(
+    recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str] | None = None
+) -> go.Figure:
+    """All quantities over time, one above the other; zooming one of them zooms all.
+
+    `units`: mm or deg by axis; `torque_units`: Nm or N. Feedforward, torque and friction compensation have a plot where
+    they are in use.
+    """
+    rows = [row for row in _rows(recorded, units, torque_units or {}) if row.lines]
     count = len(rows) + 1
     height = count * ROW_HEIGHT + (count - 1) * ROW_GAP
     figure = make_subplots(
@@ -87,7 +93,7 @@ def time_figure(recorded: Recorded, units: Mapping[str, str]) -> go.Figure:
     return figure
 
 
-def _rows(recorded: Recorded, units: Mapping[str, str]) -> Iterator[Row]:
+def _rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[Row]:
     channels = recorded.of_type(CHANNEL_STATE)
     axes = recorded.of_type(AXIS_STATE)
     spindles = recorded.of_type(SPINDLE_STATE)
@@ -111,6 +117,7 @@ def _rows(recorded: Recorded, units: Mapping[str, str]) -> Iterator[Row]:
         yield Row(f"{escape(name)}: speed in rpm", speed)
     for name, rows in axes.items():
         yield from _axis_rows(name, rows, units.get(name, "mm"))
+        yield from _control_rows(name, rows, units.get(name, "mm"), torque_units.get(name, "Nm or N"))
 
 
 def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
@@ -126,6 +133,28 @@ def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
         [("following error", DEVIATION, rows, "following_error", 1.0)],
         precise=True,
     )
+
+
+def _control_rows(name: str, rows: Records, unit: str, torque_unit: str) -> Iterator[Row]:
+    """What goes to the drive besides the command of the position controller; only what is in use."""
+    label = escape(name.upper() if len(name) == 1 else name)
+    feedforward = [
+        ("to the position controller", SET, "feedforward_velocity"),
+        ("to the drive", ACTUAL, "additive_velocity"),
+    ]
+    torque = [("additive", SET, "additive_torque"), ("drive", ACTUAL, "actual_torque")]
+    friction = [("friction compensation", OTHER, "friction_current")]
+    yield Row(f"{label}: feedforward in {unit}/s", _in_use(rows, feedforward), legend=True)
+    yield Row(f"{label}: torque in {torque_unit}", _in_use(rows, torque), legend=True)
+    yield Row(f"{label}: friction compensation, current in digits of the drive", _in_use(rows, friction))
+
+
+def _in_use(rows: Records, columns: list[tuple[str, str, str]]) -> list[tuple[str, str, Records, str, float]]:
+    """Lines of the columns (name, colour, field) that the recording has and that are not 0 throughout."""
+    known = rows.dtype.names or ()
+    return [
+        (name, colour, rows, field, 1.0) for name, colour, field in columns if field in known and np.any(rows[field])
+    ]
 
 
 def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import ChannelStateCode, Severity
-from cnc_ptp.parameters import load_machine
+from cnc_ptp.parameters import MachineParameters, load_machine
+from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.recording.writer import MACHINE_FILE
@@ -102,11 +103,27 @@ def largest_following_errors(recorded: Recorded) -> dict[str, Extreme]:
 
 def axis_units(recorded: Recorded) -> dict[str, str]:
     """`mm` or `deg` by axis as the machine file says; empty when the recording holds none that can be loaded."""
-    try:
-        machine = load_machine(recorded.machine_yaml, MACHINE_FILE)
-    except CncError:
+    machine = _machine(recorded)
+    return {name: "deg" if axis.rotary else "mm" for name, axis in machine.axes.items()} if machine else {}
+
+
+def torque_units(recorded: Recorded) -> dict[str, str]:
+    """Nm by axis where torques are those of a motor shaft (rotary axes, axes with a feed constant), else N.
+
+    Empty when the recording holds no machine file that can be loaded.
+    """
+    machine = _machine(recorded)
+    if machine is None:
         return {}
-    return {name: "deg" if axis.rotary else "mm" for name, axis in machine.axes.items()}
+    shaft = {name: axis.rotary or uses_feed_constant(machine.raw(name)) for name, axis in machine.axes.items()}
+    return {name: "Nm" if on_shaft else "N" for name, on_shaft in shaft.items()}
+
+
+def _machine(recorded: Recorded) -> MachineParameters | None:
+    try:
+        return load_machine(recorded.machine_yaml, MACHINE_FILE)
+    except CncError:
+        return None
 
 
 def last_diagnostics(recorded: Recorded) -> dict[str, dict[str, str]]:

@@ -15,7 +15,7 @@ from cnc_ptp.recording.reader import Diagnostic, read_recording
 from cnc_ptp.recording.report import report_page, write_report
 from cnc_ptp.recording.report_figures import path_axes, path_figures, state_bands, time_figure
 from cnc_ptp.recording.schemas import load_schema
-from cnc_ptp.recording.statistics import Extreme, axis_units, summary
+from cnc_ptp.recording.statistics import Extreme, axis_units, summary, torque_units
 from cnc_ptp.recording.writer import Recording
 
 EVIL = '</script><script>alert("1")</script><img src=x onerror=alert(2)>'
@@ -118,6 +118,43 @@ def test_every_quantity_has_a_plot_and_all_zoom_together(recorded):
         recorded.states["/x/state"]["actual_position"].min(),
         recorded.states["/x/state"]["actual_position"].max(),
     )
+
+
+def test_torque_feedforward_and_friction_have_plots_where_they_are_in_use(recorded):
+    """Feedforward and torque of x and the friction current of y; what the recording lacks or is 0 has none."""
+    x, y = (recorded.states[f"/{axis}/state"].copy() for axis in "xy")
+    x["feedforward_velocity"], x["additive_torque"], x["actual_torque"] = 5.0, 0.25, -0.125
+    y["friction_current"][1000:] = 37.0
+    recorded.states |= {"/x/state": x, "/y/state": y}
+    figure = time_figure(recorded, {"z": "deg"}, {"x": "Nm"})
+    titles = [annotation.text for annotation in figure.layout.annotations]
+    rest = [title for title in titles if "feedforward" in title or "torque" in title or "friction" in title]
+    assert rest == [
+        "X: feedforward in mm/s",
+        "X: torque in Nm",
+        "Y: friction compensation, current in digits of the drive",
+    ]
+    lines = {trace.name: set(trace.y) for trace in figure.data if trace.name in ("to the position controller", "drive")}
+    assert lines == {"to the position controller": {5.0}, "drive": {-0.125}}
+    assert "to the drive" not in {trace.name for trace in figure.data}
+
+
+def test_recordings_without_actual_torque_are_shown(recorded):
+    """As they were before the field came."""
+    rows = recorded.states["/x/state"]
+    names = [name for name in rows.dtype.names if name != "actual_torque"]
+    recorded.states["/x/state"] = rows[names]
+    rows["additive_torque"] = 1.0
+    titles = [annotation.text for annotation in time_figure(recorded, {}).layout.annotations]
+    assert "X: torque in Nm or N" in titles
+
+
+def test_torque_units_come_from_the_machine_file(recorded):
+    assert torque_units(recorded) == {}
+    axes = "/machine: {ros__parameters: {channels: [ch], axes: [a, b, c]}}\n"
+    linear = "/b: {ros__parameters: {antr.feed_const_num: 100000, antr.feed_const_denom: 1}}\n"
+    recorded.machine_yaml = axes + linear + "/c: {ros__parameters: {kenngr.achs_typ: ACHSTYP_ROTATOR}}\n"
+    assert torque_units(recorded) == {"a": "N", "b": "Nm", "c": "Nm"}
 
 
 def test_path_is_drawn_in_the_plane_and_in_space(recorded):
