@@ -84,7 +84,7 @@ def test_many_states_at_once_are_read_by_the_library(type_name):
 
 
 @settings(max_examples=50)
-@given(count=st.integers(0, 12), first=st.integers(0, 2**63), values=st.lists(st.floats(), min_size=13, max_size=13))
+@given(count=st.integers(0, 12), first=st.integers(0, 2**63), values=st.lists(st.floats(), min_size=14, max_size=14))
 def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
     schema = load_schema("cnc_ptp/msg/AxisBlock")
     names = [field.name for field in schema.fields[3:] if field.length is not None]

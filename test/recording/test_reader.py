@@ -345,7 +345,7 @@ def test_state_of_another_size_is_refused(scratch):
     names = [field.name for field in schema.fields[1:]]
     message = {"header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base"}} | dict.fromkeys(names, 0)
     other_tool(scratch, "cnc_ptp/msg/AxisState", [encode(schema, message)])
-    assert "a message of /y/state has 152 bytes instead of 144 (cnc_ptp/msg/AxisState with empty frame_id)" in refusal(
+    assert "a message of /y/state has 160 bytes instead of 152 (cnc_ptp/msg/AxisState with empty frame_id)" in refusal(
         scratch, scratch.read_bytes()
     )
 

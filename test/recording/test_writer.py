@@ -248,8 +248,8 @@ def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, 
         recording.axis_block("x", blocks.axis(20))
     assert str(error.value) == (
         "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected "
-        "164 items for "
-        "packing (got 165); it was not recorded"
+        "174 items for "
+        "packing (got 175); it was not recorded"
     )
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == [*range(10), *range(20, 30)]
 
