@@ -145,8 +145,8 @@ class CascadedDrive:
         dry = self._dry_friction(v)
         friction = direction * dry + self._viscous * v
         asked = gain * p + integral
-        linear = -limit <= asked <= limit
-        if linear:
+        side = self._limited(asked)
+        if not side:
             ip, ir, ii, im, jf, mp, mr, mi, mm, mf, vp, vr, vi, vm, vf, xp, xr, xi, xm, xf = sliding
             new_integral = integral + ip * p + ir * r + ii * integral + im * motor + jf * friction
             new_motor = motor + mp * p + mr * r + mi * integral + mm * motor + mf * friction
@@ -154,7 +154,7 @@ class CascadedDrive:
             x = xp * p + xr * r + xi * integral + xm * motor + xf * friction
         else:
             mi, mm, mf, vi, vm, vf, xi, xm, xf = held
-            asked = limit if asked > 0.0 else -limit
+            asked = side * limit
             jf = 0.0
             new_integral = integral
             new_motor = motor + mi * asked + mm * motor + mf * friction
@@ -175,7 +175,7 @@ class CascadedDrive:
             crosses = new_v * direction < 0.0
         new_p = (p - r) * decay + r - y
         new_asked = gain * new_p + new_integral
-        if level < FINEST and (crosses or (-limit <= new_asked <= limit) is not linear):
+        if level < FINEST and (crosses or self._limited(new_asked) != side):
             return False
         if not self._lagging:
             new_motor = limit if new_asked > limit else -limit if new_asked < -limit else new_asked
@@ -207,25 +207,28 @@ class CascadedDrive:
         limit, gain = self._limit, self._gain
         w, u, integral, motor = self._setpoint, self._wanted, self._integral, self._motor
         asked = gain * w + integral
-        linear = -limit <= asked <= limit
-        if linear:
+        side = self._limited(asked)
+        if not side:
             iw, iu, ii, im, mw, mu, mi, mm = standing
             new_integral = integral + iw * w + iu * u + ii * integral + im * motor
             new_motor = motor + mw * w + mu * u + mi * integral + mm * motor
         else:
             new_integral = integral
-            new_motor = motor + held[0] * (limit if asked > 0.0 else -limit) + held[1] * motor
+            new_motor = motor + held[0] * side * limit + held[1] * motor
         new_w = (w - u) * decay + u
         new_asked = gain * new_w + new_integral
         if not self._lagging:
             new_motor = limit if new_asked > limit else -limit if new_asked < -limit else new_asked
         holds = -self._static <= new_motor <= self._static
-        if level < FINEST and (not holds or (-limit <= new_asked <= limit) is not linear):
+        if level < FINEST and (not holds or self._limited(new_asked) != side):
             return False
         self._setpoint, self._integral, self._motor = new_w, new_integral, new_motor
         if not holds:
             self._direction = copysign(1.0, new_motor)
         return True
+
+    def _limited(self, asked: float) -> int:
+        return 1 if asked > self._limit else -1 if asked < -self._limit else 0
 
     def _dry_friction(self, v: float) -> float:
         """Amount of Coulomb and Stribeck friction at a velocity, as acceleration."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cnc_ptp.control.drives.cascaded import CascadedDrive
 from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.control.drives.first_order import FirstOrderDrive
 from cnc_ptp.control.drives.virtual import VirtualDrive
@@ -13,6 +14,8 @@ def make_drive(control: ControlParameters, cycle_time: float) -> Drive:
     plant = control.plant
     if control.drive.interface == "none":
         return VirtualDrive(start_position=plant.start_position)
+    if plant.cascaded:
+        return CascadedDrive(plant, cycle_time=cycle_time)
     return FirstOrderDrive(
         cycle_time=cycle_time,
         time_constant=plant.time_constant,
