@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from figures.picture import draw
+from figures.kinds import draw
 from figures.run import run_figure
 from figures.scenario_head import ROOT, FigureError, read_head
 from figures.svg import svg_text, write_if_changed

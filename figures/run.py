@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisBlock, CommandRecord, Event, Severity
+from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
 from cnc_ptp.machine.commands import INTERNAL
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters.encoder import uses_feed_constant
+from figures.panels import UNIT_KINDS
 from figures.scenario_head import FigureError, FigureScenario
 
 Column = npt.NDArray[np.float64]
-OF_BLOCK = ("first_cycle", "count", "master", "target_velocity", "couples_actual")
-PER_CYCLE = tuple(field.name for field in fields(AxisBlock) if field.name not in OF_BLOCK)
+NOT_SHOWN = INTERNAL | {"reset_feedforward"}
+"""Commands that come by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,16 +37,32 @@ class Marker:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnUnit:
+    """What a unit is and counts in: `kind` of figures.panels, `way` mm or deg, `torque` N or Nm."""
+
+    kind: str
+    way: str
+    torque: str
+
+    def shown(self, unit: str) -> str:
+        """A panel's unit as text: "{way}/s" is mm/s."""
+        return unit.format(way=self.way, torque=self.torque)
+
+
+@dataclass(frozen=True, slots=True)
 class FigureRun:
     """A run of `cycles` cycles.
 
-    `columns[axis][field]` has one value a cycle, fields as in AxisBlock (mm, s, deg); `units[axis]` is mm or deg.
+    `columns[unit][field]` has one value a cycle, fields as in the unit's block (mm, s, deg).
     """
 
     cycle_time: float
     columns: Mapping[str, Mapping[str, Column]]
-    units: Mapping[str, str]
+    units: Mapping[str, DrawnUnit]
     markers: tuple[Marker, ...]
+    machine: MachineParameters
+    ticks: tuple[Outputs, ...]
+    """All that all units gave, for pictures that are no time plots."""
 
     @property
     def cycles(self) -> int:
@@ -55,29 +73,34 @@ class FigureRun:
         """Of each cycle, in s."""
         return np.arange(self.cycles, dtype=np.float64) * self.cycle_time
 
-    def column(self, axis: str, field: str) -> Column:
+    def column(self, unit: str, field: str) -> Column:
         """`actual_acceleration` is the difference quotient of the actual velocity; all else are fields."""
         if field == "actual_acceleration":
-            quotient: Column = np.gradient(self.columns[axis]["actual_velocity"], self.cycle_time)
+            quotient: Column = np.gradient(self.columns[unit]["actual_velocity"], self.cycle_time)
             return quotient
-        return self.columns[axis][field]
+        return self.columns[unit][field]
+
+    def motion(self, unit: str) -> Column:
+        """What is 0 while the unit stands."""
+        return self.columns[unit][UNIT_KINDS[self.units[unit].kind].motion]
 
 
 def run_figure(figure: FigureScenario) -> FigureRun:
     """Runs until all axes stand. Raises FigureError where an input is wrong, a command refused or a fault occurs."""
+    program = str(figure.program_path) if figure.program_path else None
     try:
         machine = read_machine(figure.machine_path)
-        job = read_job(machine, program=None, scenario=str(figure.path))
+        job = read_job(machine, program=program, scenario=str(figure.path))
     except CncError as error:
         raise FigureError(figure.path, error) from None
-    for axis in figure.axes:
-        if axis not in machine.axes:
-            known = ", ".join(machine.axes)
-            raise FigureError(figure.path, f"axis '{axis}' does not exist in {figure.machine}, known are {known}")
-    return _collect(figure, machine, list(OfflineMachine(machine, build_units(machine, scenario=job)).run()))
+    for name in figure.axes:
+        if name not in machine.axes and name not in machine.spindles:
+            known = ", ".join([*machine.axes, *machine.spindles])
+            raise FigureError(figure.path, f"axis '{name}' does not exist in {figure.machine}, known are {known}")
+    return _collect(figure, machine, tuple(OfflineMachine(machine, build_units(machine, scenario=job)).run()))
 
 
-def _collect(figure: FigureScenario, machine: MachineParameters, ticks: list[Outputs]) -> FigureRun:
+def _collect(figure: FigureScenario, machine: MachineParameters, ticks: tuple[Outputs, ...]) -> FigureRun:
     outputs = [output for tick in ticks for output in tick.values()]
     records = [record for output in outputs for record in output.records]
     refused = [f"P-ERR-{record.error_id} {record.message}" for record in records if not record.accepted]
@@ -86,13 +109,25 @@ def _collect(figure: FigureScenario, machine: MachineParameters, ticks: list[Out
         texts = [f"P-ERR-{event.error_id} {event.text}" for event in errors if not figure.shows_errors]
         raise FigureError(figure.path, (texts + refused)[0])
     cycle_time = machine.cycle_time_us * 1e-6
-    given = [record for record in records if record.target in figure.axes and record.command not in INTERNAL]
+    given = [record for record in records if record.target in figure.axes and record.command not in NOT_SHOWN]
+    units = {name: drawn_unit(machine, name) for name in figure.axes}
     return FigureRun(
         cycle_time,
-        {axis: _columns([tick[axis].block for tick in ticks]) for axis in figure.axes},
-        {axis: "deg" if machine.axes[axis].rotary else "mm" for axis in figure.axes},
+        {name: _columns([tick[name].block for tick in ticks], unit.kind) for name, unit in units.items()},
+        units,
         (*_markers(given, cycle_time, named=len(figure.axes) > 1), *_error_markers(errors, cycle_time)),
+        machine,
+        ticks,
     )
+
+
+def drawn_unit(machine: MachineParameters, name: str) -> DrawnUnit:
+    """Torques are Nm at the motor shaft, or N where a linear axis has no feed constant."""
+    if name in machine.spindles:
+        return DrawnUnit("spindle", "deg", "Nm")
+    if machine.axes[name].rotary:
+        return DrawnUnit("axis", "deg", "Nm")
+    return DrawnUnit("axis", "mm", "Nm" if uses_feed_constant(machine.raw(name)) else "N")
 
 
 def _markers(records: list[CommandRecord], cycle_time: float, *, named: bool) -> Iterator[Marker]:
@@ -110,19 +145,30 @@ def _error_markers(events: list[Event], cycle_time: float) -> Iterator[Marker]:
         yield Marker(event.cycle * cycle_time, f"{event.source}: error {event.error_id}")
 
 
-def _columns(blocks: list[object]) -> dict[str, Column]:
+def _columns(blocks: list[object], kind: str) -> dict[str, Column]:
     return {
         name: np.array([value for block in blocks for value in getattr(block, name)], dtype=np.float64)
-        for name in PER_CYCLE
+        for name in UNIT_KINDS[kind].columns
     }
 
 
-SHOWN = {"factor": "", "target": "", "distance": "", "position": "", "percent": " %", "difference": ""}
+SHOWN = {
+    "factor": "",
+    "target": "",
+    "distance": "",
+    "position": "",
+    "percent": " %",
+    "difference": "",
+    "weight_percent": " %",
+    "speed_rpm": " rpm",
+}
 """The argument that stands behind the name of a command, and its unit where that is not the axis'."""
+SWITCHED = {True: "on", False: "off"}
 
 
 def _text(record: CommandRecord) -> str:
     """`move_absolute` with its target 1000.0 becomes 'move absolute 1000'; its dynamics are in the caption."""
     arguments = json.loads(record.arguments_json)
-    shown = [f"{arguments[name]:g}{unit}" for name, unit in SHOWN.items() if name in arguments]
+    shown = [SWITCHED[arguments["on"]]] if "on" in arguments else []
+    shown += [f"{arguments[name]:g}{unit}" for name, unit in SHOWN.items() if name in arguments]
     return " ".join([record.command.replace("_", " "), *shown]).replace("-", "−")

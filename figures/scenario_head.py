@@ -7,10 +7,15 @@ The head is the block of comment lines at the top of the file, `key: value` each
     #   go on in further lines.
     # machine: config/ptp.yaml
     # axes: x
-    # errors: shown
 
-`errors: shown` is for figures of faults; without it a fault means that there is no picture. It stands in the scenario
-itself so that a figure is one file, read in one go and added without touching another.
+Besides there may be
+- `panels: velocity, following error`: these in this order (figures/panels.py) instead of the usual ones,
+- `program: part.nc`: an NC program beside the scenario, which starts with it on the first channel,
+- `kind: circle`: another picture than panels over time (figures/kinds.py),
+- `errors: shown`: a figure of faults; without it a fault means that there is no picture.
+
+`axes` may name spindles too. All this stands in the scenario itself so that a figure is one file, read in one go and
+added without touching another.
 For the run these lines are comments: `cnc_ptp simulate MACHINE --scenario FILE` takes the file as it is.
 """
 
@@ -24,7 +29,9 @@ from cnc_ptp.machine.job import read_file
 
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
-ERRORS, SHOWN = "errors", "shown"
+PANELS, PROGRAM, KIND, ERRORS, SHOWN = "panels", "program", "kind", "errors", "shown"
+CHOICES = (PANELS, PROGRAM, KIND, ERRORS)
+OVER_TIME = "time"
 
 
 class FigureError(Exception):
@@ -36,7 +43,10 @@ class FigureError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class FigureScenario:
-    """A scenario that is a figure. `machine` is relative to the repository, `axes` are drawn in this order."""
+    """A scenario that is a figure. `machine` is relative to the repository, `axes` are drawn in this order.
+
+    Without `panels` the usual ones are drawn; `program` is relative to the scenario, empty for none.
+    """
 
     path: Path
     title: str
@@ -44,6 +54,9 @@ class FigureScenario:
     machine: str
     axes: tuple[str, ...]
     shows_errors: bool = False
+    panels: tuple[str, ...] = ()
+    program: str = ""
+    kind: str = OVER_TIME
 
     @property
     def name(self) -> str:
@@ -53,6 +66,10 @@ class FigureScenario:
     @property
     def machine_path(self) -> Path:
         return ROOT / self.machine
+
+    @property
+    def program_path(self) -> Path | None:
+        return self.path.parent / self.program if self.program else None
 
 
 def read_head(path: Path) -> FigureScenario:
@@ -68,8 +85,9 @@ def read_head(path: Path) -> FigureScenario:
             head[last] += " " + line.strip()
             continue
         key, colon, value = line.partition(":")
-        if not colon or key not in (*KEYS, ERRORS):
-            raise FigureError(path, f"'{line}' in the head is not one of {', '.join(f'{key}: ...' for key in KEYS)}")
+        if not colon or key not in (*KEYS, *CHOICES):
+            known = ", ".join(f"{key}: ..." for key in (*KEYS, *CHOICES))
+            raise FigureError(path, f"'{line}' in the head is not one of {known}")
         if key in head:
             raise FigureError(path, f"'{key}' stands twice in the head")
         head[key] = value.strip()
@@ -78,8 +96,22 @@ def read_head(path: Path) -> FigureScenario:
             raise FigureError(path, f"the head (comment lines at the top of the file) has no '{key}: ...'")
     if head.get(ERRORS, SHOWN) != SHOWN:
         raise FigureError(path, f"'{ERRORS}: {head[ERRORS]}' in the head must be '{ERRORS}: {SHOWN}'")
-    axes = tuple(axis.strip() for axis in head["axes"].split(","))
-    return FigureScenario(path, head["title"], head["caption"], head["machine"], axes, ERRORS in head)
+    return FigureScenario(
+        path,
+        head["title"],
+        head["caption"],
+        head["machine"],
+        names(head["axes"]),
+        ERRORS in head,
+        names(head.get(PANELS, "")),
+        head.get(PROGRAM, ""),
+        head.get(KIND, OVER_TIME),
+    )
+
+
+def names(text: str) -> tuple[str, ...]:
+    """What stands between commas."""
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def comment_block(text: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,11 @@ from figure_support import SCENARIOS, run_of
 from figures import __main__ as command
 from figures.colours import BAND, DARK
 from figures.external_profile import FILE, csv_text
-from figures.picture import draw, label_rows, number, wrapped
-from figures.run import FigureRun, Marker, run_figure
+from figures.kinds import draw
+from figures.picture import label_rows
+from figures.run import Marker, run_figure
 from figures.scenario_head import ROOT, FigureError, FigureScenario, read_head
+from figures.sheet import number, wrapped
 from figures.svg import svg_text
 
 HEAD = {"title": "A move", "caption": "One millimetre.", "machine": "config/ptp.yaml", "axes": "x"}
@@ -64,7 +67,8 @@ def test_head_without_a_key(tmp_path, key):
 
 
 def test_head_with_an_unknown_key(tmp_path):
-    expected = "'axis: x' in the head is not one of title: ..., caption: ..., machine: ..., axes: ..."
+    keys = "title: ..., caption: ..., machine: ..., axes: ..., panels: ..., program: ..., kind: ..., errors: ..."
+    expected = f"'axis: x' in the head is not one of {keys}"
     assert fault_of(written(tmp_path, {**HEAD, "axis": "x"})) == f"figure move.yaml: {expected}; no picture was drawn"
 
 
@@ -190,10 +194,10 @@ def test_labels_that_would_overlap_stand_in_rows():
         Marker(0.6, "third"),
         Marker(1.24, "last"),
     )
-    labels = label_rows(FigureRun(run.cycle_time, run.columns, run.units, markers), run.cycles)
+    labels = label_rows(replace(run, markers=markers), run.cycles)
     assert [(label.row, label.at_left) for label in labels] == [(0, False), (1, False), (0, False), (0, False)]
     at_the_edge = (Marker(1.24, "a text that has no room at the right"),)
-    labels = label_rows(FigureRun(run.cycle_time, run.columns, run.units, at_the_edge), run.cycles)
+    labels = label_rows(replace(run, markers=at_the_edge), run.cycles)
     assert labels[0].at_left
 
 

@@ -1,0 +1,22 @@
+"""Kinds of pictures by the `kind:` of a head, one file a kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from matplotlib.figure import Figure
+
+from figures import picture
+from figures.run import FigureRun
+from figures.scenario_head import OVER_TIME, FigureError, FigureScenario
+
+KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
+    OVER_TIME: picture.draw,
+}
+
+
+def draw(figure: FigureScenario, run: FigureRun) -> Figure:
+    """The picture of a run. Raises FigureError where its head asks for something that does not exist."""
+    if figure.kind not in KINDS:
+        raise FigureError(figure.path, f"kind '{figure.kind}' does not exist, known are {', '.join(KINDS)}")
+    return KINDS[figure.kind](figure, run)
