@@ -152,7 +152,7 @@ def _control(function: ControlFunction) -> str:
     if isinstance(function, SpindleFeedforward):
         weight = [] if function.weight is None else [f"G136={number(function.weight)}"]
         return f"{function.spindle}[{' '.join(selection + weight)}]"
-    weights = [f"{axis}{number(value)}" for axis, value in function.weights]
+    weights = [f"{axis}{'=' if len(axis) > 1 else ''}{number(value)}" for axis, value in function.weights]
     return " ".join(selection + (["G136", *weights] if weights else []))
 
 
