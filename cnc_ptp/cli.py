@@ -110,6 +110,53 @@ def params_command(name: str | None) -> None:
     sys.exit(params(name))
 
 
+def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Options that all identifications share."""
+    for option in (
+        click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording of the run."),
+        click.option("-o", "--output", type=click.Path(dir_okay=False), help="YAML file to write instead of printing."),
+        click.option("--recording", type=click.Path(dir_okay=False), help="Evaluate this recording, drive nothing."),
+        click.option("--machine", type=click.Path(dir_okay=False), help="Machine file; a recording has its own."),
+        click.argument("axis"),
+    ):
+        function = option(function)
+    return function
+
+
+def require_source(options: dict[str, Any]) -> None:
+    """Raises UsageError unless there is something to identify, and only once."""
+    if options["machine"] is None and options["recording"] is None:
+        raise click.UsageError("--machine (drives the axis offline) or --recording is needed.")
+    if options["recording"] is not None and options["record"] is not None:
+        raise click.UsageError("--record and --recording exclude each other: a recording is evaluated without a run.")
+
+
+@main.group("identify")
+def identify_group() -> None:
+    """Find out what an axis is: friction table, drive time constant, position controller gain."""
+
+
+@identify_group.command("friction")
+@identify_options
+@click.option("--velocity", "velocities", type=float, multiple=True, help="Drive these velocities (mm/s, deg/s) only.")
+def identify_friction_command(**options: Any) -> None:
+    """Identify the friction of AXIS: drive constant velocities both ways, read the torque, write the table as YAML."""
+    from cnc_ptp.commands.identify import identify_friction
+
+    require_source(options)
+    sys.exit(identify_friction(**options))
+
+
+@identify_group.command("dynamics")
+@identify_options
+def identify_dynamics_command(**options: Any) -> None:
+    """Identify the drive of AXIS: time constant, dead time, inertia; propose Kv and feedforward as YAML."""
+    from cnc_ptp.commands.identify import identify_dynamics
+
+    require_source(options)
+    sys.exit(identify_dynamics(**options))
+
+
 def _entry(command: click.Command) -> Callable[[], Any]:
     """A command of its own, so that `ros2 run cnc_ptp simulate ...` serves the same."""
 
@@ -125,6 +172,7 @@ check = _entry(check_command)
 replay = _entry(replay_command)
 report = _entry(report_command)
 params = _entry(params_command)
+identify = _entry(identify_group)
 
 if __name__ == "__main__":
     main()

@@ -1,0 +1,145 @@
+"""What an identification works on: an axis of a machine file, and its motion from a recording or a run of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cnc_ptp.commands.trial_run import Trial, run_trial
+from cnc_ptp.commissioning.excitation import PAUSE, Motion, Room
+from cnc_ptp.commissioning.faults import NOT_RECORDED, UNKNOWN_AXIS
+from cnc_ptp.commissioning.trace import AxisTrace
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, load_machine
+from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.recording.reader import AXIS_STATE, Recorded, read_recording
+
+FIELDS = (
+    "set_velocity",
+    "actual_position",
+    "actual_velocity",
+    "command_velocity",
+    "additive_velocity",
+    "actual_torque",
+)
+NO_MACHINE = 27040
+MONITORED = (1, 2, 4)
+"""P-AXIS-00172: kinds of following error monitoring."""
+LARGEST_LAG = 0.75
+"""Part of the permitted following error (P-AXIS-00168) that a trial may use."""
+
+
+@dataclass(frozen=True)
+class AxisData:
+    """An axis of a machine; `text` of its file, `recorded` where a recording is to be evaluated."""
+
+    machine: MachineParameters
+    text: str
+    axis: AxisParameters
+    recorded: Recorded | None
+
+    @property
+    def raw(self) -> ParameterSet:
+        """All parameters of the axis in list units."""
+        return self.machine.raw(self.axis.name)
+
+    @property
+    def gear(self) -> int:
+        """Index of the gear record in use."""
+        return int(self.raw.number("P-AXIS-00079")) - 1
+
+    @property
+    def kv(self) -> float:
+        """Gain of the position controller, 1/s."""
+        return self.axis.control.kv
+
+    @property
+    def unit(self) -> str:
+        return "deg" if self.axis.rotary else "mm"
+
+    @property
+    def effort(self) -> str:
+        """Unit of torque: Nm at the motor, N on a linear axis without feed constant."""
+        return "Nm" if self.axis.rotary or uses_feed_constant(self.raw) else "N"
+
+    @property
+    def room(self) -> Room:
+        """Where and how fast the axis may be moved for a trial: the lag v/Kv stays well below what is monitored."""
+        axis, monitoring = self.axis, self.axis.control.monitoring
+        velocity = min(axis.max_velocity, axis.reference_velocity)
+        if monitoring.kind in MONITORED:
+            velocity = min(velocity, LARGEST_LAG * monitoring.moving_limit * self.kv)
+        return Room(
+            axis.name,
+            self.unit,
+            axis.start_position,
+            axis.soft_limit_negative,
+            axis.soft_limit_positive,
+            velocity,
+            axis.acceleration,
+            axis.deceleration,
+            axis.jerk,
+            axis.control.plant.encoder_increment,
+        )
+
+
+def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData:
+    """The axis; the machine file of a recording is used where no other is given.
+
+    Raises CncError 27001, 27002, 27040, those of reading the machine file and the recording.
+    """
+    recorded = read_recording(recording) if recording is not None else None
+    if machine is not None:
+        text, file = read_file("machine file", machine), machine
+    elif recorded is not None and recorded.machine_yaml:
+        text, file = recorded.machine_yaml, f"{recording}:machine.yaml"
+    else:
+        raise CncError(NO_MACHINE, f"recording {recording} holds no machine file; nothing was made, give --machine")
+    parameters = load_machine(text, file)
+    if axis not in parameters.axes:
+        kind = "is a spindle, not an axis" if axis in parameters.spindles else "is not in the machine"
+        known = ", ".join(parameters.axes)
+        raise CncError(UNKNOWN_AXIS, f"axis {axis} {kind} {file}; nothing was started. Axes: {known}")
+    return AxisData(parameters, text, parameters.axes[axis], recorded)
+
+
+def recorded_trace(axis: str, recorded: Recorded) -> AxisTrace:
+    """The axis in a recording. Raises CncError 27002 where it is not recorded."""
+    states = recorded.of_type(AXIS_STATE)
+    if axis not in states:
+        known = ", ".join(states) or "none"
+        raise CncError(
+            NOT_RECORDED,
+            f"recording {recorded.path} holds no states of axis {axis}; nothing was made. Axes in it: {known}",
+        )
+    return AxisTrace.of_rows(axis, recorded.cycle_time_ns * 1e-9, states[axis])
+
+
+def drive(data: AxisData, motions: Sequence[Motion], *, label: str, record: str | None) -> tuple[Trial, AxisTrace]:
+    """Runs the motions offline, friction compensation off."""
+    name = data.axis.name
+    entries = []
+    if not data.axis.powered_at_start:
+        entries.append(Entry(0.0, Command(name, "power", {"on": True})))
+    if data.axis.control.friction.permitted:
+        entries.append(Entry(0.0, Command(name, "set_friction_compensation", {"on": False})))
+    entries += [
+        Entry(motion.at, Command(name, "move_relative", {"distance": motion.distance, "velocity": motion.velocity}))
+        for motion in motions
+    ]
+    trial = run_trial(
+        data.machine,
+        entries,
+        fields={name: FIELDS},
+        seconds=motions[-1].at + motions[-1].duration + PAUSE,
+        label=label,
+        record=record,
+        machine_text=data.text,
+    )
+    columns = {**trial.columns[name], "cycle": trial.columns[name]["cycle"].astype(np.int64)}
+    return trial, AxisTrace.of_rows(name, data.machine.cycle_time_us * 1e-6, columns)

@@ -1,0 +1,81 @@
+"""What `cnc_ptp identify friction` tells: a table for people, and the lines of the machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from cnc_ptp.commands.axis_data import AxisData
+from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
+from cnc_ptp.commissioning.friction_table import MODE, FrictionTable, Scaling
+
+LARGE_SCATTER = 0.05
+"""Scatter over friction, above which a point is doubtful."""
+
+
+def scaling_of(data: AxisData) -> Scaling:
+    """How the drive counts torque (P-AXIS-00325, 00326, 00392)."""
+    numbers = (float(data.raw.number(number)) for number in ("P-AXIS-00325", "P-AXIS-00326", "P-AXIS-00392"))
+    return Scaling(*numbers)
+
+
+def max_points(data: AxisData) -> int:
+    """P-COMP-00062; 0 means 20."""
+    return int(data.raw.number("P-COMP-00062")) or 20
+
+
+def curve_lines(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
+    """The points as a table of text."""
+    way, effort = data.unit, data.effort
+    efforts = (f"M(+v) {effort}", f"M(-v) {effort}", f"friction {effort}", "scatter", f"load {effort}")
+    heads = (f"v {way}/s", *efforts, "time s")
+    yield "".join(f"{head:>13}" for head in heads)
+    for point in curve.points:
+        values = (point.positive, point.negative, point.friction, point.scatter, point.load)
+        yield f"{point.speed:13.4g}" + "".join(f"{value:13.4f}" for value in values) + f"{point.seconds:13.2f}"
+    yield from _remarks(data, curve)
+
+
+def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
+    if curve.one_way:
+        yield f"left out, driven in one direction only: {_speeds(curve.one_way)} {data.unit}/s"
+    if curve.uneven:
+        yield f"left out, uneven motion (stick-slip, or not settled): {_speeds(curve.uneven)} {data.unit}/s"
+    doubtful = [point.speed for point in curve.points if point.scatter > LARGE_SCATTER * abs(point.friction)]
+    if doubtful:
+        yield f"doubtful, scatter above 5 % of the friction: {_speeds(doubtful)} {data.unit}/s"
+
+
+def _speeds(values: Sequence[float]) -> str:
+    return ", ".join(f"{value:.4g}" for value in values)
+
+
+def friction_yaml(data: AxisData, table: FrictionTable, source: str) -> str:
+    """The lines to paste into the machine file; what the table does not say stays as the machine has it."""
+    raw, effort = data.raw, data.effort
+    scaling = scaling_of(data)
+    way = "0.001 deg/s" if data.axis.rotary else "µm/s"
+    digits = f"{scaling.numerator:g}/{scaling.denominator:g} digits are {scaling.reference:g} {effort}"
+    lines = [
+        f"# Friction of axis {data.axis.name}, {source}.",
+        "# Replaces lr_param.frict_comp and frict_comp of the axis. Behind each entry: velocity, mean of both directions,",
+        f"# scatter. in: {way}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
+        f"/{data.axis.name}:",
+        "  ros__parameters:",
+        "    lr_param: {frict_comp: 1}",
+        "    frict_comp:",
+        f"      mode: {MODE}",
+        f"      max_points: {max_points(data)}",
+        f"      table_entries: {len(table.entries)}",
+        f"      position_delay: {raw.number('P-COMP-00043')}  # as it was",
+        f"      reversal_lookahead: {raw.number('P-COMP-00044')}  # as it was",
+        f"      delay_cycles: {raw.number('P-COMP-00058')}  # as it was",
+        f"      scaling_factor: {table.scaling_factor}",
+        "      table:",
+    ]
+    for index, entry in enumerate(table.entries):
+        lines.append(f'        "{index}": {{in: {entry.velocity}, out: {entry.current}}}  # {_told(data, entry.point)}')
+    return "\n".join([*lines, ""])
+
+
+def _told(data: AxisData, point: FrictionPoint) -> str:
+    return f"{point.speed:.4g} {data.unit}/s: {point.friction:.4g} {data.effort} ± {point.scatter:.2g}"

@@ -1,0 +1,131 @@
+"""`cnc_ptp identify friction` and `identify dynamics`: what an axis is, from a run of its own or from a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Console
+
+from cnc_ptp.commands.axis_data import AxisData, drive, open_axis, recorded_trace
+from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.dynamics_report import dynamics_yaml, found_lines
+from cnc_ptp.commands.friction_report import curve_lines, friction_yaml, max_points, scaling_of
+from cnc_ptp.commands.output_file import check_output, write_output
+from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
+from cnc_ptp.commissioning.dynamics import fit_drive
+from cnc_ptp.commissioning.excitation import Motion, check_speeds, forth_and_back, highest_velocity, speed_ladder
+from cnc_ptp.commissioning.friction import friction_curve
+from cnc_ptp.commissioning.friction_table import friction_table
+from cnc_ptp.commissioning.gain import propose_gain
+from cnc_ptp.commissioning.inertia import fit_inertia
+from cnc_ptp.commissioning.trace import AxisTrace
+
+SETTLING_LAGS = 10.0
+"""Time constants 1/Kv of the position loop that a motion settles …"""
+SETTLING_LEAST = 0.2
+"""… and seconds more, in which the drive overcomes the friction."""
+MEASURED = 0.5
+"""Seconds at constant velocity that are measured."""
+DYNAMIC_SPEEDS = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+"""Parts of the highest velocity: ramps of different length."""
+DYNAMIC_STEADY = 0.05
+
+
+def identify_friction(
+    axis: str,
+    machine: str | None,
+    recording: str | None,
+    output: str | None,
+    record: str | None,
+    velocities: Sequence[float],
+) -> int:
+    """Writes the friction table. Status 1 when the run failed."""
+    data = open_axis(axis, machine, recording)
+    check_files(output, record, machine, recording)
+    settling = SETTLING_LAGS / data.kv + SETTLING_LEAST
+    steady = settling + MEASURED
+    if data.recorded is not None:
+        trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
+    else:
+        speeds = check_speeds(data.room, velocities, steady) if velocities else speed_ladder(data.room, steady)
+        motions = forth_and_back(data.room, speeds, steady=steady, settling=settling)
+        driven = driven_trace(data, motions, record)
+        if driven is None:
+            return RUN_FAILED
+        trace, source = driven, f"from {len(motions)} motions in a run of {machine}"
+    curve = friction_curve(trace, settling=settling)
+    table = friction_table(curve, scaling_of(data), max_points=max_points(data))
+    console = Console(highlight=False, soft_wrap=True)
+    for line in curve_lines(data, curve):
+        console.print(line, markup=False)
+    if data.recorded is not None:
+        for line in coverage_lines(data, [point.speed for point in curve.points], steady, settling):
+            console.print(line, markup=False)
+    if table.dropped:
+        kept = f"{len(table.entries)} of {len(curve.points)} points"
+        console.print(f"{kept} are in the table (P-COMP-00062); between them the curve is straight")
+    deliver(console, output, friction_yaml(data, table, source))
+    return 0
+
+
+def identify_dynamics(
+    axis: str, machine: str | None, recording: str | None, output: str | None, record: str | None
+) -> int:
+    """Writes Ta, inertia and a proposal for Kv. Status 1 when the run failed."""
+    data = open_axis(axis, machine, recording)
+    check_files(output, record, machine, recording)
+    if data.recorded is not None:
+        trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
+    else:
+        room = data.room
+        speed_ladder(room, DYNAMIC_STEADY)  # there must be room to move
+        highest = highest_velocity(room, DYNAMIC_STEADY)
+        speeds = [part * highest for part in DYNAMIC_SPEEDS]
+        motions = forth_and_back(room, speeds, steady=DYNAMIC_STEADY, settling=SETTLING_LEAST)
+        driven = driven_trace(data, motions, record)
+        if driven is None:
+            return RUN_FAILED
+        trace, source = driven, f"from {len(motions)} motions in a run of {machine}"
+    fit = fit_drive(trace)
+    gain, inertia = propose_gain(fit), fit_inertia(trace)
+    console = Console(highlight=False, soft_wrap=True)
+    for line in found_lines(data, fit, gain, inertia):
+        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    deliver(console, output, dynamics_yaml(data, fit, gain, inertia, source))
+    return 0
+
+
+def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:
+    """Raises CncError 27030 where something would be overwritten."""
+    check_output(output, machine_file=machine, recording=recording)
+    check_output(record, machine_file=machine, recording=recording)
+
+
+def driven_trace(data: AxisData, motions: Sequence[Motion], record: str | None) -> AxisTrace | None:
+    """The trace of a run, None when it failed (told on standard error)."""
+    trial, trace = drive(data, motions, label=f"axis {data.axis.name}", record=record)
+    if trial.failed:
+        trial.print_faults()
+        return None
+    return trace
+
+
+def coverage_lines(data: AxisData, found: Sequence[float], steady: float, settling: float) -> Iterator[str]:
+    """Which speeds a recording lacks, with a scenario that drives them."""
+    missing = missing_speeds(speed_ladder(data.room, steady), found)
+    if not missing:
+        yield "the speeds of the recording cover the axis"
+        return
+    shown = ", ".join(f"{speed:g}" for speed in missing)
+    yield f"missing speeds: {shown} {data.unit}/s; this scenario drives them:"
+    yield from scenario_lines(data.room, forth_and_back(data.room, missing, steady=steady, settling=settling))
+
+
+def deliver(console: Console, output: str | None, text: str) -> None:
+    """Writes the lines for the machine file, or prints them."""
+    if output is None:
+        print()
+        print(text, end="")
+        return
+    write_output(output, text)
+    console.print(f"{output}: to be pasted into the machine file", markup=False)

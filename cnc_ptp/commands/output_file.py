@@ -1,0 +1,29 @@
+"""Files that a command makes: they must not overwrite what it is given, and it is told when they cannot be written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cnc_ptp.commissioning.faults import BAD_OUTPUT
+from cnc_ptp.errors import CncError
+
+
+def check_output(output: str | None, **inputs: str | None) -> None:
+    """Raises CncError 27030 when `output` is one of the inputs, each given by what it is: machine_file="…"."""
+    if output is None:
+        return
+    if not Path(output).absolute().parent.is_dir():
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist; nothing was started")
+    for what, path in inputs.items():
+        if path is not None and Path(output).exists() and Path(path).exists() and Path(output).samefile(path):
+            name = what.replace("_", " ")
+            raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}; nothing was started")
+
+
+def write_output(output: str, content: str | bytes) -> None:
+    """Writes a file. Raises CncError 27030."""
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        Path(output).write_bytes(data)
+    except OSError as error:
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; the result above is all") from None
