@@ -29,10 +29,11 @@ class Panel:
 
 @dataclass(frozen=True, slots=True)
 class UnitKind:
-    """A kind of unit: its columns, the one that says whether it moves, its panels, and those drawn if none is asked."""
+    """A kind of unit: its columns, those that say whether it moves and lags, its panels, and the usual ones of them."""
 
     columns: tuple[str, ...]
     motion: str
+    lag: str
     panels: Mapping[str, Panel]
     usual: tuple[str, ...]
 
@@ -65,8 +66,15 @@ UNIT_KINDS = {
     "axis": UnitKind(
         columns(AxisBlock, "master", "target_velocity", "couples_actual"),
         "set_velocity",
+        "following_error",
         AXIS,
         ("position", "velocity", "acceleration", "following error"),
     ),
-    "spindle": UnitKind(columns(SpindleBlock), "set_speed_rpm", SPINDLE, ("speed", "acceleration", "following error")),
+    "spindle": UnitKind(
+        columns(SpindleBlock),
+        "set_speed_rpm",
+        "following_error_deg",
+        SPINDLE,
+        ("speed", "acceleration", "following error"),
+    ),
 }

@@ -34,6 +34,8 @@ BANDS = {StatusBit.COMPENSATING: "compensating", StatusBit.EXT_SETPOINT: "extern
 """What is tinted, by bits of the status."""
 FINE = 0.1
 """mm; what stays below is shown in µm."""
+NEGLIGIBLE = 0.01
+"""Of the largest lag; the rest is not waited for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +82,18 @@ def chosen_panels(figure: FigureScenario, run: FigureRun) -> Iterator[tuple[str,
 
 
 def shown_cycles(run: FigureRun) -> int:
-    """How many cycles are shown: until everything stands and all is commanded, and a little longer."""
+    """How many cycles are shown: until everything stands and all is commanded, and a little longer, lags included."""
     moving = [np.flatnonzero(run.motion(unit)) for unit in run.columns]
     events = [int(cycles[-1]) for cycles in moving if len(cycles)]
     events += [round(marker.time / run.cycle_time) for marker in run.markers]
-    return min(run.cycles, round(max(events, default=run.cycles) * 1.04) + 1)
+    settled = max(last_above(run.following_error(unit), NEGLIGIBLE) for unit in run.columns)
+    return min(run.cycles, max(round(max(events, default=run.cycles) * 1.04), settled) + 1)
+
+
+def last_above(values: Column, part: float) -> int:
+    """The last cycle in which a value is above a part of the largest one."""
+    sizes = np.abs(values)
+    return int(np.flatnonzero(sizes >= part * sizes.max())[-1])
 
 
 # commands

@@ -84,6 +84,9 @@ class FigureRun:
         """What is 0 while the unit stands."""
         return self.columns[unit][UNIT_KINDS[self.units[unit].kind].motion]
 
+    def following_error(self, unit: str) -> Column:
+        return self.columns[unit][UNIT_KINDS[self.units[unit].kind].lag]
+
 
 def run_figure(figure: FigureScenario) -> FigureRun:
     """Runs until all axes stand. Raises FigureError where an input is wrong, a command refused or a fault occurs."""
