@@ -157,6 +157,31 @@ def identify_dynamics_command(**options: Any) -> None:
     sys.exit(identify_dynamics(**options))
 
 
+@main.command("circle")
+@click.argument("machine", type=click.Path(dir_okay=False))
+@click.option("--radius", type=float, required=True, help="mm")
+@click.option("--feed", type=float, required=True, help="mm/min")
+@click.option("--plane", default="XY", show_default=True, help="XY, ZX or YZ.")
+@click.option("--centre", type=float, nargs=2, help="Centre in the plane, mm; without it where the axes stand.")
+@click.option("--direction", type=click.Choice(["both", "ccw", "cw"]), default="both", show_default=True)
+@click.option("--feedforward/--no-feedforward", default=False, help="G135 (off without it, as after a program start).")
+@click.option("--friction/--no-friction", default=None, help="Friction compensation (without it as the machine is).")
+@click.option(
+    "--compare",
+    type=click.Choice(["feedforward", "friction", "both"]),
+    help="Run without and with it, and draw all in one picture.",
+)
+@click.option(
+    "-o", "--output", "outputs", type=click.Path(dir_okay=False), multiple=True, help="Picture: .svg, .png or .html."
+)
+@click.option("--magnification", type=float, help="Of the deviations in the picture; without it as they fit.")
+def circle_command(**options: Any) -> None:
+    """Circle test of a machine, run offline: circular deviation (ISO 230-4), quadrant peaks, polar plot."""
+    from cnc_ptp.commands.circle import circle
+
+    sys.exit(circle(**options))
+
+
 def _entry(command: click.Command) -> Callable[[], Any]:
     """A command of its own, so that `ros2 run cnc_ptp simulate ...` serves the same."""
 
@@ -173,6 +198,7 @@ replay = _entry(replay_command)
 report = _entry(report_command)
 params = _entry(params_command)
 identify = _entry(identify_group)
+circle = _entry(circle_command)
 
 if __name__ == "__main__":
     main()

@@ -57,8 +57,8 @@ def friction_yaml(data: AxisData, table: FrictionTable, source: str) -> str:
     digits = f"{scaling.numerator:g}/{scaling.denominator:g} digits are {scaling.reference:g} {effort}"
     lines = [
         f"# Friction of axis {data.axis.name}, {source}.",
-        "# Replaces lr_param.frict_comp and frict_comp of the axis. Behind each entry: velocity, mean of both directions,",
-        f"# scatter. in: {way}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
+        "# Replaces lr_param.frict_comp and frict_comp. Behind each entry: velocity, mean of both directions, scatter.",
+        f"# in: {way}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
         f"/{data.axis.name}:",
         "  ros__parameters:",
         "    lr_param: {frict_comp: 1}",

@@ -14,6 +14,7 @@ from cnc_ptp.commands.output_file import check_output, write_output
 from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
 from cnc_ptp.commissioning.dynamics import fit_drive
 from cnc_ptp.commissioning.excitation import Motion, check_speeds, forth_and_back, highest_velocity, speed_ladder
+from cnc_ptp.commissioning.faults import NO_COMMAND, refusal
 from cnc_ptp.commissioning.friction import friction_curve
 from cnc_ptp.commissioning.friction_table import friction_table
 from cnc_ptp.commissioning.gain import propose_gain
@@ -29,6 +30,11 @@ MEASURED = 0.5
 DYNAMIC_SPEEDS = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Parts of the highest velocity: ramps of different length."""
 DYNAMIC_STEADY = 0.05
+OWN_POSITION_LOOP = {
+    "none": "is virtual, there is no drive to identify (P-AXIS-00020)",
+    "position": "its drive closes the position loop itself and is commanded positions (P-AXIS-00020)",
+    "lag": "its drive closes the position loop itself and is commanded the following error (P-AXIS-00020)",
+}
 
 
 def identify_friction(
@@ -74,6 +80,7 @@ def identify_dynamics(
     """Writes Ta, inertia and a proposal for Kv. Status 1 when the run failed."""
     data = open_axis(axis, machine, recording)
     check_files(output, record, machine, recording)
+    require_velocity_command(data)
     if data.recorded is not None:
         trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
     else:
@@ -93,6 +100,13 @@ def identify_dynamics(
         console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
     deliver(console, output, dynamics_yaml(data, fit, gain, inertia, source))
     return 0
+
+
+def require_velocity_command(data: AxisData) -> None:
+    """Raises CncError 27014 where the drive is not commanded a velocity: then it cannot be told from the motion."""
+    interface = data.axis.control.drive.interface
+    if interface in OWN_POSITION_LOOP:
+        raise refusal(NO_COMMAND, data.axis.name, f"{OWN_POSITION_LOOP[interface]}; nothing was started")
 
 
 def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:

@@ -26,6 +26,8 @@ SHORTEST = 0.1
 SLOWEST_POLE = 0.9999
 POLES = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.94, 0.98, SLOWEST_POLE)
 """Of the first search."""
+HARDLY_WORSE = 1.2
+"""Ratio of misfits below which a dead time is not worth being assumed."""
 NEGLIGIBLE = 1e-12
 """What is left of a start velocity after so many cycles that it does not count."""
 AFTERWARDS = 0.1
@@ -75,7 +77,7 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
     Raises CncError 27003 too short, 27004 no motion, 27012 velocity never changes, 27014 no command, 27013 no fit.
     """
     pieces = _pieces(trace)
-    error, pole, dead = min((_fit(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)), key=lambda found: found[0])
+    error, pole, dead = _best(pieces)
     time_constant = 0.0 if pole <= 1e-9 else -trace.cycle_time / math.log(pole)
     actual = np.concatenate([piece.actual for piece in pieces])
     misfit = math.sqrt(error) / float(np.linalg.norm(actual - actual.mean()))
@@ -105,7 +107,7 @@ def _pieces(trace: AxisTrace) -> list[_Piece]:
         raise refusal(
             NO_COMMAND,
             trace.axis,
-            "the recording holds no command velocity, as the drive closes the position loop itself; nothing was made",
+            "the recording holds no command velocity; nothing was made",
         )
     if float(np.ptp(trace.actual_velocity)) < LEAST_CHANGE * float(np.max(np.abs(trace.actual_velocity))):
         raise refusal(
@@ -143,6 +145,13 @@ def _first_cycles(spans: Sequence[Span]) -> list[Span]:
         if total >= MOST_CYCLES:
             break
     return kept
+
+
+def _best(pieces: Sequence[_Piece]) -> tuple[float, float, int]:
+    """The fit with the shortest dead time that is hardly worse than the best one: lag and dead time look alike."""
+    fits = [_fit(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)]
+    least = min(fit[0] for fit in fits)
+    return next(fit for fit in fits if fit[0] <= HARDLY_WORSE**2 * least)
 
 
 def _fit(pieces: Sequence[_Piece], dead: int) -> tuple[float, float, int]:

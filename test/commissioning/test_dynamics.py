@@ -110,8 +110,7 @@ def test_a_cycle_time_of_4_ms():
         ),
         (
             trace_of(set_velocity=ramps(), command_velocity=np.zeros(1000)),
-            "P-ERR-27014 axis x: the recording holds no command velocity, as the drive closes the position loop itself; "
-            "nothing was made",
+            "P-ERR-27014 axis x: the recording holds no command velocity; nothing was made",
         ),
         (
             trace_of(set_velocity=np.full(500, 30.0)),

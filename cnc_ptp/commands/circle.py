@@ -1,0 +1,209 @@
+"""`cnc_ptp circle`: the circle test of a machine, run offline, as table and picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from rich.console import Console
+
+from cnc_ptp.commands.circle_page import circle_page
+from cnc_ptp.commands.circle_picture import circle_picture, require_matplotlib
+from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, circle_lines
+from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.output_file import check_output, write_output
+from cnc_ptp.commands.trial_run import run_trial
+from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_program, find_plane, measured_turn
+from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_OUTPUT, BAD_PLANE, NOTHING_TO_COMPARE
+from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_circle
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.job import check_program, read_file
+from cnc_ptp.machine.program_check import NO_CHANNEL
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.parameters import AxisParameters, MachineParameters, load_machine
+
+DIRECTIONS = {"both": (False, True), "ccw": (False,), "cw": (True,)}
+SUFFIXES = (".svg", ".png", ".html")
+FILE = "circle.nc"
+LARGEST = 1e5
+"""mm and mm/min; beyond it is no circle test."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """The two axes of the plane: nodes, and where the centre is (mm)."""
+
+    channel: str
+    nodes: tuple[str, str]
+    centre: tuple[float, float]
+
+
+def circle(
+    machine: str,
+    radius: float,
+    feed: float,
+    plane: str,
+    centre: tuple[float, float] | None,
+    direction: str,
+    feedforward: bool,
+    friction: bool | None,
+    compare: str | None,
+    outputs: Sequence[str],
+    magnification: float | None,
+) -> int:
+    """Runs the circle test of all variants. Status 1 when a run failed."""
+    check_numbers(radius=radius, feed=feed, magnification=magnification)
+    for output in outputs:
+        check_picture(output, machine)
+    text = read_file("machine file", machine)
+    parameters = load_machine(text, machine)
+    found = find_plane(plane)
+    place = find_place(parameters, found, centre)
+    chosen = variants(feedforward, friction, compare)
+    check_comparison(parameters, place, chosen)
+    programs = [
+        circle_program(
+            found,
+            centre=place.centre,
+            radius=radius,
+            feed=feed,
+            directions=DIRECTIONS[direction],
+            before=variant.blocks(found.axes),
+        )
+        for variant in chosen
+    ]
+    for program in programs:
+        check_program(parameters, program.text, FILE)
+    results = []
+    for variant, program in zip(chosen, programs, strict=True):
+        result = run_variant(parameters, place, program, variant, feed)
+        if result is None:
+            return RUN_FAILED
+        results.append(result)
+    test = CircleTest(found.axes, place.centre, radius, feed, tuple(results))
+    show(test, outputs, magnification)
+    return 0
+
+
+def check_numbers(*, radius: float, feed: float, magnification: float | None) -> None:
+    """Raises CncError 27020 for what is no number of a circle."""
+    for name, value, unit in (("radius", radius, "mm"), ("feed", feed, "mm/min"), ("magnification", magnification, "")):
+        if value is not None and not 0.0 < value <= LARGEST:
+            shown = f"{value:g} {unit}".rstrip()
+            raise CncError(
+                BAD_CIRCLE,
+                f"{name} {shown} is not within 0 … {LARGEST:g}; nothing was started",
+            )
+
+
+def check_picture(output: str, machine: str) -> None:
+    """Raises CncError 27030, 27031 for a picture that cannot be made."""
+    if not output.lower().endswith(SUFFIXES):
+        raise CncError(
+            BAD_OUTPUT, f"{output}: a picture is one of {', '.join(SUFFIXES)} by its ending; nothing was started"
+        )
+    check_output(output, machine_file=machine)
+    if not output.lower().endswith(".html"):
+        require_matplotlib(output)
+
+
+def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, float] | None) -> Place:
+    """The axes of the plane in the first channel; the centre is where they stand unless given.
+
+    Raises CncError 26112 without channel, 27024 where it has not both axes.
+    """
+    if not machine.channels:
+        raise CncError(NO_CHANNEL, "the machine has no channel to run a circle; nothing was started")
+    channel = next(iter(machine.channels.values()))
+    nodes = {axis.name: axis.node for axis in channel.axes}
+    missing = [axis for axis in plane.axes if axis not in nodes]
+    if missing:
+        known = ", ".join(nodes)
+        raise CncError(
+            BAD_PLANE,
+            f"channel {channel.name} has no axis {' and no axis '.join(missing)} for plane {''.join(plane.axes)}; "
+            f"nothing was started. Axes: {known}",
+        )
+    first, second = (machine.axes[nodes[axis]] for axis in plane.axes)
+    for axis in (first, second):
+        if axis.rotary:
+            raise CncError(
+                BAD_PLANE, f"axis {axis.name} is rotary, a circle needs two linear axes; nothing was started"
+            )
+    return Place(channel.name, (first.name, second.name), centre or (first.start_position, second.start_position))
+
+
+def variants(feedforward: bool, friction: bool | None, compare: str | None) -> list[Variant]:
+    """What is run: one variant, or off and on of what is compared."""
+    forwards = (False, True) if compare in ("feedforward", "both") else (feedforward,)
+    frictions: tuple[bool | None, ...] = (False, True) if compare in ("friction", "both") else (friction,)
+    return [Variant(forward, compensation) for compensation in frictions for forward in forwards]
+
+
+def check_comparison(machine: MachineParameters, place: Place, chosen: Sequence[Variant]) -> None:
+    """Raises CncError 27023 where feedforward or friction compensation would be switched on without any effect."""
+    axes = [machine.axes[node] for node in place.nodes]
+    names = ", ".join(axis.name for axis in axes)
+    if any(variant.feedforward for variant in chosen) and not any(map(_feeds_forward, axes)):
+        raise CncError(
+            NOTHING_TO_COMPARE,
+            f"axes {names}: feedforward has no effect, vorsteuer.vorsteuerung (P-AXIS-00223) is NONE; nothing "
+            "was started",
+        )
+    if any(variant.friction for variant in chosen) and not any(axis.control.friction.active for axis in axes):
+        raise CncError(
+            NOTHING_TO_COMPARE,
+            f"axes {names}: friction compensation has no effect, it needs lr_param.frict_comp (P-AXIS-00522) and a "
+            "table; nothing was started, see cnc_ptp identify friction",
+        )
+
+
+def _feeds_forward(axis: AxisParameters) -> bool:
+    return axis.control.feedforward.mode != 0
+
+
+def run_variant(
+    machine: MachineParameters, place: Place, program: CircleProgram, variant: Variant, feed: float
+) -> VariantResult | None:
+    """The result of one run, None when it failed (told on standard error)."""
+    job = [
+        Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text})),
+        Entry(0.0, Command(place.channel, "start", {})),
+    ]
+    turn_time = 2.0 * math.pi * program.radius / (feed / 60.0)
+    trial = run_trial(
+        machine,
+        job,
+        fields={place.channel: ("line", "path_velocity"), **dict.fromkeys(place.nodes, ("actual_position",))},
+        seconds=len(program.turns) * (turn_time + 1.0) + 1.0,
+        label=variant.name,
+    )
+    if trial.failed:
+        trial.print_faults()
+        return None
+    points = np.column_stack([trial.columns[node]["actual_position"] for node in place.nodes])
+    line = trial.columns[place.channel]["line"].astype(np.int64)
+    path_feed = trial.columns[place.channel]["path_velocity"] * 60.0
+    turns, circles, slowest = [], [], math.inf
+    for clockwise in dict.fromkeys(turn.clockwise for turn in program.turns):
+        chosen = measured_turn(program, clockwise, line, points)
+        turns.append(points[chosen])
+        slowest = min(slowest, float(path_feed[chosen].min()))
+        circles.append(evaluate_circle(points[chosen], radius=program.radius, clockwise=clockwise))
+    return VariantResult(variant, tuple(circles), bidirectional_deviation(turns), slowest)
+
+
+def show(test: CircleTest, outputs: Sequence[str], magnification: float | None) -> None:
+    """Prints the table and writes the pictures."""
+    console = Console(highlight=False, soft_wrap=True)
+    for line in circle_lines(test):
+        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    for output in outputs:
+        if output.lower().endswith(".html"):
+            write_output(output, circle_page(test, magnification))
+        else:
+            write_output(output, circle_picture(test, magnification, output.rsplit(".", 1)[-1].lower()))
+        console.print(f"{output} written", markup=False)
