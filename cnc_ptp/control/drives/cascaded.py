@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign, exp
+from math import copysign, exp, inf
 
 from cnc_ptp.control.drives.transitions import transition
 from cnc_ptp.parameters.control_view import PlantParameters
@@ -11,8 +11,10 @@ FINEST = 6
 """A cycle is halved at most so often where friction or the torque limit changes its kind."""
 UNEVEN = 0.02
 """A step may carry at most this part of the Stribeck friction away; a longer one is halved."""
+BEND = 0.1
+"""Stribeck velocities by which the velocity may leave the tangent of its beginning in a step near zero."""
 FAR = 6.0
-"""Stribeck velocities above which the Stribeck part is none (e^-36)."""
+"""Stribeck velocities above which the Stribeck part is none (e^-36) and zero is not near."""
 NEGLIGIBLE = 1e-12
 
 
@@ -32,16 +34,18 @@ class CascadedDrive:
 
     __slots__ = (
         "_additive_velocity",
-        "_backlash",
+        "_bend",
         "_coulomb",
         "_direction",
         "_dry",
-        "_encoder_at_load",
+        "_edge",
         "_encoder_increment",
         "_far",
         "_filtered",
         "_gain",
+        "_half_play",
         "_integral",
+        "_integral_rate",
         "_lagging",
         "_limit",
         "_load_position",
@@ -50,6 +54,7 @@ class CascadedDrive:
         "_per_acceleration",
         "_per_stribeck_velocity",
         "_setpoint",
+        "_shows_load",
         "_static",
         "_stribeck",
         "_transitions",
@@ -81,7 +86,9 @@ class CascadedDrive:
         self._gain = gain
         self._filtered = plant.time_constant > 0.0
         self._lagging = plant.current_time_constant > 0.0
+        self._integral_rate = gain / plant.velocity_integral_time if plant.velocity_integral_time > 0.0 else 0.0
         self._limit = plant.torque_limit / plant.torque_per_acceleration
+        self._edge = self._limit * (1.0 - 1e-9)
         self._transitions = tuple(
             transition(plant, gain=gain, duration=cycle_time / 2**level) for level in range(FINEST + 1)
         )
@@ -92,12 +99,12 @@ class CascadedDrive:
         self._coulomb, self._static = plant.coulomb / k, plant.static / k
         self._stribeck = self._static - self._coulomb
         self._dry = self._static > 0.0
-        self._uneven = UNEVEN * self._stribeck
+        self._uneven, self._bend = UNEVEN * self._stribeck, BEND * plant.stribeck_velocity
         self._per_stribeck_velocity = 1.0 / plant.stribeck_velocity
-        self._far = FAR * plant.stribeck_velocity if self._stribeck else 0.0
+        self._far = FAR * plant.stribeck_velocity if self._dry else -inf
         self._viscous = plant.viscous / k
-        self._backlash = plant.backlash / 2.0
-        self._encoder_at_load = plant.encoder_at_load
+        self._half_play = plant.backlash / 2.0
+        self._shows_load = plant.encoder_at_load and plant.backlash > 0.0
         self._encoder_increment = plant.encoder_increment
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
@@ -106,8 +113,8 @@ class CascadedDrive:
         The additive values act behind the filter of the command.
         """
         additive = additive_torque / self._per_acceleration
-        self._wanted = command + additive_velocity
-        self._setpoint = self._setpoint + additive_velocity if self._filtered else self._wanted
+        self._wanted = wanted = command + additive_velocity
+        self._setpoint = self._setpoint + additive_velocity if self._filtered else wanted
         self._integral += additive
         self._advance(0)
         self._setpoint -= additive_velocity
@@ -123,9 +130,21 @@ class CascadedDrive:
             self.velocity = self._setpoint = self._integral = self._motor = 0.0
 
     def _show(self) -> None:
-        position = self._load_position if self._encoder_at_load else self._motor_position
+        if self._shows_load:
+            self._take_load()
+            position = self._load_position
+        else:
+            position = self._motor_position
         increment = self._encoder_increment
         self.position = round(position / increment) * increment if increment else position
+
+    def _take_load(self) -> None:
+        """The motor takes the load along where the play is used up."""
+        motor, play = self._motor_position, self._half_play
+        if self._load_position < motor - play:
+            self._load_position = motor - play
+        elif self._load_position > motor + play:
+            self._load_position = motor + play
 
     def _advance(self, level: int) -> None:
         """A step of 1/2^level cycle, in halves where it must be."""
@@ -136,62 +155,73 @@ class CascadedDrive:
 
     def _slide(self, level: int) -> bool:
         """One step in motion; False, and nothing has happened, when its halves have to be looked at."""
-        duration, decay, sliding, held, _, _ = self._transitions[level]
-        limit, gain, direction = self._limit, self._gain, self._direction
-        v = self.velocity
-        integral, motor = self._integral, self._motor
-        r = self._wanted - v
-        p = self._setpoint - v
-        dry = self._dry_friction(v)
-        friction = direction * dry + self._viscous * v
+        duration, decay, slide, slide_lag, _, _ = self._transitions[level]
+        limit, edge, gain, far, direction = self._limit, self._edge, self._gain, self._far, self._direction
+        v, integral, motor = self.velocity, self._integral, self._motor
+        p, r = self._setpoint - v, self._wanted - v
         asked = gain * p + integral
-        side = self._limited(asked)
-        if not side:
-            ip, ir, ii, im, jf, mp, mr, mi, mm, mf, vp, vr, vi, vm, vf, xp, xr, xi, xm, xf = sliding
-            new_integral = integral + ip * p + ir * r + ii * integral + im * motor + jf * friction
-            new_motor = motor + mp * p + mr * r + mi * integral + mm * motor + mf * friction
-            y = vp * p + vr * r + vi * integral + vm * motor + vf * friction
-            x = xp * p + xr * r + xi * integral + xm * motor + xf * friction
-        else:
-            mi, mm, mf, vi, vm, vf, xi, xm, xf = held
-            asked = side * limit
-            jf = 0.0
-            new_integral = integral
-            new_motor = motor + mi * asked + mm * motor + mf * friction
-            y = vi * asked + vm * motor + vf * friction
-            x = xi * asked + xm * motor + xf * friction
-        new_v = v + y
-        crosses = self._dry and new_v * direction < 0.0
-        if not crosses and self._stribeck and (v * direction < self._far or new_v * direction < self._far):
-            change = self._dry_friction(new_v) - dry
-            if not -self._uneven <= change <= self._uneven and level < FINEST:
+        side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
+        pushed = side * limit if side else integral
+        dry = self._dry_friction(v) if -far < v < far else self._coulomb
+        friction = direction * dry + self._viscous * v
+        ip, ir, ii, jf, vp, vr, vi, vf, xp, xr, xi, xf = slide[side]
+        new_integral = integral + ip * p + ir * r + ii * pushed + jf * friction
+        y = vp * p + vr * r + vi * pushed + vf * friction
+        x = xp * p + xr * r + xi * pushed + xf * friction
+        new_motor = mf = 0.0
+        if self._lagging:
+            mp, mr, mi, mf, mm, im, vm, xm = slide_lag[side]
+            new_motor = motor + mp * p + mr * r + mi * pushed + mf * friction + mm * motor
+            new_integral += im * motor
+            y += vm * motor
+            x += xm * motor
+        crosses = False
+        if v * direction < far or (v + y) * direction < far:
+            start = motor if self._lagging else side * limit if side else asked
+            change = self._friction_change(level, v, y, dry, (start - friction) * duration)
+            if change is None:
                 return False
-            change *= 0.5 * direction
             new_integral += jf * change
             new_motor += mf * change
             y += vf * change
             x += xf * change
-            new_v = v + y
-            crosses = new_v * direction < 0.0
+            crosses = (v + y) * direction < 0.0
+            if crosses and level < FINEST:
+                return False
         new_p = (p - r) * decay + r - y
-        new_asked = gain * new_p + new_integral
-        if level < FINEST and (crosses or self._limited(new_asked) != side):
-            return False
+        if side or not -edge < gain * new_p + new_integral < edge:
+            held = self._integral_at_limit(level, side, p, new_p, new_integral)
+            if held is None:
+                return False
+            new_integral = held
         if not self._lagging:
-            new_motor = limit if new_asked > limit else -limit if new_asked < -limit else new_asked
-        self._setpoint, self._integral, self._motor = new_p + new_v, new_integral, new_motor
+            new_motor = max(-limit, min(limit, gain * new_p + new_integral))
+        self._setpoint, self._integral, self._motor = new_p + v + y, new_integral, new_motor
         if crosses:
-            self._pass_zero(v, new_v, duration)
+            self._pass_zero(v, v + y, duration)
         else:
-            self.velocity = new_v
+            self.velocity = v + y
             self._motor_position += v * duration + x
-        self._take_load()
         return True
+
+    def _friction_change(self, level: int, v: float, y: float, dry: float, tangent: float) -> float | None:
+        """How much the mean friction of a step from v to v + y is above that at v; None when the step is too long.
+
+        `dry` is the friction at v, `tangent` what y would be if the acceleration at v stayed.
+        """
+        direction, new_v = self._direction, v + y
+        change = (self._dry_friction(new_v) if new_v * direction > 0.0 else self._static) - dry
+        if level < FINEST:
+            bend = tangent - y
+            if not (-self._uneven <= change <= self._uneven and -self._bend <= bend <= self._bend):
+                return None
+        return 0.5 * direction * change
 
     def _pass_zero(self, v: float, new_v: float, duration: float) -> None:
         """The velocity has changed its sign in one of the shortest steps: the axis stands, or turns back at once."""
         share = v / (v - new_v)
         self._motor_position += 0.5 * v * share * duration
+        self._take_load()
         if -self._static <= self._motor <= self._static:
             self._direction = self.velocity = 0.0
             return
@@ -203,48 +233,60 @@ class CascadedDrive:
 
     def _stand(self, level: int) -> bool:
         """One step at rest; the axis breaks away at the end of a shortest step."""
-        _, decay, _, _, standing, held = self._transitions[level]
-        limit, gain = self._limit, self._gain
+        _, decay, _, _, stand, stand_lag = self._transitions[level]
+        limit, edge, gain = self._limit, self._edge, self._gain
         w, u, integral, motor = self._setpoint, self._wanted, self._integral, self._motor
         asked = gain * w + integral
-        side = self._limited(asked)
-        if not side:
-            iw, iu, ii, im, mw, mu, mi, mm = standing
-            new_integral = integral + iw * w + iu * u + ii * integral + im * motor
-            new_motor = motor + mw * w + mu * u + mi * integral + mm * motor
-        else:
-            new_integral = integral
-            new_motor = motor + held[0] * side * limit + held[1] * motor
+        side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
+        pushed = side * limit if side else integral
+        iw, iu, ii = stand[side]
+        new_integral = integral + iw * w + iu * u + ii * pushed
+        if self._lagging:
+            mw, mu, mi, mm, im = stand_lag[side]
+            new_integral += im * motor
+            motor += mw * w + mu * u + mi * pushed + mm * motor
         new_w = (w - u) * decay + u
-        new_asked = gain * new_w + new_integral
+        if side or not -edge < gain * new_w + new_integral < edge:
+            held = self._integral_at_limit(level, side, w, new_w, new_integral)
+            if held is None:
+                return False
+            new_integral = held
         if not self._lagging:
-            new_motor = limit if new_asked > limit else -limit if new_asked < -limit else new_asked
-        holds = -self._static <= new_motor <= self._static
-        if level < FINEST and (not holds or self._limited(new_asked) != side):
+            motor = max(-limit, min(limit, gain * new_w + new_integral))
+        holds = -self._static <= motor <= self._static
+        if level < FINEST and not holds:
             return False
-        self._setpoint, self._integral, self._motor = new_w, new_integral, new_motor
+        self._setpoint, self._integral, self._motor = new_w, new_integral, motor
         if not holds:
-            self._direction = copysign(1.0, new_motor)
+            self._direction = copysign(1.0, motor)
         return True
 
-    def _limited(self, asked: float) -> int:
-        return 1 if asked > self._limit else -1 if asked < -self._limit else 0
+    def _integral_at_limit(self, level: int, side: int, p: float, new_p: float, free: float) -> float | None:
+        """The integral after a step that begins at the torque limit `side` or, from 0, ends at one.
+
+        Beyond the limit it stands still, at the limit it grows no further than to hold it. p and new_p are the velocity
+        deviations at begin and end, `free` is the integral without a limit. None when the step has to be halved.
+        """
+        gain, limit, before = self._gain, self._limit, self._integral
+        if not side:
+            if level < FINEST:
+                return None
+            begin, end = gain * p + before, gain * new_p + free
+            return before + (copysign(limit, end) - begin) / (end - begin) * (free - before)
+        missing = limit - side * (gain * new_p + before)
+        if missing <= 0.0:
+            return before
+        rate = side * self._integral_rate * self._transitions[level].duration
+        growth = 0.5 * rate * (p + new_p)
+        leaves = growth < missing or rate * new_p < side * gain * (p - new_p)
+        if leaves and level < FINEST:
+            return None
+        return before + side * max(0.0, min(missing, growth))
 
     def _dry_friction(self, v: float) -> float:
         """Amount of Coulomb and Stribeck friction at a velocity, as acceleration."""
-        far = self._far
-        if -far < v < far:
-            ratio = v * self._per_stribeck_velocity
-            return self._coulomb + self._stribeck * exp(-ratio * ratio)
-        return self._coulomb
-
-    def _take_load(self) -> None:
-        """The motor takes the load along where the play is used up."""
-        motor, play = self._motor_position, self._backlash
-        if self._load_position < motor - play:
-            self._load_position = motor - play
-        elif self._load_position > motor + play:
-            self._load_position = motor + play
+        ratio = v * self._per_stribeck_velocity
+        return self._coulomb + self._stribeck * exp(-ratio * ratio)
 
 
 class TorqueCommandedDrive(CascadedDrive):
