@@ -6,12 +6,15 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
-from figures import picture
+from figures import circle, friction_curve, picture, weights
 from figures.run import FigureRun
 from figures.scenario_head import OVER_TIME, FigureError, FigureScenario
 
 KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     OVER_TIME: picture.draw,
+    "friction_curve": friction_curve.draw,
+    "weights": weights.draw,
+    "circle": circle.draw,
 }
 
 

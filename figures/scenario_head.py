@@ -11,7 +11,7 @@ The head is the block of comment lines at the top of the file, `key: value` each
 Besides there may be
 - `panels: velocity, following error`: these in this order (figures/panels.py) instead of the usual ones,
 - `program: part.nc`: an NC program beside the scenario, which starts with it on the first channel,
-- `kind: circle`: another picture than panels over time (figures/kinds.py),
+- `kind: circle`: another picture than panels over time (figures/kinds.py), with `turns:` (figures/circle.py),
 - `errors: shown`: a figure of faults; without it a fault means that there is no picture.
 
 `axes` may name spindles too. All this stands in the scenario itself so that a figure is one file, read in one go and
@@ -29,8 +29,8 @@ from cnc_ptp.machine.job import read_file
 
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
-PANELS, PROGRAM, KIND, ERRORS, SHOWN = "panels", "program", "kind", "errors", "shown"
-CHOICES = (PANELS, PROGRAM, KIND, ERRORS)
+PANELS, PROGRAM, KIND, TURNS, ERRORS, SHOWN = "panels", "program", "kind", "turns", "errors", "shown"
+CHOICES = (PANELS, PROGRAM, KIND, TURNS, ERRORS)
 OVER_TIME = "time"
 
 
@@ -57,6 +57,7 @@ class FigureScenario:
     panels: tuple[str, ...] = ()
     program: str = ""
     kind: str = OVER_TIME
+    turns: str = ""
 
     @property
     def name(self) -> str:
@@ -106,6 +107,7 @@ def read_head(path: Path) -> FigureScenario:
         names(head.get(PANELS, "")),
         head.get(PROGRAM, ""),
         head.get(KIND, OVER_TIME),
+        head.get(TURNS, ""),
     )
 
 

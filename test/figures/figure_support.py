@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
 from functools import cache
 from math import sqrt
 from pathlib import Path
@@ -13,6 +14,19 @@ from figures.scenario_head import read_head
 
 SCENARIOS = Path(__file__).parents[2] / "examples" / "figures"
 CYCLE_TIME = 0.001
+
+
+def head_and_scenario(folder: Path, head: dict[str, str], scenario: str) -> Path:
+    """A scenario file move.yaml with a head."""
+    file = folder / "move.yaml"
+    file.write_text("".join(f"# {key}: {value}\n" for key, value in head.items()) + scenario, encoding="utf-8")
+    return file
+
+
+def texts_of(svg: str) -> list[str]:
+    """All texts of a picture; fails where it is not well formed."""
+    root = ElementTree.fromstring(svg)
+    return ["".join(text.itertext()) for text in root.iter("{http://www.w3.org/2000/svg}text")]
 
 
 @cache
