@@ -58,7 +58,7 @@ def identify_friction(
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
-        trace, source = driven, f"from {len(motions)} motions in a run of {machine}"
+        trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
     curve = friction_curve(trace, settling=settling)
     table = friction_table(curve, scaling_of(data), max_points=max_points(data))
     console = Console(highlight=False, soft_wrap=True)
@@ -92,7 +92,7 @@ def identify_dynamics(
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
-        trace, source = driven, f"from {len(motions)} motions in a run of {machine}"
+        trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
     fit = fit_drive(trace)
     gain, inertia = propose_gain(fit), fit_inertia(trace)
     console = Console(highlight=False, soft_wrap=True)

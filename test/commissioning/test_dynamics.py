@@ -120,7 +120,7 @@ def test_a_cycle_time_of_4_ms():
         (
             trace_of(set_velocity=ramps(), actual_velocity=np.random.default_rng(1).standard_normal(1000)),
             "P-ERR-27013 axis x: the actual velocity does not follow the command velocity like a first-order lag (misfit "
-            "98 %, at most 20 %); nothing was made, look for errors and the torque limit in the recording",
+            "100 %, at most 20 %); nothing was made, look for errors and the torque limit in the recording",
         ),
     ],
 )

@@ -1,0 +1,265 @@
+"""`cnc_ptp circle`: roundness and quadrant peaks of the simulated mill, pictures, and what is refused."""
+
+import cmath
+import math
+import re
+
+import pytest
+import yaml
+from commands_support import MILL, PTP, call, changed_mill
+
+from cnc_ptp.commands import circle_picture
+
+RADIUS, FEED = 25.0, 2000.0
+NUMBER = r"(-?\d+\.\d\d)"
+ROW = re.compile(
+    rf"^(.*?)\s*\b(ccw|cw)\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}\s+{NUMBER}(?:\s+{NUMBER})?$"
+)
+
+
+def rows(result):
+    """(variant, direction) -> G, F least, F most, four peaks, G(b) where it stands; µm."""
+    table, variant = {}, ""
+    for line in result.stdout.splitlines():
+        if match := ROW.match(line):
+            variant = match[1] or variant
+            table[variant, match[2]] = [float(value) for value in match.groups()[2:] if value is not None]
+    return table
+
+
+@pytest.fixture(scope="module")
+def comparison(tmp_path_factory):
+    """All four variants of the mill with pictures of each kind."""
+    folder = tmp_path_factory.mktemp("circle")
+    pictures = [folder / f"circle.{ending}" for ending in ("svg", "png", "html")]
+    outputs = [word for picture in pictures for word in ("-o", picture)]
+    return call("circle", MILL, "--radius", RADIUS, "--feed", FEED, "--compare", "both", *outputs), pictures
+
+
+NOTHING = "without feedforward, without friction compensation"
+FORWARD = "with feedforward, without friction compensation"
+FRICTION = "without feedforward, with friction compensation"
+ALL = "with feedforward, with friction compensation"
+
+
+def test_all_variants_and_directions_are_told(comparison):
+    result, pictures = comparison
+    assert result.exit_code == 0, result.output
+    assert result.stdout.splitlines()[0] == "Circle test XY, R 25 mm about X 0 Y 0, F 2000 mm/min"
+    assert set(rows(result)) == {(name, way) for name in (NOTHING, FORWARD, FRICTION, ALL) for way in ("ccw", "cw")}
+    assert result.stdout.splitlines()[-3:] == [f"{picture} written" for picture in pictures]
+    assert "warning" not in result.stdout
+
+
+@pytest.mark.parametrize("way", ["ccw", "cw"])
+def test_friction_compensation_makes_quadrant_peaks_5_times_smaller(comparison, way):
+    table = rows(comparison[0])
+    before, after = (max(map(abs, table[name, way][3:7])) for name in (FORWARD, ALL))
+    assert before > 5.0 * after
+    assert min(table[FORWARD, way][3:7]) > 5.0  # each quadrant has its peak, outward
+
+
+@pytest.mark.parametrize("way", ["ccw", "cw"])
+def test_feedforward_makes_the_circle_10_times_rounder(comparison, way):
+    table = rows(comparison[0])
+    assert table[FRICTION, way][0] > 10.0 * table[ALL, way][0]
+
+
+def test_without_friction_the_lag_alone_makes_the_circle_smaller(tmp_path):
+    """F = -R·(1 - |G|) with the frequency response of the sampled loop (held command, Ta, P controller), G = 0.
+
+    P(z) = ((T - L)(z - p) + L(1 - p)) / ((z - 1)(z - p)), G = Kv·P / (1 + Kv·P), z = e^(jwT), w = v / R.
+    """
+    plain = {"simulation": {"model": "FIRST_ORDER"}}
+    result = call("circle", both(tmp_path, plain), "--radius", RADIUS, "--feed", FEED, "--no-friction")
+    pole, z = math.exp(-1.0 / 3.0), cmath.exp(1j * FEED / 60.0 / RADIUS * 1e-3)
+    lag = 0.003 * (1.0 - pole)
+    plant = ((0.001 - lag) * (z - pole) + lag * (1.0 - pole)) / ((z - 1.0) * (z - pole))
+    smaller = 1000.0 * RADIUS * (1.0 - abs(50.0 * plant / (1.0 + 50.0 * plant)))
+    assert smaller > 5.0
+    table = rows(result)
+    assert set(table) == {(NOTHING, "ccw"), (NOTHING, "cw")}
+    for values in table.values():
+        assert values[0] == pytest.approx(0.0, abs=0.06)
+        assert values[1:3] == pytest.approx([-smaller, -smaller], abs=0.03)
+        assert values[3:7] == pytest.approx([0.0] * 4, abs=0.03)
+
+
+def test_both_directions_need_a_ring_at_least_as_wide(comparison):
+    table = rows(comparison[0])
+    for name in (NOTHING, FORWARD, FRICTION, ALL):
+        assert table[name, "ccw"][7] >= max(table[name, "ccw"][0], table[name, "cw"][0]) - 0.01
+        assert len(table[name, "cw"]) == 7
+
+
+def test_pictures(comparison):
+    svg, png, page = (picture.read_bytes() for picture in comparison[1])
+    assert svg.startswith(b"<?xml") and svg.count(b"without feedforward") == 4 and b"Circle test XY" in svg
+    assert png.startswith(b"\x89PNG\r\n")
+    text = page.decode()
+    assert text.startswith("<!DOCTYPE html>") and "default-src 'none'" in text
+    assert not re.search(r'<(?:script|link|img)[^>]*(?:src|href)="http', text)
+    assert "in µm. G: circular deviation" in text
+
+
+def test_one_direction_without_comparison_and_a_chosen_magnification(tmp_path):
+    picture, again = tmp_path / "a.svg", tmp_path / "b.svg"
+    arguments = ["circle", MILL, "--radius", 5, "--feed", 3000, "--direction", "cw", "--no-friction", "--feedforward"]
+    result = call(*arguments, "--magnification", 123, "-o", picture)
+    assert result.exit_code == 0, result.output
+    assert list(rows(result)) == [(FORWARD, "cw")]
+    assert "against" not in result.stdout
+    assert "magnified 123 times" in picture.read_text()
+    call(*arguments, "--magnification", 123, "-o", again)
+    assert picture.read_bytes() == again.read_bytes()
+
+
+def test_another_plane_and_centre():
+    result = call(
+        "circle", MILL, "--radius", 5, "--feed", 3000, "--plane", "zx", "--centre", -20, 30, "--direction", "ccw"
+    )
+    assert result.exit_code == 0, result.output
+    assert result.stdout.splitlines()[0] == "Circle test ZX, R 5 mm about Z -20 X 30, F 3000 mm/min"
+    assert list(rows(result)) == [("without feedforward", "ccw")]
+
+
+def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
+    result = call("circle", MILL, "--radius", 1, "--feed", 20000, "--direction", "ccw")
+    assert result.exit_code == 0, result.output
+    warning = next(line for line in result.stdout.splitlines() if line.startswith("warning"))
+    lowest = float(re.search(r"the lowest is (\d+) mm/min", warning)[1])
+    assert lowest <= 60.0 * math.sqrt(1800.0 * 1.0) * 1.01
+    assert warning == (
+        f"warning: the feed of 20000 mm/min was not reached everywhere, the lowest is {lowest:.0f} mm/min; the axes' "
+        "acceleration is too small for this radius"
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--radius", 0, "--feed", 2000], "P-ERR-27020 radius 0 mm is not within 0 … 100000; nothing was started"),
+        (
+            ["--radius", "nan", "--feed", 2000],
+            "P-ERR-27020 radius nan mm is not within 0 … 100000; nothing was started",
+        ),
+        (["--radius", 25, "--feed", -5], "P-ERR-27020 feed -5 mm/min is not within 0 … 100000; nothing was started"),
+        (
+            ["--radius", 25, "--feed", 2000, "--magnification", 0],
+            "P-ERR-27020 magnification 0 is not within 0 … 100000; nothing was started",
+        ),
+        (
+            ["--radius", 25, "--feed", 2000, "--plane", "XC"],
+            "P-ERR-27024 plane XC is not one of XY, ZX, YZ; nothing was started",
+        ),
+        (
+            ["--radius", 250, "--feed", 2000],
+            "P-ERR-120002 circle.nc line 6 column 1 'N50 G03 I-176.776695297 J-176.776695297 F2000': axis Y: 250 mm lies "
+            "beyond the positive soft limit 200 mm (P-AXIS-00178)",
+        ),
+        (
+            ["--radius", 25, "--feed", 2000, "-o", "/nowhere/c.svg"],
+            "P-ERR-27030 /nowhere/c.svg cannot be written: its folder does not exist; nothing was started",
+        ),
+        (
+            ["--radius", 25, "--feed", 2000, "-o", "circle.pdf"],
+            "P-ERR-27030 circle.pdf: a picture is one of .svg, .png, .html by its ending; nothing was started",
+        ),
+    ],
+)
+def test_refused_before_anything_starts(arguments, text):
+    result = call("circle", MILL, *arguments)
+    assert (result.exit_code, result.stderr.splitlines()[0]) == (2, text)
+    assert result.stdout == ""
+
+
+def test_machines_that_have_no_such_circle(tmp_path):
+    result = call("circle", PTP, "--radius", 25, "--feed", 2000)
+    text = "P-ERR-26112 the machine has no channel to run a circle; nothing was started\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+    result = call("circle", "nowhere.yaml", "--radius", 25, "--feed", 2000)
+    assert result.exit_code == 2 and result.stderr.startswith("P-ERR-26110 machine file nowhere.yaml cannot be read")
+    two_axes = (
+        MILL.read_text()
+        .replace("achs_anzahl: 3", "achs_anzahl: 2")
+        .replace('"2": {bezeichnung: Z, log_achs_nr: 3}', "")
+    )
+    flat = tmp_path / "flat.yaml"
+    flat.write_text(two_axes)
+    result = call("circle", flat, "--radius", 25, "--feed", 2000, "--plane", "YZ")
+    text = "P-ERR-27024 channel channel has no axis Z for plane YZ; nothing was started. Axes: X, Y\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+    turning = changed_mill(tmp_path / "turning.yaml", "z", kenngr={"achs_typ": "ACHSTYP_ROTATOR"})
+    result = call("circle", turning, "--radius", 25, "--feed", 2000, "--plane", "ZX")
+    text = "P-ERR-27024 axis z is rotary, a circle needs two linear axes; nothing was started\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+
+
+@pytest.mark.parametrize("option", [["--compare", "feedforward"], ["--compare", "both"], ["--feedforward"]])
+def test_feedforward_that_is_not_configured_is_nothing_to_compare(option, tmp_path):
+    none = {"vorsteuer": {"vorsteuerung": "NONE"}}
+    path = both(tmp_path, none)
+    result = call("circle", path, "--radius", 25, "--feed", 2000, *option)
+    text = "P-ERR-27023 axes x, y: feedforward has no effect, vorsteuer.vorsteuerung (P-AXIS-00223) is NONE; nothing was started\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+
+
+@pytest.mark.parametrize("option", [["--compare", "friction"], ["--friction"]])
+def test_friction_compensation_that_is_not_configured_is_nothing_to_compare(option, tmp_path):
+    path = both(tmp_path, {"lr_param": {"frict_comp": 0}})
+    result = call("circle", path, "--radius", 25, "--feed", 2000, *option)
+    text = (
+        "P-ERR-27023 axes x, y: friction compensation has no effect, it needs lr_param.frict_comp (P-AXIS-00522) and a "
+        "table; nothing was started, see cnc_ptp identify friction\n"
+    )
+    assert (result.exit_code, result.stderr) == (2, text)
+
+
+def test_one_axis_without_friction_compensation_is_refused_by_the_program(tmp_path):
+    path = changed_mill(tmp_path / "one.yaml", "y", lr_param={"frict_comp": 0})
+    result = call("circle", path, "--radius", 25, "--feed", 2000, "--compare", "friction")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("P-ERR-70495 circle.nc line 5 column 5 'N40 Y[COMP ON FRICT]': axis Y: ")
+
+
+def both(tmp_path, sections):
+    """The mill with sections of x and y changed."""
+    machines = [yaml.safe_load(changed_mill(tmp_path / f"{axis}.yaml", axis, **sections).read_text()) for axis in "xy"]
+    machines[0]["/y"] = machines[1]["/y"]
+    path = tmp_path / "both.yaml"
+    path.write_text(yaml.safe_dump(machines[0]))
+    return path
+
+
+def test_a_run_that_fails_is_status_1_and_tells_why(tmp_path):
+    weak = changed_mill(tmp_path / "weak.yaml", "x", simulation={"torque_limit": 0.5})
+    result = call("circle", weak, "--radius", 25, "--feed", 20000)
+    assert result.exit_code == 1
+    assert "error: P-ERR-17744 axis x: following error" in result.stderr
+    assert result.stdout == ""
+
+
+def test_without_matplotlib_pages_are_left(monkeypatch, tmp_path):
+    monkeypatch.setattr(circle_picture, "find_spec", lambda name: None)
+    result = call("circle", MILL, "--radius", 5, "--feed", 3000, "-o", tmp_path / "c.png")
+    text = (
+        f"P-ERR-27031 {tmp_path / 'c.png'} needs matplotlib, which is not installed (pip install matplotlib); nothing was "
+        "started. A page (.html) needs nothing else\n"
+    )
+    assert (result.exit_code, result.stderr) == (2, text)
+    result = call("circle", MILL, "--radius", 5, "--feed", 3000, "--direction", "cw", "-o", tmp_path / "c.html")
+    assert result.exit_code == 0 and (tmp_path / "c.html").exists()
+
+
+def test_a_picture_that_cannot_be_written_after_all(tmp_path):
+    path = tmp_path / "c.html"
+    path.mkdir()
+    result = call("circle", MILL, "--radius", 5, "--feed", 3000, "-o", path)
+    assert result.exit_code == 2 and "is a directory" in result.stderr
+
+
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help(option):
+    assert "Usage:" in call("circle", option).output
+    assert call("circle", MILL).exit_code == 2
+    assert call("circle", MILL, "--radius", 25, "--feed", 2000, "--compare", "all").exit_code == 2
