@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.channels import ChannelAxisEntry, axis_entries, is_path_axis, spindle_entries
+from cnc_ptp.parameters.control_checks import control_checks
 from cnc_ptp.parameters.declarations import Declaration, Limit
 from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.parameter_set import Parameter, ParameterSet, parameter_limits
+from cnc_ptp.parameters.problems import problem
 from cnc_ptp.parameters.values import shown, violates_lower, violates_upper, with_unit
 
 Sets = Mapping[str, ParameterSet]
@@ -29,13 +31,6 @@ def check_machine(sets: Sets) -> list[Problem]:
                 problems += channel_check(parameters, sets)
     problems += axes_in_two_channels(sets)
     return problems
-
-
-def problem(parameters: ParameterSet, error_id: int, number: str, indexes: tuple[int, ...], text: str) -> Problem:
-    """A problem with one parameter of a node."""
-    declaration = parameters.catalogue.by_id[number]
-    subject = f"{declaration.list_name} list, {number} {declaration.list_style_name(indexes)} of /{parameters.node}"
-    return Problem(error_id, parameters.where(number, *indexes), f"{subject}: {text}")
 
 
 # ---------------------------------------------------------------- inside one node
@@ -247,7 +242,7 @@ def axes_in_two_channels(sets: Sets) -> Iterator[Problem]:
 NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] = {
     "machine": (),
     "channel": (parameter_against_parameter,),
-    "axis": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
-    "spindle": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
+    "axis": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits, control_checks),
+    "spindle": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits, control_checks),
 }
 CHANNEL_CHECKS = (channel_axes, channel_spindles, axis_count, spindle_count, main_spindle)

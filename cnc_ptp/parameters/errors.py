@@ -23,6 +23,8 @@ UNIT_NAME = 25015  # names of units, axes and spindles
 RESOLUTION = 25016  # encoder resolution zero or given twice
 UNREADABLE = 25017  # the file cannot be read
 UNKNOWN_PARAMETER = 25018  # asked for in the reference
+DENOMINATOR = 25019  # a denominator is zero
+TELEGRAM = 25020  # objects of a telegram, drive type and operation mode
 
 EFFECT = "the node does not start"
 

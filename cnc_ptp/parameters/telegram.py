@@ -50,6 +50,17 @@ PRESETS: dict[int, tuple[frozenset[str], frozenset[str]]] = {
     32: PLAIN,
 }
 """What a drive type (P-AXIS-00020) exchanges where no telegram is configured."""
+BUSES: dict[int, tuple[str, ...]] = {
+    1: ("DA",),
+    2: ("S-",),
+    3: ("NSOLL", "XERR", "M_ADD", "G1", "NIST", "MIST"),
+    5: ("S-",),
+    6: ("DA",),
+    7: ("S-", "6"),
+    8: ("6",),
+    32: ("6",),
+}
+"""How the objects of a drive type begin; the simulated drive (4) takes them all, the virtual axis (16) none."""
 ANALOGUE = (1, 6)
 """Drive types whose command is a voltage of ±10 V."""
 OPERATION_MODES = {
@@ -58,6 +69,11 @@ OPERATION_MODES = {
     "DSC_POSITION_CONTROL": "lag",
 }
 INTERFACES = ("velocity", "lag", "position", "torque")
+
+
+def fits(name: str, kind: int) -> bool:
+    """Whether an object can be exchanged with a drive of type `kind` (P-AXIS-00020)."""
+    return kind == 4 or name.startswith(BUSES.get(kind, ("-",)))
 
 
 def command_objects(parameters: ParameterSet) -> tuple[str, ...]:

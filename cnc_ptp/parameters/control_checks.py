@@ -1,0 +1,116 @@
+"""What drive, telegram, feedforward and friction compensation of an axis or spindle must agree on.
+
+Error numbers of the manuals: TF5200 feedforward 4.1, 4.2, 5.2; friction 2.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cnc_ptp.parameters import errors, telegram
+from cnc_ptp.parameters.control_view import ADD_ACC, ADD_JERK, ADD_VEL, flag_bits
+from cnc_ptp.parameters.errors import Problem
+from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.problems import problem
+
+NO_ADDITIVE_VELOCITY = 70350
+NO_ADDITIVE_TORQUE = 70351
+GEAR_DENOMINATOR = 110579
+TABLE_NOT_ASCENDING = 110591
+TABLE_MISSING = 110592
+DEFAULT_POINTS = 20
+"""Entries of a friction table where P-COMP-00062 is 0."""
+ADDITIVE_MODE = 3
+DENOMINATORS = ("P-AXIS-00226", "P-AXIS-00229", "P-AXIS-00515")
+
+
+def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
+    """All checks of one axis or spindle."""
+    for check in (gear_denominators, zero_denominators, known_objects, operation_mode, additive_objects, friction):
+        yield from check(parameters)
+
+
+def gear_denominators(parameters: ParameterSet) -> Iterator[Problem]:
+    for gear in parameters.used_indexes("getriebe"):
+        if parameters.number("P-AXIS-00512", gear) == 0:
+            text = "value 0 is no denominator of a gear ratio"
+            yield problem(parameters, GEAR_DENOMINATOR, "P-AXIS-00512", (gear,), text)
+
+
+def zero_denominators(parameters: ParameterSet) -> Iterator[Problem]:
+    for number in DENOMINATORS:
+        if parameters.number(number) == 0:
+            yield problem(parameters, errors.DENOMINATOR, number, (), "value 0 is no denominator")
+
+
+def known_objects(parameters: ParameterSet) -> Iterator[Problem]:
+    """Each object of a telegram is known and one of the drive type's own bus."""
+    kind = int(parameters.number("P-AXIS-00020"))
+    for names, number, known in (
+        (telegram.command_objects(parameters), "P-MACH-00020", telegram.COMMAND_OBJECTS),
+        (telegram.feedback_objects(parameters), "P-MACH-00021", telegram.FEEDBACK_OBJECTS),
+    ):
+        for name in names:
+            usable = [known_name for known_name in known if telegram.fits(known_name, kind)]
+            if name not in usable:
+                listed = ", ".join(usable) or "none"
+                text = f"object {name} cannot be exchanged with drive type {kind} (P-AXIS-00020), known are {listed}"
+                yield problem(parameters, errors.TELEGRAM, number, (), text)
+
+
+def operation_mode(parameters: ParameterSet) -> Iterator[Problem]:
+    """The quantity that P-AXIS-00320 commands is in the telegram."""
+    mode = parameters.text("P-AXIS-00320")
+    wanted = telegram.OPERATION_MODES.get(mode)
+    if wanted is not None and wanted not in telegram.commands(parameters):
+        text = f"mode {mode} commands the {wanted}, {carried(parameters)}"
+        yield problem(parameters, errors.TELEGRAM, "P-AXIS-00320", (), text)
+
+
+def additive_objects(parameters: ParameterSet) -> Iterator[Problem]:
+    mode, available = flag_bits(parameters, "P-AXIS-00223"), telegram.commands(parameters)
+    if mode & ADD_VEL and "additive_velocity" not in available:
+        text = f"ADD_VEL needs an additive velocity command (S-0-0037, 60B1, NSOLL_B), {carried(parameters)}"
+        yield problem(parameters, NO_ADDITIVE_VELOCITY, "P-AXIS-00223", (), text)
+    if mode & (ADD_ACC | ADD_JERK) and "additive_torque" not in available:
+        names = " and ".join(name for name, bit in (("ADD_ACC", ADD_ACC), ("ADD_JERK", ADD_JERK)) if mode & bit)
+        text = f"{names} needs an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
+        yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00223", (), text)
+
+
+def carried(parameters: ParameterSet) -> str:
+    """What the command telegram carries, for messages."""
+    quantities = ", ".join(sorted(telegram.commands(parameters))).replace("_", " ") or "nothing"
+    return f"the command telegram carries {quantities}"
+
+
+def friction(parameters: ParameterSet) -> Iterator[Problem]:
+    """The table of the friction compensation (P-COMP-…) where it is used."""
+    entries, points = parameters.number("P-COMP-00042"), parameters.number("P-COMP-00062") or DEFAULT_POINTS
+    if entries > points:
+        text = f"value {entries} is above the {points} entries of P-COMP-00062 frict_comp.max_points"
+        yield problem(parameters, errors.CONTRADICTION, "P-COMP-00042", (), text)
+        return
+    mode = parameters.number("P-COMP-00041")
+    if mode not in (0, ADDITIVE_MODE):
+        text = f"mode {mode} is unknown, there are 0 (off) and {ADDITIVE_MODE} (additive current)"
+        yield problem(parameters, TABLE_MISSING, "P-COMP-00041", (), text)
+    elif mode and not entries:
+        text = f"mode {mode} has no values, P-COMP-00042 frict_comp.table_entries is 0"
+        yield problem(parameters, TABLE_MISSING, "P-COMP-00041", (), text)
+    yield from ascending(parameters, int(entries))
+    permitted = parameters.axis_type != "S" and parameters.number("P-AXIS-00522")
+    if permitted and mode and "additive_torque" not in telegram.commands(parameters):
+        text = f"friction compensation needs an additive torque command (S-0-0081, 60B2), {carried(parameters)}"
+        yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00522", (), text)
+
+
+def ascending(parameters: ParameterSet, entries: int) -> Iterator[Problem]:
+    before = -1
+    for index in range(entries):
+        value = parameters.number("P-COMP-00046", index)
+        if value <= before or value < 0:
+            wanted = "not negative" if value < 0 else f"above the {before} of entry {index - 1}"
+            text = f"value {value} must be {wanted}, velocities ascend"
+            yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00046", (index,), text)
+        before = max(before, int(value))
