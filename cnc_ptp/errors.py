@@ -6,7 +6,7 @@ class CncError(Exception):
 
     `error_id` is the number that also goes into block, event and command messages; `message` is the text without it.
     Ranges: 21000 NC program, 22000 channel, 23000 axis, 24000 spindle, 25000 parameters and scenarios,
-    26000 graph, recording and command line; numbers that a manual names are kept.
+    26000 graph, recording and command line, 27000 commissioning; numbers that a manual names are kept.
     """
 
     def __init__(self, error_id: int, message: str) -> None:

@@ -36,6 +36,7 @@ def circle_figure(test: CircleTest, magnification: float | None) -> go.Figure:
     """Deviations in µm over the angle; the middle lies at -R / magnification."""
     magnified = magnification or magnification_for(test)
     low = -UM * test.radius / magnified
+    x, y = test.axes
     figure = go.Figure([*_curves(test)])
     figure.update_layout(
         height=760,
@@ -43,7 +44,7 @@ def circle_figure(test: CircleTest, magnification: float | None) -> go.Figure:
         title={"text": f"deviations magnified {magnified:g} times, in µm", "font": {"size": 13}},
         polar={
             "radialaxis": {"range": [low, -0.35 * low], "angle": 67.5, "tickangle": 0, "tickfont": {"size": 10}},
-            "angularaxis": {"direction": "counterclockwise", "dtick": 45},
+            "angularaxis": {"tickvals": [0, 90, 180, 270], "ticktext": [f"+{x}", f"+{y}", f"-{x}", f"-{y}"]},
         },
         legend={"orientation": "h"},
     )

@@ -59,7 +59,7 @@ def draw_circle(test: CircleTest, magnification: float | None = None) -> Figure:
         for circle in result.circles:
             _curve(axes, result, circle, COLOURS[number % len(COLOURS)])
     figure.suptitle(test.title, color=INK, fontsize=12, fontweight="bold")
-    axes.set_title(f"deviations magnified {magnified:g} times, in µm", color=SOFT, fontsize=9)
+    axes.set_title(f"deviations magnified {magnified:g} times, in µm", color=SOFT, fontsize=9, pad=14)
     legend = figure.legend(loc="outside lower center", ncols=1, frameon=False, fontsize=9)
     for text in legend.get_texts():
         text.set_color(INK)
@@ -80,9 +80,9 @@ def _scale(axes: PolarAxes, test: CircleTest, magnification: float) -> None:
 
 
 def _ticks(low: float) -> list[float]:
-    """About four round values from the middle to a little outside of the nominal circle, 0 among them."""
+    """Up to eleven round values from the middle to a little outside of the nominal circle, 0 among them."""
     step = 10.0 ** np.floor(np.log10(-low / 2.0))
-    step *= next(factor for factor in (1.0, 2.0, 5.0, 10.0) if -low / (factor * step) <= 6.0)
+    step *= next(factor for factor in (1.0, 2.0, 5.0, 10.0) if -low / (factor * step) <= 8.0)
     return [float(step * n) for n in range(int(np.ceil(low / step)) + 1, int(np.floor(OUTSIDE * low / step)) + 1)]
 
 

@@ -74,11 +74,11 @@ def direction_name(circle: CircleResult) -> str:
 
 
 def magnification_for(test: CircleTest) -> float:
-    """The largest of 1, 2, 5, 10 … with which no deviation is drawn longer than a quarter of the radius."""
+    """The largest of 1, 2, 5, 10 … with which no deviation is drawn longer than a third of the radius."""
     largest = max(
         max(abs(circle.radial_low), abs(circle.radial_high)) for result in test.results for circle in result.circles
     )
-    fits = 0.25 * test.radius / max(largest, 1e-9 * test.radius)
+    fits = test.radius / 3.0 / max(largest, 1e-9 * test.radius)
     decade = 10.0 ** math.floor(math.log10(fits))
     return max(step * decade for step in MAGNIFICATIONS if step * decade <= fits)
 
