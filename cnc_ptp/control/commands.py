@@ -28,7 +28,10 @@ class ControlCommands:
     def do_set_feedforward(
         self, cycle: int, *, on: bool | None = None, weight_percent: float | None = None
     ) -> str | None:
-        """G135/G137 (`on`) and G136 (`weight_percent`, 0 … 100); what is left out stays. Refusal 23060."""
+        """G135/G137 (`on`) and G136 (`weight_percent`, 0 … 100); what is left out stays. Refusal 23060.
+
+        A warning when the axis has no feedforward (P-AXIS-00223).
+        """
         if weight_percent is not None and not 0.0 <= weight_percent <= FULL_WEIGHT:
             reason = f"weight_percent = {weight_percent} is not within 0 ... 100 (G136)"
             self._refuse("set_feedforward", BAD_WEIGHT, reason)
@@ -44,12 +47,19 @@ class ControlCommands:
         self._on, self._weight_percent = False, FULL_WEIGHT
         self._loop.feedforward.select(False, FULL_WEIGHT)
 
-    def do_set_friction_compensation(self, cycle: int, *, on: bool) -> None:
-        """COMP ON FRICT and COMP OFF FRICT; stays after the program end. Refusal 70495."""
+    def do_set_friction_compensation(self, cycle: int, *, on: bool) -> str | None:
+        """COMP ON FRICT and COMP OFF FRICT; stays after the program end. Refusal 70495.
+
+        A warning when there is nothing to compensate with (P-COMP-00041 = 0, no table).
+        """
         if on and not self._loop.friction.permitted:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             self._refuse("set_friction_compensation", NO_FRICTION_COMPENSATION, reason)
         self._loop.friction.switch(on)
+        if on and not self._loop.friction.effective:
+            reason = "P-COMP-00041 (frict_comp.mode) is 0, or the table has no entries"
+            return f"{self._subject}: friction compensation without effect, {reason}"
+        return None
 
     def _refuse(self, command: str, error_id: int, reason: str) -> None:
         raise CncError(error_id, f"{self._subject}: {command} refused: {reason}; nothing was changed")

@@ -63,7 +63,7 @@ class ControlLoop:
         )
         self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles)
         self._torque_per_digit = 1.0 / parameters.scaling.torque if parameters.scaling.torque else 0.0
-        self._modulo = ModuloCompensation(parameters.modulo_error)
+        self._modulo = ModuloCompensation(parameters.modulo_error, origin=drive.position)
         self._interface = parameters.drive.interface
         self._velocity_controller = VelocityController(
             gain=parameters.drive.velocity_gain,
@@ -81,14 +81,18 @@ class ControlLoop:
         position = self.drive.position
         return position + self._modulo.correction(position) if self._modulo.on else position
 
+    def monitored(self, setpoint: State) -> tuple[float, float]:
+        """Following error and set velocity that the position controller has at `setpoint`, behind the delay line."""
+        behind, history = self.delay_cycles, self._history
+        position, velocity, _, _ = history[behind - 1] if behind and history else setpoint
+        return position - self.position, velocity
+
     def too_far(self, setpoint: State) -> bool:
         """True when the following error of this cycle is above what P-AXIS-00172 permits; changes nothing."""
-        if self._virtual is not None:
-            return False
-        return self.monitor.exceeded(self._set_position(setpoint) - self.position, setpoint[1])
+        return self._virtual is None and self.monitor.exceeded(*self.monitored(setpoint))
 
     def step(self, setpoint: State, closed: bool) -> ControlCycle:
-        """Closes the loop for one cycle; open, the drive gets command 0 and nothing is remembered."""
+        """Closes the loop for one cycle; open, the drive is to stand and nothing is remembered."""
         drive = self.drive
         if self._virtual is not None:
             self._virtual.follow(setpoint[0], setpoint[1])
@@ -96,7 +100,7 @@ class ControlLoop:
         position, velocity, torque = self.position, drive.velocity, drive.torque
         following_error = setpoint[0] - position
         if not closed:
-            self._open(setpoint)
+            self._open()
             return ControlCycle(position, velocity, following_error, 0.0, 0.0, 0.0, 0.0, 0.0, torque)
         if self._plain:
             self.monitor.advance(following_error, setpoint[1])
@@ -111,15 +115,16 @@ class ControlLoop:
             history.appendleft(setpoint)
         else:
             history.extend([setpoint] * HISTORY)
-        set_position = history[self.delay_cycles][0]
+        set_position, set_velocity, _, _ = history[self.delay_cycles]
         lag = set_position - position
-        self.monitor.advance(lag, setpoint[1])
+        self.monitor.advance(lag, set_velocity)
         feedforward, friction = self.feedforward, self.friction
+        command = self.kv * lag
         if feedforward.active:
-            feedforward.update(history)
+            feedforward.update(history, command)
+            command += feedforward.velocity
         friction.update(history)
         additive_torque = feedforward.additive_torque + friction.current * self._torque_per_digit
-        command = self.kv * lag + feedforward.velocity
         self._command(command, set_position, lag, velocity, feedforward.additive_velocity, additive_torque)
         return ControlCycle(
             position,
@@ -150,21 +155,25 @@ class ControlLoop:
             self.drive.step(torque + additive_torque)
         else:
             shift = self.feedforward.velocity / self.kv
-            base = lag if self._interface == "lag" else set_position
+            base = lag if self._interface == "lag" else self._on_the_encoder(set_position, lag)
             self.drive.step(base + shift, additive_velocity, additive_torque)
 
-    def _open(self, setpoint: State) -> None:
+    def _on_the_encoder(self, set_position: float, lag: float) -> float:
+        """The set position for a drive that knows nothing of the modulo compensation."""
+        return self.drive.position + lag if self._modulo.on else set_position
+
+    def _open(self) -> None:
+        """No position control: the drive holds velocity 0 from where it is."""
         self._history.clear()
         self.monitor.forget()
         self.feedforward.forget()
         self.friction.forget()
         self._velocity_controller.forget()
-        self.drive.step(self.drive.position if self._interface == "position" else 0.0)
-
-    def _set_position(self, setpoint: State) -> float:
-        """The set position that the position controller works with in this cycle."""
-        behind = self.delay_cycles
-        return self._history[behind - 1][0] if behind and self._history else setpoint[0]
+        drive = self.drive
+        if self._interface == "torque":
+            drive.step(self._velocity_controller.torque(-drive.velocity))
+        else:
+            drive.step(drive.position if self._interface == "position" else 0.0)
 
 
 def _delay_cycles(parameters: ControlParameters) -> int:

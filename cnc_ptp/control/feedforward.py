@@ -7,13 +7,19 @@ a + jT/2. Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupl
 from __future__ import annotations
 
 from collections import deque
-from math import floor, sqrt
+from math import copysign, exp, floor, sqrt
 from typing import NamedTuple
 
 from cnc_ptp.parameters.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
 
 State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""
+ROUNDING = 1e-9
+"""Part of a factor that is missing: it is reached."""
+EXCESS = 0.02
+"""Part of the axis' acceleration that feedforward and motion may be above it together while it is coupled in or out."""
+DECAYED = 5.0
+"""Time constants after which nothing counts of a lag that was made up: e^5 · EXCESS > 1."""
 
 
 class Feedforward:
@@ -28,11 +34,12 @@ class Feedforward:
         "_acceleration_at",
         "_always_active",
         "_coupling",
-        "_jerk_gain",
+        "_jerk_at",
         "_means",
         "_parts",
         "_prefilter",
         "_velocity_at",
+        "_velocity_of_torque",
         "additive_torque",
         "additive_velocity",
         "mode",
@@ -57,10 +64,12 @@ class Feedforward:
         behind = float(delay_cycles - parameters.lead_cycles)
         mode = parameters.mode
         velocity_delay = parameters.velocity_delay / cycle_time if mode & ADD_VEL else 0.0
-        acceleration_delay = parameters.acceleration_delay / cycle_time if mode & (ADD_ACC | ADD_JERK) else 0.0
+        torque_delay = parameters.acceleration_delay / cycle_time
         self._velocity_at = MeanValue(behind + velocity_delay, cycle_time)
-        self._acceleration_at = MeanValue(behind + acceleration_delay, cycle_time)
+        self._acceleration_at = MeanValue(behind + (torque_delay if mode & ADD_ACC else 0.0), cycle_time)
+        self._jerk_at = MeanValue(behind + (torque_delay if mode & ADD_JERK else 0.0), cycle_time)
         self._parts = _parts(parameters, kv, torque_per_acceleration)
+        self._velocity_of_torque = 1.0 / (torque_per_acceleration * kv) if torque_per_acceleration else 0.0
         self._prefilter: deque[tuple[float, float, float]] = deque(maxlen=parameters.prefilter_cycles)
         self._means = parameters.prefilter_cycles > 1
         self._coupling = Coupling(limits, cycle_time=cycle_time, kv=kv)
@@ -82,15 +91,16 @@ class Feedforward:
         """The loop is open: nothing goes out, what was selected holds from the next closed cycle on."""
         self.velocity = self.additive_velocity = self.additive_torque = 0.0
         self._prefilter.clear()
-        self._coupling.settle()
+        self._coupling.forget()
 
-    def update(self, history: deque[State]) -> None:
-        """The values of this cycle; `history` has the newest setpoint at its left end."""
-        mean_velocity, mean_acceleration = (
-            self._velocity_at.velocity(history),
-            self._acceleration_at.acceleration(history),
-        )
-        mean_jerk = self._acceleration_at.jerk(history)
+    def update(self, history: deque[State], feedback: float) -> None:
+        """The values of this cycle; `history` has the newest setpoint at its left end.
+
+        `feedback` is what the position controller gives in this cycle, mm/s (deg/s).
+        """
+        mean_velocity = self._velocity_at.velocity(history)
+        mean_acceleration = self._acceleration_at.acceleration(history)
+        mean_jerk = self._jerk_at.jerk(history)
         if self._means:
             self._prefilter.append((mean_velocity, mean_acceleration, mean_jerk))
             count = len(self._prefilter)
@@ -103,13 +113,18 @@ class Feedforward:
         torque = p.torque * mean_acceleration + p.jerk_torque * mean_jerk
         coupling = self._coupling
         if coupling.factor != coupling.target:
-            coupling.step(velocity + additive, history[0])
+            coupling.step(feedback, velocity + additive, torque * self._velocity_of_torque, history[0])
         factor = coupling.factor
         self.velocity, self.additive_velocity, self.additive_torque = (
             factor * velocity,
             factor * additive,
             factor * torque,
         )
+        if coupling.active:
+            coupling.note(feedback + factor * (velocity + additive))
+        else:
+            self._prefilter.clear()
+            coupling.forget()
 
 
 class Parts(NamedTuple):
@@ -188,7 +203,7 @@ class MeanValue:
 
 
 class CouplingLimits(NamedTuple):
-    """What the axis can do: velocity mm/s (deg/s), acceleration, jerk."""
+    """What the axis can do: velocity mm/s (deg/s), acceleration, jerk; an infinite jerk is none that matters."""
 
     velocity: float
     acceleration: float
@@ -198,16 +213,21 @@ class CouplingLimits(NamedTuple):
 class Coupling:
     """Factor of a feedforward that is coupled in and out softly.
 
-    While it changes at the rate r, a feedforward velocity F accelerates the axis by r·F beside the setpoint, and the
-    lag that is made up costs about r·F/Kv of velocity. The sum stays within the axis' acceleration and, coupled in,
-    within its velocity; r changes at most by jerk/F. With no room left it waits.
+    While the factor changes at the rate r, the feedforward velocity F adds r·F to the change of the velocity command.
+    That change stays within the axis' acceleration, and with it the acceleration of a first-order drive; r·F changes
+    by the axis' jerk. As a lag is made up, the axis is faster than its setpoint by about r·F/Kv: its velocity must
+    have room for that. With no room left the factor waits.
+
+    An additive torque M counts as a velocity M/(k·Kv), for a velocity controller is faster than a position controller.
     """
 
-    __slots__ = ("_cycle_time", "_kv", "_limits", "_rate", "factor", "target")
+    __slots__ = ("_cycle_time", "_kv", "_last_command", "_limits", "_rate", "_reserve", "factor", "target")
 
     def __init__(self, limits: CouplingLimits, *, cycle_time: float, kv: float) -> None:
         self._limits, self._cycle_time, self._kv = limits, cycle_time, kv
+        self._reserve = kv / limits.jerk
         self._rate = 0.0
+        self._last_command: float | None = None
         self.factor = self.target = 0.0
 
     @property
@@ -215,23 +235,65 @@ class Coupling:
         return self.factor != 0.0 or self.target != 0.0
 
     def settle(self) -> None:
-        """The factor is what was selected at once: nothing moves."""
+        """The factor is what was selected."""
         self.factor, self._rate = self.target, 0.0
 
-    def step(self, full: float, setpoint: State) -> None:
-        """One cycle nearer to the target; `full` is the feedforward velocity at factor 1, mm/s (deg/s)."""
-        missing = self.target - self.factor
-        size, t, limits = abs(full), self._cycle_time, self._limits
-        room = max(0.0, limits.acceleration - abs(setpoint[2]))
-        if missing > 0.0:
-            room = min(room, self._kv * max(0.0, limits.velocity - abs(setpoint[1])))
-        if size * abs(missing) <= room * t or size == 0.0:
+    def forget(self) -> None:
+        """The loop is open or nothing is put out: what was selected holds at once, nothing moves."""
+        self.settle()
+        self._last_command = None
+
+    def note(self, command: float) -> None:
+        """The velocity command of this cycle with everything, mm/s (deg/s)."""
+        self._last_command = command
+
+    def step(self, feedback: float, velocity: float, torque_velocity: float, setpoint: State) -> None:
+        """One cycle nearer to the target.
+
+        `feedback` of the position controller; `velocity` of the feedforward and its torque as a velocity, both at
+        factor 1; all in mm/s (deg/s).
+        """
+        size = abs(velocity) + abs(torque_velocity)
+        if size == 0.0:
             self.settle()
             return
-        rate_change = limits.jerk * t / size
-        rate = min(room / size, self._rate + rate_change, sqrt(2.0 * limits.jerk / size * abs(missing)))
-        if rate * t >= abs(missing):
+        if self._last_command is None:
+            return
+        missing, t = self.target - self.factor, self._cycle_time
+        rate = self._smooth_rate(missing, self._limits.jerk * t / size)
+        drift = (feedback + self.factor * velocity - self._last_command) / t
+        most = self._room(rate * velocity, rate * torque_velocity, drift, setpoint) / size
+        rate = max(-most, min(most, rate))
+        if rate * t / missing >= 1.0 - ROUNDING:
             self.settle()
             return
         self._rate = rate
-        self.factor += rate * t if missing > 0.0 else -rate * t
+        self.factor += rate * t
+
+    def _smooth_rate(self, missing: float, quantum: float) -> float:
+        """A rate that differs by `quantum` from the last one at most and can come down to 0 in such steps in time.
+
+        Coming down from n quanta takes a way of n (n + 1) / 2 quanta · T.
+        """
+        double_way = 2.0 * abs(missing) / self._cycle_time
+        rate = copysign(double_way / (0.5 + sqrt(0.25 + double_way / quantum)), missing)
+        return max(self._rate - quantum, min(self._rate + quantum, rate))
+
+    def _room(self, by_velocity: float, by_torque: float, drift: float, setpoint: State) -> float:
+        """How much the factor may change the velocity command, mm/s² (deg/s²); without it, it changes by `drift`.
+
+        A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
+        the axis' limit in room/J, by when e^(-Kv·room/J) is left of the change.
+        """
+        limit, velocity = self._limits.acceleration, setpoint[1]
+        room = max(0.0, limit - abs(setpoint[2]))
+        decays = room * self._reserve
+        if self._reserve > 0.0 and decays < DECAYED:
+            room = min(room, EXCESS * limit * exp(decays))
+        if by_velocity > 0.0 or by_torque > 0.0:
+            room = min(room, limit - drift)
+        if by_velocity < 0.0 or by_torque < 0.0:
+            room = min(room, limit + drift)
+        if by_velocity * velocity > 0.0 or by_torque * velocity > 0.0:
+            room = min(room, self._kv * (self._limits.velocity - abs(velocity)))
+        return max(0.0, room)

@@ -40,6 +40,7 @@ class FrictionCompensation:
     """The current of one axis, cycle by cycle; `current` in the unit of the drive holds after `update`."""
 
     __slots__ = (
+        "_active",
         "_behind",
         "_delayed",
         "_direction",
@@ -55,7 +56,7 @@ class FrictionCompensation:
     def __init__(self, parameters: FrictionParameters, *, delay_cycles: int) -> None:
         """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint."""
         self.permitted = parameters.permitted
-        self.on = parameters.active
+        self._active = self.on = parameters.active
         self._table = FrictionTable(parameters.velocities, parameters.currents) if parameters.velocities else None
         self._lookahead = min(parameters.reversal_lookahead, delay_cycles)
         self._behind = delay_cycles
@@ -65,9 +66,14 @@ class FrictionCompensation:
         self._reversed_at: float | None = None
         self.current = 0.0
 
+    @property
+    def effective(self) -> bool:
+        """P-AXIS-00522 and P-COMP-00041 are set, the table has entries: switched on, it puts something out."""
+        return self._active and self._table is not None
+
     def switch(self, on: bool) -> None:
-        """COMP ON FRICT, COMP OFF FRICT."""
-        self.on = on
+        """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off."""
+        self.on = on and self._active
 
     def forget(self) -> None:
         """The loop is open: no current, and no motion from which the next one could turn back."""
@@ -80,7 +86,7 @@ class FrictionCompensation:
         position, velocity, _, _ = history[self._behind]
         value = 0.0
         if velocity != 0.0:
-            self._note_direction(position, velocity)
+            self._note_direction(position, velocity, history)
             if self.on and self._table is not None:
                 value = self._table.current(velocity) * self._weight(position, velocity, history)
                 value = value if velocity > 0.0 else -value
@@ -89,11 +95,13 @@ class FrictionCompensation:
             value = self._delayed.popleft()
         self.current = value
 
-    def _note_direction(self, position: float, velocity: float) -> None:
+    def _note_direction(self, position: float, velocity: float, history: deque[State]) -> None:
+        """Notes where the axis has turned back: farther out than both its positions around that instant it was not."""
         direction = 1.0 if velocity > 0.0 else -1.0
         if direction != self._direction:
             if self._direction != 0.0:
-                self._reversed_at = position
+                before = history[self._behind + 1][0]
+                self._reversed_at = min(position, before) if velocity > 0.0 else max(position, before)
             self._direction = direction
 
     def _weight(self, position: float, velocity: float, history: deque[State]) -> float:
@@ -104,7 +112,18 @@ class FrictionCompensation:
                 weight = way / self._position_delay
             else:
                 self._reversed_at = None
+        cycles = self._cycles_to_reversal(velocity, history)
+        return min(weight, cycles / self._lookahead) if cycles else weight
+
+    def _cycles_to_reversal(self, velocity: float, history: deque[State]) -> int:
+        """Cycles up to the first one that does not go on in the direction of `velocity`; 0: no reversal in sight."""
+        end = 0
         for cycles in range(1, self._lookahead + 1):
-            if history[self._behind - cycles][1] * velocity < 0.0:
-                return min(weight, cycles / self._lookahead)
-        return weight
+            onward = history[self._behind - cycles][1] * velocity
+            if onward <= 0.0 and not end:
+                end = cycles
+            if onward < 0.0:
+                return end
+            if onward > 0.0:
+                end = 0
+        return 0

@@ -52,11 +52,7 @@ class LagMonitor:
 
     def source(self, velocity: float) -> str:
         """The parameter that sets `limit`, for messages."""
-        standing = velocity == 0.0 and self._rest >= self._settling and self._kind != ESTIMATED
-        kinds = {ESTIMATED: "P-AXIS-00167, estimated", LINEAR: "P-AXIS-00167, linear", FIXED: "P-AXIS-00168"}
-        if standing:
-            return "P-AXIS-00169"
-        return "P-AXIS-00168" if self.limit(velocity) == self._moving else kinds[self._kind]
+        return self._limit(velocity)[1]
 
     def limit(self, velocity: float) -> float:
         """Largest following error at a set velocity, mm (deg).
@@ -64,13 +60,21 @@ class LagMonitor:
         Type 4: P-AXIS-00168, standing P-AXIS-00169. Type 2: v/Kv · 1024/(1024 - P-AXIS-00167), at least P-AXIS-00168;
         standing P-AXIS-00169. Type 1: e' = e · P-AXIS-00167/1024 + |v| · T, within P-AXIS-00169 and P-AXIS-00168.
         """
-        if self._kind in (FIXED, LINEAR):
-            if velocity == 0.0 and self._rest >= self._settling:
-                return self._standing
-            return max(self._moving, abs(velocity) * self._factor) if self._kind == LINEAR else self._moving
-        if self._kind == ESTIMATED:
-            return min(self._moving, max(self._standing, self._next_estimate(velocity)))
-        return inf
+        return self._limit(velocity)[0]
+
+    def _limit(self, velocity: float) -> tuple[float, str]:
+        kind, moving, standing = self._kind, self._moving, self._standing
+        if kind == ESTIMATED:
+            estimate = self._next_estimate(velocity)
+            if max(standing, estimate) >= moving:
+                return moving, "P-AXIS-00168"
+            return (estimate, "P-AXIS-00167, estimated") if estimate > standing else (standing, "P-AXIS-00169")
+        if kind not in (LINEAR, FIXED):
+            return inf, ""
+        if velocity == 0.0 and self._rest >= self._settling:
+            return standing, "P-AXIS-00169"
+        linear = abs(velocity) * self._factor if kind == LINEAR else 0.0
+        return (linear, "P-AXIS-00167, linear") if linear > moving else (moving, "P-AXIS-00168")
 
     def exceeded(self, following_error: float, velocity: float) -> bool:
         """True when the error has been above the limit for longer than the filter time; changes nothing."""

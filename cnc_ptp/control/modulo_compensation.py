@@ -10,19 +10,23 @@ from cnc_ptp.parameters.control_view import ModuloError
 class ModuloCompensation:
     """Puts back, increment by increment, what the encoder is short of after whole turns.
 
-    After n turns of the modulo range n · P-AXIS-00124 / P-AXIS-00125 increments are missing; whole ones are added.
+    A turn of the modulo range M shows on the encoder as M - e · P-AXIS-00124 / P-AXIS-00125, e deg an increment. What
+    is missing is spread evenly over the turn, whole increments are added, on the way back they are taken off again.
     """
 
-    __slots__ = ("_increment", "_increments_per_way")
+    __slots__ = ("_increment", "_increments_per_way", "_origin")
 
-    def __init__(self, parameters: ModuloError) -> None:
+    def __init__(self, parameters: ModuloError, *, origin: float) -> None:
+        """`origin` in deg: the encoder's position where nothing is missing yet."""
         self._increment = parameters.increment
-        self._increments_per_way = parameters.increments_per_turn / parameters.turn if parameters.turn else 0.0
+        shown = parameters.turn - parameters.increments_per_turn * parameters.increment
+        self._increments_per_way = parameters.increments_per_turn / shown if parameters.turn else 0.0
+        self._origin = origin
 
     @property
     def on(self) -> bool:
         return self._increments_per_way != 0.0
 
     def correction(self, position: float) -> float:
-        """To be added to the actual position `position`, deg."""
-        return trunc(position * self._increments_per_way) * self._increment
+        """To be added to the position `position` of the encoder, deg."""
+        return trunc((position - self._origin) * self._increments_per_way) * self._increment

@@ -190,7 +190,7 @@ class AxisUnit(Unit):
         axis.watch_target(cycle, setpoint, actual_position)
         closed = axis.powered or axis.moving(cycle)
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
-            self._following_error_fault(cycle, setpoint, setpoint[0] - actual_position)
+            self._following_error_fault(cycle, setpoint)
         control = loop.step(setpoint, closed)
         return (
             *setpoint,
@@ -201,9 +201,9 @@ class AxisUnit(Unit):
             axis.error_id,
         )
 
-    def _following_error_fault(self, cycle: int, setpoint: State, following_error: float) -> None:
-        axis = self._axis
-        monitor, velocity = self._loop.monitor, setpoint[1]
+    def _following_error_fault(self, cycle: int, setpoint: State) -> None:
+        axis, monitor = self._axis, self._loop.monitor
+        following_error, velocity = self._loop.monitored(setpoint)
         limit = f"{round(monitor.limit(velocity), 4)} {axis.unit} ({monitor.source(velocity)})"
         reason = f"following error {following_error:.4f} {axis.unit} exceeds {limit}"
         axis.fault(cycle, FOLLOWING_ERROR, reason, setpoint)
