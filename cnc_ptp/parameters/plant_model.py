@@ -5,7 +5,7 @@ gives (torque over inertia), v velocity, x position. Inputs: command velocity u,
 
     w' = (u - w) / Tf      i' = Kp / Tn (w - v)      m' = (Kp (w - v) + i - m) / Ti      v' = m - b v - f      x' = v
 
-A time constant of 0 means that its state follows at once. Source: own; figure 2 of TF5200 feedforward has the structure.
+A time constant of 0 means that its state follows at once. Structure: TF5200 feedforward, figure 2.
 """
 
 from __future__ import annotations

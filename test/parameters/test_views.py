@@ -274,12 +274,10 @@ def test_a_spindle_serves_several_channels() -> None:
 
 
 def test_warnings() -> None:
-    text = "kenngr.antr_typ: 2, vorsteuer.vs_v_faktor: 1, getriebe.0: {slep_ueberw_typ: 1, slep_max: 200000}"
+    text = "kenngr.swe_toleranz: 1, getriebe.0: {slep_ueberw_typ: 4, slep_max: 200000}"
     assert load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"]).warnings == (
-        "m.yaml:2:67: P-AXIS-00228 vorsteuer.vs_v_faktor of /x: accepted, but without effect in this version",
-        "m.yaml:2:41: P-AXIS-00020 kenngr.antr_typ of /x: drive type 2 does not exist here, the drive is simulated",
-        "m.yaml:2:100: P-AXIS-00172 getriebe[0].slep_ueberw_typ of /x: monitoring type 1 is carried out as type 4",
-        "m.yaml:2:113: P-AXIS-00168 getriebe[0].slep_max of /x: "
+        "m.yaml:2:45: P-AXIS-00179 kenngr.swe_toleranz of /x: accepted, but without effect in this version",
+        "m.yaml:2:91: P-AXIS-00168 getriebe[0].slep_max of /x: "
         "limit 20 mm is not above vb_max / kv, the 20 mm that P-AXIS-00212 brings",
     )
 

@@ -1,0 +1,95 @@
+"""What is corrected in, or questionable about, feedforward, friction compensation, monitoring and gain. Lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cnc_ptp.parameters.control_view import (
+    DEFAULT_JERK_DENOMINATOR,
+    DELAY_CYCLES,
+    PlantParameters,
+    control_view,
+    permitted_delay,
+)
+from cnc_ptp.parameters.lines import line
+from cnc_ptp.parameters.parameter_set import ParameterSet
+
+MANUAL_POSITION_DELAY = 10
+MONITORING_TYPES = (1, 2, 4)
+DELAYS = {"P-AXIS-00389": 70349, "P-AXIS-00390": 70348}
+
+
+def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """All lines of one axis or spindle; `cycle_time` in s."""
+    yield from delays(parameters, cycle_time)
+    yield from denominators(parameters)
+    yield from weight(parameters)
+    yield from position_delay(parameters)
+    yield from following_error(parameters)
+    yield from gain(parameters, cycle_time)
+
+
+def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    for number, error_id in DELAYS.items():
+        if parameters.number(number) and not permitted_delay(parameters, number, cycle_time):
+            limit = f"{DELAY_CYCLES} interpolator cycles ({DELAY_CYCLES * cycle_time * 1e6:g} µs)"
+            text = f"P-ERR-{error_id}: delay {parameters.number(number)} µs is not below {limit}, 0 is used"
+            yield line(parameters, number, (), text)
+
+
+def denominators(parameters: ParameterSet) -> Iterator[str]:
+    if parameters.number("P-AXIS-00326") == 0:
+        text = "P-ERR-110465: value 0 is no denominator, no additive torque is put out"
+        yield line(parameters, "P-AXIS-00326", (), text)
+    if parameters.number("P-AXIS-00338") == 0:
+        text = f"P-ERR-110473: value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
+        yield line(parameters, "P-AXIS-00338", (), text)
+
+
+def weight(parameters: ParameterSet) -> Iterator[str]:
+    value, denominator = parameters.number("P-AXIS-00228"), parameters.number("P-AXIS-00229")
+    if value > denominator:
+        text = f"weight {value / denominator:g} of the feedforward is above 1, the axis leads its setpoint"
+        yield line(parameters, "P-AXIS-00228", (), text)
+
+
+def position_delay(parameters: ParameterSet) -> Iterator[str]:
+    value = parameters.number("P-COMP-00043")
+    if value > MANUAL_POSITION_DELAY:
+        text = f"value {value} is above the {MANUAL_POSITION_DELAY} of the manual, accepted"
+        yield line(parameters, "P-COMP-00043", (), text)
+
+
+def following_error(parameters: ParameterSet) -> Iterator[str]:
+    """Monitoring that would trip in plain motion: vb_max / kv above slep_max, where the limit is a fixed one."""
+    gear = (int(parameters.number("P-AXIS-00079")) - 1,)
+    if parameters.number("P-AXIS-00172", *gear) not in MONITORING_TYPES or parameters.kind != "axis":
+        return
+    expected = parameters.kernel("P-AXIS-00212", *gear) / parameters.kernel("P-AXIS-00099", *gear)
+    limit = parameters.kernel("P-AXIS-00168", *gear)
+    if expected >= limit and parameters.number("P-AXIS-00172", *gear) != 2:  # the linear one grows with the velocity
+        unit = "mm" if parameters.axis_type == "T" else "°"
+        text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
+        yield line(parameters, "P-AXIS-00168", gear, text)
+
+
+def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """An unstable position loop of the simulated drive."""
+    gear = int(parameters.number("P-AXIS-00079")) - 1
+    control = control_view(parameters, gear, cycle_time)
+    well_damped = 2.0 * control.kv * small_times(control.plant, cycle_time) <= 1.0
+    if control.drive.interface in ("none", "torque") or well_damped:
+        return
+    from cnc_ptp.parameters.stability import is_stable, stability_limit  # here, as numpy takes its time
+
+    if is_stable(control.plant, control.kv, cycle_time):
+        return
+    limit = stability_limit(control.plant, cycle_time)
+    text = f"gain {control.kv:g} 1/s makes the position loop unstable, with this drive the limit is {limit:.4g} 1/s"
+    yield line(parameters, "P-AXIS-00099", (gear,), text)
+
+
+def small_times(plant: PlantParameters, cycle_time: float) -> float:
+    """Sum of the delays in the loop, s: a gain up to half its reciprocal is damped well (0.71), whatever they are."""
+    velocity_loop = 2.0 / plant.velocity_gain + plant.current_time_constant if plant.cascaded else 0.0
+    return plant.time_constant + velocity_loop + (plant.bus_delay_cycles + 0.5) * cycle_time

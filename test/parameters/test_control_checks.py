@@ -1,0 +1,198 @@
+"""Every error of drives, telegrams, feedforward and friction tables, word for word; what is corrected instead."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from cnc_ptp.parameters import MachineParameters, ParameterError, load_machine
+from cnc_ptp.parameters.stability import stability_limit
+
+EFFECT = "; the node does not start"
+
+
+def load(x: str) -> MachineParameters:
+    return load_machine(f"/machine: {{ros__parameters: {{axes: [x]}}}}\n/x: {{ros__parameters: {{{x}}}}}\n", "m.yaml")
+
+
+def texts(x: str) -> list[str]:
+    """The problems without their places."""
+    with pytest.raises(ParameterError) as caught:
+        load(x)
+    return [f"P-ERR-{problem.error_id} {problem.text}{EFFECT}" for problem in caught.value.problems]
+
+
+def notices(x: str) -> list[str]:
+    return [warning.split(": ", 1)[1] for warning in load(x).warnings]
+
+
+SERCOS = "kenngr: {antr_typ: 2}"
+CARRIES = "the command telegram carries velocity"
+
+PROBLEMS = {
+    f"{SERCOS}, vorsteuer: {{vorsteuerung: ADD_VEL}}": (
+        "P-ERR-70350 axis list, P-AXIS-00223 vorsteuer.vorsteuerung of /x: ADD_VEL needs an additive velocity command "
+        f"(S-0-0037, 60B1, NSOLL_B), {CARRIES}"
+    ),
+    f"{SERCOS}, vorsteuer: {{vorsteuerung: ADD_ACC}}": (
+        "P-ERR-70351 axis list, P-AXIS-00223 vorsteuer.vorsteuerung of /x: ADD_ACC needs an additive torque command "
+        f"(S-0-0081, 60B2, M_ADD1), {CARRIES}"
+    ),
+    f"{SERCOS}, vorsteuer: {{vorsteuerung: ADD_ACC | ADD_JERK}}": (
+        "P-ERR-70351 axis list, P-AXIS-00223 vorsteuer.vorsteuerung of /x: ADD_ACC and ADD_JERK needs an additive "
+        f"torque command (S-0-0081, 60B2, M_ADD1), {CARRIES}"
+    ),
+    'antr: {feed_const_num: 50000}, getriebe: {"0": {gear_fact_denom: 0}}': (
+        "P-ERR-110579 axis list, P-AXIS-00512 getriebe[0].gear_fact_denom of /x: value 0 is no denominator of a gear "
+        "ratio"
+    ),
+    "vorsteuer: {vs_a_nenner: 0}": (
+        "P-ERR-25019 axis list, P-AXIS-00226 vorsteuer.vs_a_nenner of /x: value 0 is no denominator"
+    ),
+    "vorsteuer: {vs_v_nenner: 0}": (
+        "P-ERR-25019 axis list, P-AXIS-00229 vorsteuer.vs_v_nenner of /x: value 0 is no denominator"
+    ),
+    "vorsteuer: {feedforward_v_add_denom: 0}": (
+        "P-ERR-25019 axis list, P-AXIS-00515 vorsteuer.feedforward_v_add_denom of /x: value 0 is no denominator"
+    ),
+    "kenngr: {antr_typ: 8}, antr: {telegram: {commands: [60FF, S-0-0037]}}": (
+        "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: object S-0-0037 cannot be exchanged with "
+        "drive type 8 (P-AXIS-00020), known are 60FF, 607A, 6071, 60B1, 60B2"
+    ),
+    "kenngr: {antr_typ: 16}, antr: {telegram: {feedback: [606C]}}": (
+        "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object 606C cannot be exchanged with "
+        "drive type 16 (P-AXIS-00020), known are none"
+    ),
+    "kenngr: {antr_typ: 8}, antr: {operation_mode: DRIVE_POSITION_CONTROL}": (
+        "P-ERR-25020 axis list, P-AXIS-00320 antr.operation_mode of /x: mode DRIVE_POSITION_CONTROL commands the "
+        f"position, {CARRIES}"
+    ),
+    "frict_comp: {mode: 3}": (
+        "P-ERR-110592 compensation list, P-COMP-00041 frict_comp.mode of /x: mode 3 has no values, P-COMP-00042 "
+        "frict_comp.table_entries is 0"
+    ),
+    "frict_comp: {mode: 2}": (
+        "P-ERR-110592 compensation list, P-COMP-00041 frict_comp.mode of /x: mode 2 is unknown, there are 0 (off) and "
+        "3 (additive current)"
+    ),
+    "frict_comp: {table_entries: 21}": (
+        "P-ERR-25009 compensation list, P-COMP-00042 frict_comp.table_entries of /x: value 21 is above the 20 entries "
+        "of P-COMP-00062 frict_comp.max_points"
+    ),
+    "frict_comp: {table_entries: 3, max_points: 2}": (
+        "P-ERR-25009 compensation list, P-COMP-00042 frict_comp.table_entries of /x: value 3 is above the 2 entries of "
+        "P-COMP-00062 frict_comp.max_points"
+    ),
+    'frict_comp: {mode: 3, table_entries: 2, table: {"0": {in: 316}, "1": {in: 316}}}': (
+        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[1].in of /x: value 316 must be above the 316 of "
+        "entry 0, velocities ascend"
+    ),
+    'frict_comp: {mode: 3, table_entries: 1, table: {"0": {in: -1}}}': (
+        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[0].in of /x: value -1 must be not negative, "
+        "velocities ascend"
+    ),
+    f'{SERCOS}, lr_param: {{frict_comp: 1}}, frict_comp: {{mode: 3, table_entries: 1, table: {{"0": {{out: 5}}}}}}': (
+        "P-ERR-70351 axis list, P-AXIS-00522 lr_param.frict_comp of /x: friction compensation needs an additive torque "
+        f"command (S-0-0081, 60B2), {CARRIES}"
+    ),
+}
+
+
+@pytest.mark.parametrize("section", PROBLEMS)
+def test_problem(section: str) -> None:
+    assert texts(section) == [PROBLEMS[section] + EFFECT]
+
+
+def test_objects_by_number_and_by_name_make_additive_commands_possible() -> None:
+    objects = 'sercos: {mdt: {"0": {ident_nr: 36}, "1": {nc_ref: S_0_0037}, "2": {ident_nr: 81}}}'
+    machine = load(f"{SERCOS}, vorsteuer: {{vorsteuerung: ADD_VEL | ADD_ACC}}, antr: {{{objects}}}")
+    drive = machine.axes["x"].control.drive
+    assert drive.commands == {"velocity", "additive_velocity", "additive_torque"}
+    assert drive.interface == "velocity"
+
+
+@pytest.mark.parametrize(
+    ("kind", "interface", "commands", "feedback"),
+    [
+        (1, "velocity", {"velocity"}, {"position"}),
+        (2, "velocity", {"velocity"}, {"position"}),
+        (3, "lag", {"lag", "additive_velocity"}, {"position", "velocity"}),
+        (6, "velocity", {"velocity"}, {"position"}),
+        (8, "velocity", {"velocity"}, {"position"}),
+        (16, "none", set(), set()),
+    ],
+)
+def test_presets_of_drive_types(kind: int, interface: str, commands: set[str], feedback: set[str]) -> None:
+    drive = load(f"kenngr: {{antr_typ: {kind}}}").axes["x"].control.drive
+    assert (drive.interface, drive.commands, drive.feedback) == (interface, commands, feedback)
+
+
+NOTICES = {
+    "vorsteuer: {velocity_delay_time: 6000}": (
+        "P-AXIS-00389 vorsteuer.velocity_delay_time of /x: P-ERR-70349: delay 6000 µs is not below 6 interpolator "
+        "cycles (6000 µs), 0 is used"
+    ),
+    "vorsteuer: {acceleration_delay_time: 7000}": (
+        "P-AXIS-00390 vorsteuer.acceleration_delay_time of /x: P-ERR-70348: delay 7000 µs is not below 6 interpolator "
+        "cycles (6000 µs), 0 is used"
+    ),
+    "antr: {torque_scale_denom: 0}": (
+        "P-AXIS-00326 antr.torque_scale_denom of /x: P-ERR-110465: value 0 is no denominator, no additive torque is put "
+        "out"
+    ),
+    "vorsteuer: {jerk_fact_denom: 0}": (
+        "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: P-ERR-110473: value 0 is no denominator, 100 is used"
+    ),
+    "vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}": (
+        "P-AXIS-00228 vorsteuer.vs_v_faktor of /x: weight 1.2 of the feedforward is above 1, the axis leads its setpoint"
+    ),
+    "frict_comp: {position_delay: 30}": (
+        "P-COMP-00043 frict_comp.position_delay of /x: value 30 is above the 10 of the manual, accepted"
+    ),
+    'getriebe: {"0": {kv: 300000}}': (
+        "P-AXIS-00099 getriebe[0].kv of /x: gain 3000 1/s makes the position loop unstable, with this drive the limit "
+        "is 2000 1/s"
+    ),
+}
+
+
+@pytest.mark.parametrize("section", NOTICES)
+def test_notice(section: str) -> None:
+    assert notices(section) == [NOTICES[section]]
+
+
+def test_what_is_corrected() -> None:
+    control = (
+        load(
+            "vorsteuer: {velocity_delay_time: 6000, acceleration_delay_time: 5999, jerk_fact_denom: 0}, "
+            "antr: {torque_scale_denom: 0}"
+        )
+        .axes["x"]
+        .control
+    )
+    assert (control.feedforward.velocity_delay, control.feedforward.acceleration_delay) == (0.0, 0.005999)
+    assert (control.feedforward.jerk_weight, control.scaling.torque) == (0.01, 0.0)
+
+
+@pytest.mark.parametrize("time_constant", [0.0005, 0.003, 0.02])
+def test_stability_limit_of_a_first_order_drive_is_the_closed_form(time_constant: float) -> None:
+    """Jury's conditions for z² - z (1 + d - K (T - L)) + d + K (L - d T): det < 1 and 1 + trace + det > 0."""
+    t, d = 0.001, math.exp(-0.001 / time_constant)
+    way = time_constant * (1.0 - d)
+    by_determinant = (1.0 - d) / (way * (1.0 - d) - d * (t - way))
+    by_trace = 2.0 * (1.0 + d) / ((t - way) * (1.0 + d) - way * (1.0 - d))
+    limits = [limit for limit in (by_determinant, by_trace) if limit > 0.0]
+    plant = load(f"simulation: {{drive_time_constant: {round(time_constant * 1e6)}}}").axes["x"].control.plant
+    assert stability_limit(plant, t) == pytest.approx(min(limits), rel=1e-9)
+
+
+def test_each_cycle_of_delay_lowers_the_limit() -> None:
+    limits = []
+    for cycles in range(4):
+        section = f"simulation: {{drive_time_constant: 3000, bus_delay_cycles: {cycles}}}"
+        limits.append(stability_limit(load(section).axes["x"].control.plant, 0.001))
+    assert limits == sorted(limits, reverse=True)
+    # pure dead time of n cycles in front of an integrator: Kv T = 2 sin(π / (4 n + 2))
+    plant = load("simulation: {bus_delay_cycles: 3}").axes["x"].control.plant
+    assert stability_limit(plant, 0.001) == pytest.approx(2000.0 * math.sin(math.pi / 14.0), rel=1e-9)
