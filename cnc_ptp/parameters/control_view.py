@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from cnc_ptp.parameters import telegram
 from cnc_ptp.parameters.encoder import encoder_increment, resolution, uses_feed_constant
@@ -64,6 +65,9 @@ class DriveParameters:
     reverse: bool
     velocity_gain: float
     velocity_integral_time: float
+    command_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
+    """Length of each quantity in the command telegram."""
+    feedback_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,6 +192,8 @@ def drive_parameters(parameters: ParameterSet, gear: int) -> DriveParameters:
         reverse=parameters.axis_type == "S" and bool(parameters.number("P-AXIS-00159", gear)),
         velocity_gain=parameters.number("P-MACH-00028"),
         velocity_integral_time=parameters.kernel("P-MACH-00029"),
+        command_bits=telegram.command_bits(parameters),
+        feedback_bits=telegram.feedback_bits(parameters),
     )
 
 
@@ -197,9 +203,19 @@ def drive_scaling(parameters: ParameterSet, gear: int, cycle_time: float) -> Dri
         position=float(10_000 * resolution(parameters, gear)),
         velocity=velocity_scale(parameters, cycle_time),
         torque=torque_scale(parameters),
-        analogue=parameters.number("P-AXIS-00129", gear) / parameters.number("P-AXIS-00128", gear) * 60.0 / 1000.0,
+        analogue=analogue_scale(parameters, gear, cycle_time),
         torque_per_acceleration=torque_per_acceleration(parameters, gear, parameters.number("P-AXIS-00391", gear)),
     )
+
+
+def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> float:
+    """Bits of a DA word a mm/s (deg/s): P-AXIS-00129 / P-AXIS-00128 bits at 1 m/min (1000 °/min).
+
+    An axis whose position loop stays open (P-AXIS-00320) puts its speed out with P-AXIS-00205 to 00207 (spindle 2.2.4).
+    """
+    if parameters.text("P-AXIS-00320").startswith("OPEN_POSITION_LOOP"):
+        return velocity_scale(parameters, cycle_time)
+    return parameters.number("P-AXIS-00129", gear) / parameters.number("P-AXIS-00128", gear) * 60.0 / 1000.0
 
 
 def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:

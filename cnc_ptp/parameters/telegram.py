@@ -85,6 +85,32 @@ def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
     return _objects(parameters, "P-MACH-00021", "at", ("P-MACH-00025", "P-MACH-00026"))
 
 
+def default_bits() -> dict[str, int]:
+    """Lengths of all quantities where no telegram says otherwise: torques 16 bits, all others 32."""
+    return {quantity: 16 if "torque" in quantity else 32 for quantity in EVERYTHING}
+
+
+def command_bits(parameters: ParameterSet) -> dict[str, int]:
+    """Lengths in bits: 16 for a DA word, P-MACH-00024 where it is given."""
+    bits = default_bits() | _lengths(parameters, "mdt", ("P-MACH-00022", "P-MACH-00023", "P-MACH-00024"))
+    return bits | {"velocity": 16} if parameters.number("P-AXIS-00020") in ANALOGUE else bits
+
+
+def feedback_bits(parameters: ParameterSet) -> dict[str, int]:
+    """Lengths in bits: P-MACH-00027 where it is given."""
+    return default_bits() | _lengths(parameters, "at", ("P-MACH-00025", "P-MACH-00026", "P-MACH-00027"))
+
+
+def _lengths(parameters: ParameterSet, array: str, elements: tuple[str, str, str]) -> dict[str, int]:
+    quantities = COMMAND_OBJECTS if array == "mdt" else FEEDBACK_OBJECTS
+    found = {}
+    for index in parameters.used_indexes(f"antr.sercos.{array}"):
+        name = _object(parameters, elements[:2], index)
+        if name in quantities and parameters.is_given(elements[2], index):
+            found[quantities[name]] = 8 * int(parameters.number(elements[2], index))
+    return found
+
+
 def commands(parameters: ParameterSet) -> frozenset[str]:
     """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity."""
     objects = command_objects(parameters)
@@ -113,7 +139,13 @@ def interface(parameters: ParameterSet) -> str:
 def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[str, ...]:
     objects = list(parameters.names(names))
     for index in parameters.used_indexes(f"antr.sercos.{array}"):
-        name, number = parameters.text(elements[0], index), parameters.number(elements[1], index)
-        if name or number:
-            objects.append(name.replace("_", "-") or f"S-0-{number:04d}")
+        name = _object(parameters, elements, index)
+        if name:
+            objects.append(name)
     return tuple(objects)
+
+
+def _object(parameters: ParameterSet, elements: tuple[str, str], index: int) -> str:
+    """Name of a configured object by its name or number; empty where the element names none."""
+    name, number = parameters.text(elements[0], index), parameters.number(elements[1], index)
+    return name.replace("_", "-") or (f"S-0-{number:04d}" if number else "")

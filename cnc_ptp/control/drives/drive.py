@@ -17,6 +17,8 @@ class Drive(Protocol):
     """Actual velocity, mm/s or deg/s."""
     torque: float
     """Actual torque, Nm or N; 0.0 where the drive does not report one."""
+    has_torque: bool
+    """Whether the drive reports its torque."""
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Holds the command for one cycle and takes over the new actual values.

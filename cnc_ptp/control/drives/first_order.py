@@ -25,6 +25,7 @@ class FirstOrderDrive:
         "_torque_per_change",
         "_true_position",
         "_velocity_per_torque",
+        "has_torque",
         "position",
         "torque",
         "velocity",
@@ -44,6 +45,7 @@ class FirstOrderDrive:
         `time_constant` 0 is an ideal drive: no lag, and no additive torque can move it. `torque_per_acceleration` in
         Nm (N) for 1 mm/s² (deg/s²); with 0 the drive has no inertia to speak of: shows no torque and heeds none.
         """
+        self.has_torque = torque_per_acceleration > 0.0
         self._cycle_time = cycle_time
         self._decay = math.exp(-cycle_time / time_constant) if time_constant > 0.0 else 0.0
         self._lag_time = time_constant * (1.0 - self._decay)

@@ -6,10 +6,14 @@ from __future__ import annotations
 class VirtualDrive:
     """Shows what it is told to; `step` moves nothing."""
 
+    __slots__ = ("has_torque", "position", "torque", "velocity")
+
     def __init__(self, *, start_position: float) -> None:
+        """`start_position` in mm or deg."""
         self.position = start_position
         self.velocity = 0.0
         self.torque = 0.0
+        self.has_torque = False
 
     def follow(self, position: float, velocity: float) -> None:
         """Takes over the setpoint of a cycle, mm and mm/s (deg, deg/s)."""

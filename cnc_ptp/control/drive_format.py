@@ -1,0 +1,110 @@
+"""Drive formats both ways: kernel units here, the integers of a telegram or the volts of a DA converter there.
+
+Sources: TF5200 feedforward 4.1 (velocity), 4.2 (resolution, torque); spindle 2.2.4, P-AXIS-00128, 00129, 00159.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cnc_ptp.parameters.control_view import DriveParameters, DriveScaling
+
+DA_FULL_SCALE = 32767
+DA_VOLTS = 10.0
+
+
+class Digits(NamedTuple):
+    """A quantity as a signed integer of so many bits."""
+
+    scale: float
+    """Digits a unit; 0.0 puts nothing out."""
+    bits: int
+
+    def encode(self, value: float) -> int:
+        """The nearest integer to value · scale, at most what the length holds: -2^(bits-1) … 2^(bits-1) - 1."""
+        highest = (1 << (self.bits - 1)) - 1
+        return max(-highest - 1, min(highest, round(value * self.scale)))
+
+    def decode(self, digits: int) -> float:
+        """The value of an integer in kernel units."""
+        return digits / self.scale if self.scale else 0.0
+
+
+class CounterFormat(NamedTuple):
+    """A position as a counter that runs over: increments modulo 2^bits."""
+
+    scale: float
+    """Increments a mm (deg)."""
+    bits: int = 32
+
+    def encode(self, position: float) -> int:
+        """The counter as a signed integer, SGN32."""
+        return self.signed(round(position * self.scale))
+
+    def signed(self, increments: int) -> int:
+        """-2^(bits-1) … 2^(bits-1) - 1."""
+        half = 1 << (self.bits - 1)
+        return (increments + half) % (1 << self.bits) - half
+
+    def unsigned(self, increments: int) -> int:
+        """The same counter as UNS32, 0 … 2^bits - 1."""
+        return increments % (1 << self.bits)
+
+
+class CounterReader:
+    """Follows a counter over its end: the way since the last value is less than half its range."""
+
+    __slots__ = ("_format", "increments")
+
+    def __init__(self, counter: CounterFormat, *, position: float) -> None:
+        """`position` in mm (deg) is where the counter stands now."""
+        self._format = counter
+        self.increments = round(position * counter.scale)
+
+    @property
+    def position(self) -> float:
+        """mm or deg."""
+        return self.increments / self._format.scale
+
+    def read(self, counter: int) -> float:
+        """The position in mm (deg) that a new value of the counter, signed or unsigned, shows."""
+        self.increments += self._format.signed(counter - self.increments)
+        return self.increments / self._format.scale
+
+
+def da_volts(word: int) -> float:
+    """Output voltage of a DA word, V: 32767 is 10 V; the word -32768 gives -10 V too."""
+    return max(-DA_VOLTS, word * DA_VOLTS / DA_FULL_SCALE)
+
+
+class DriveFormat(NamedTuple):
+    """The formats of one drive, command by command and actual value by actual value."""
+
+    velocity: Digits
+    position: CounterFormat
+    lag: Digits
+    torque: Digits
+    additive_velocity: Digits
+    additive_torque: Digits
+    actual_position: CounterFormat
+    actual_velocity: Digits
+    actual_torque: Digits
+    sign: int
+    """-1 reverses commands and actual values (P-AXIS-00159)."""
+
+
+def drive_format(scaling: DriveScaling, drive: DriveParameters) -> DriveFormat:
+    """The formats that the parameters give; a DA word has a scale of its own (P-AXIS-00129 / P-AXIS-00128)."""
+    command, feedback = dict(drive.command_bits), dict(drive.feedback_bits)
+    return DriveFormat(
+        velocity=Digits(scaling.analogue if drive.analogue else scaling.velocity, command["velocity"]),
+        position=CounterFormat(scaling.position, command["position"]),
+        lag=Digits(scaling.position, command["lag"]),
+        torque=Digits(scaling.torque, command["torque"]),
+        additive_velocity=Digits(scaling.velocity, command["additive_velocity"]),
+        additive_torque=Digits(scaling.torque, command["additive_torque"]),
+        actual_position=CounterFormat(scaling.position, feedback["position"]),
+        actual_velocity=Digits(scaling.velocity, feedback["velocity"]),
+        actual_torque=Digits(scaling.torque, feedback["torque"]),
+        sign=-1 if drive.reverse else 1,
+    )

@@ -1,0 +1,72 @@
+"""What stands between the command of the NC and a drive that takes velocities: its own position loop, and the bus."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from cnc_ptp.control.drives.drive import Drive
+
+
+class PositionCommandedDrive:
+    """The drive closes the position loop: v = Kv (x_set - x) once a cycle, x as its encoder shows it."""
+
+    __slots__ = ("_drive", "_kv", "has_torque", "position", "torque", "velocity")
+
+    def __init__(self, drive: Drive, *, kv: float) -> None:
+        """`kv` in 1/s (S-0-0104, P-SIM-00019); `drive` takes velocities."""
+        self._drive, self._kv = drive, kv
+        self.has_torque = drive.has_torque
+        self._take_over()
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        """`command` is the set position, mm (deg)."""
+        self._drive.step(self._kv * (command - self._drive.position), additive_velocity, additive_torque)
+        self._take_over()
+
+    def _take_over(self) -> None:
+        drive = self._drive
+        self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
+
+
+class LagCommandedDrive:
+    """Dynamic servo control: the NC sends its following error, the drive multiplies it: v = Kv · lag."""
+
+    __slots__ = ("_drive", "_kv", "has_torque", "position", "torque", "velocity")
+
+    def __init__(self, drive: Drive, *, kv: float) -> None:
+        """`kv` in 1/s; `drive` takes velocities."""
+        self._drive, self._kv = drive, kv
+        self.has_torque = drive.has_torque
+        self._take_over()
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        """`command` is the following error (XERR), mm (deg); NSOLL_B is the additive velocity."""
+        self._drive.step(self._kv * command, additive_velocity, additive_torque)
+        self._take_over()
+
+    def _take_over(self) -> None:
+        drive = self._drive
+        self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
+
+
+class DelayedDrive:
+    """Commands are some cycles on the way to the drive."""
+
+    __slots__ = ("_commands", "_drive", "has_torque", "position", "torque", "velocity")
+
+    def __init__(self, drive: Drive, *, cycles: int, rest: float) -> None:
+        """`cycles` >= 1; `rest` is the command under which the drive stands until the first one has arrived."""
+        self._drive = drive
+        self._commands = deque([(rest, 0.0, 0.0)] * cycles)
+        self.has_torque = drive.has_torque
+        self._take_over()
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        """Carries out the command of some cycles ago."""
+        self._commands.append((command, additive_velocity, additive_torque))
+        self._drive.step(*self._commands.popleft())
+        self._take_over()
+
+    def _take_over(self) -> None:
+        drive = self._drive
+        self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
