@@ -10,7 +10,7 @@ from machine_support import MILL, MachineBench
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters import ChannelSpindle, MachineParameters, Synchronisation
 
 RESETS = [("x", "reset_feedforward", {}), ("y", "reset_feedforward", {}), ("z", "reset_feedforward", {})]
 Sent = tuple[str, str, dict[str, object]]
@@ -25,6 +25,13 @@ def permitting(*names: str) -> MachineParameters:
         return replace(axis, control=replace(axis.control, friction=friction))
 
     return replace(MILL, axes={name: permit(name) for name in MILL.axes})
+
+
+def with_two_spindles() -> MachineParameters:
+    mos, channel = Synchronisation.MOS, MILL.channels["channel"]
+    channel = replace(channel, spindles=(*channel.spindles, ChannelSpindle("S2", "t", mos, mos, mos, mos, mos)))
+    spindles = {**MILL.spindles, "t": replace(MILL.spindles["s"], name="t")}
+    return replace(MILL, spindles=spindles, channels={"channel": channel})
 
 
 def sent(bench: MachineBench) -> list[tuple[int, Sent]]:
@@ -99,6 +106,19 @@ def test_compensation_stays_after_program_end_and_start() -> None:
         ("x", "set_friction_compensation", {"on": True})
     ] * 2
     assert [c for _, c in sent(bench) if c[1] == "reset_feedforward"] == RESETS * 2
+
+
+def test_spindles_by_their_names_one_command_each() -> None:
+    """The example of TF5200 feedforward 3."""
+    words = ["S[G135]", "S[G136=80]", "S[G137]", "S2[G135 G136=90]", "S2[G136=0]"]
+    bench = run("%P\n" + "\n".join(words) + "\nM30", with_two_spindles())
+    assert [command for _, command in sent(bench) if command[1] == "set_feedforward"] == [
+        ("s", "set_feedforward", {"on": True}),
+        ("s", "set_feedforward", {"weight_percent": 80.0}),
+        ("s", "set_feedforward", {"on": False}),
+        ("t", "set_feedforward", {"on": True, "weight_percent": 90.0}),
+        ("t", "set_feedforward", {"weight_percent": 0.0}),
+    ]
 
 
 def test_mdi_resets_nothing() -> None:
