@@ -23,7 +23,7 @@ def found_lines(data: AxisData, fit: DriveFit, gain: GainProposal, inertia: Iner
         "gain": f"{fit.gain:.4f} (actual velocity over command velocity)",
         "misfit": f"{100.0 * fit.misfit:.2f} % of what the velocity varies, {fit.cycles} cycles in motion",
         "inertia": "not found: no torque in the recording, or too little acceleration",
-        "Kv limit": f"{gain.limit:.0f} 1/s, where the loop begins to oscillate",
+        "Kv limit": f"about {gain.limit:.0f} 1/s, where the loop begins to oscillate",
         "Kv proposed": f"{gain.proposed:.1f} 1/s (damping 1)",
         "Kv at most": f"{gain.fastest:.1f} 1/s (damping 0.7, 4 % overshoot)",
         "Kv now": f"{data.kv:g} 1/s (P-AXIS-00099)",
@@ -44,7 +44,7 @@ def warnings(data: AxisData, fit: DriveFit, gain: GainProposal) -> Iterator[str]
             "velocity (P-AXIS-00205, P-AXIS-00206, P-AXIS-00128, P-AXIS-00129)"
         )
     if kv >= gain.limit:
-        yield f"{head} Kv {kv:g} 1/s is not below the stability limit {gain.limit:.0f} 1/s; the axis oscillates"
+        yield f"{head} Kv {kv:g} 1/s is not below the limit of about {gain.limit:.0f} 1/s; the axis oscillates"
     elif kv > gain.fastest:
         yield f"{head} Kv {kv:g} 1/s is above {gain.fastest:.1f} 1/s; the axis overshoots"
 
@@ -70,7 +70,7 @@ def dynamics_yaml(data: AxisData, fit: DriveFit, gain: GainProposal, inertia: In
         "    getriebe:",
         f'      "{data.gear}":',
         f"        kv: {round(PER_SECOND * gain.proposed)}  # 0.01/s: 1/(4 x {1e3 * gain.total:.3f} ms), damping 1; "
-        f"Ta + dead time + half a cycle. Limit {gain.limit:.0f} 1/s, before {data.kv:g} 1/s",
+        f"Ta + dead time + half a cycle. Limit about {gain.limit:.0f} 1/s, before {data.kv:g} 1/s",
     ]
     if inertia is not None:
         load, deviation = load_of(data, inertia)

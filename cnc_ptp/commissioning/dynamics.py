@@ -27,7 +27,10 @@ SLOWEST_POLE = 0.9999
 POLES = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 0.94, 0.98, SLOWEST_POLE)
 """Of the first search."""
 HARDLY_WORSE = 1.2
-"""Ratio of misfits below which a dead time is not worth being assumed."""
+"""Ratio of misfits up to which a shorter dead time is preferred: lag and dead time look alike …"""
+STILL_POSSIBLE = 1.5
+"""… and up to which another one has to be reckoned with."""
+NO_LAG = 1e-9
 NEGLIGIBLE = 1e-12
 """What is left of a start velocity after so many cycles that it does not count."""
 AFTERWARDS = 0.1
@@ -44,6 +47,7 @@ class DriveFit:
     """What was found. Times in s.
 
     `misfit`: root mean square of (simulated - recorded velocity) over that of (velocity - its mean).
+    `alternatives`: (Ta, dead cycles) that fit nearly as well, as lag and dead time look alike in smooth motions.
     """
 
     time_constant: float
@@ -52,6 +56,7 @@ class DriveFit:
     misfit: float
     cycles: int
     cycle_time: float
+    alternatives: tuple[tuple[float, int], ...] = ()
 
     @property
     def dead_time(self) -> float:
@@ -77,8 +82,12 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
     Raises CncError 27003 too short, 27004 no motion, 27012 velocity never changes, 27014 no command, 27013 no fit.
     """
     pieces = _pieces(trace)
-    error, pole, dead = _best(pieces)
-    time_constant = 0.0 if pole <= 1e-9 else -trace.cycle_time / math.log(pole)
+    fits = [_fit(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)]
+    least = min(fit[0] for fit in fits)
+    error, pole, dead = next(fit for fit in fits if fit[0] <= HARDLY_WORSE**2 * least)
+    alternatives = tuple(
+        (_time_constant(fit[1], trace.cycle_time), fit[2]) for fit in fits if fit[0] <= STILL_POSSIBLE**2 * least
+    )
     actual = np.concatenate([piece.actual for piece in pieces])
     misfit = math.sqrt(error) / float(np.linalg.norm(actual - actual.mean()))
     if misfit > LARGEST_MISFIT or pole >= SLOWEST_POLE:
@@ -89,7 +98,13 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
             f"{100.0 * misfit:.0f} %, at most {100.0 * LARGEST_MISFIT:.0f} %); nothing was made, look for errors and "
             "the torque limit in the recording",
         )
-    return DriveFit(time_constant, dead, _errors(pieces, pole, dead)[1], misfit, len(actual), trace.cycle_time)
+    gain = _errors(pieces, pole, dead)[1]
+    time_constant = _time_constant(pole, trace.cycle_time)
+    return DriveFit(time_constant, dead, gain, misfit, len(actual), trace.cycle_time, alternatives)
+
+
+def _time_constant(pole: float, cycle_time: float) -> float:
+    return 0.0 if pole <= NO_LAG else -cycle_time / math.log(pole)
 
 
 def _pieces(trace: AxisTrace) -> list[_Piece]:
@@ -145,13 +160,6 @@ def _first_cycles(spans: Sequence[Span]) -> list[Span]:
         if total >= MOST_CYCLES:
             break
     return kept
-
-
-def _best(pieces: Sequence[_Piece]) -> tuple[float, float, int]:
-    """The fit with the shortest dead time that is hardly worse than the best one: lag and dead time look alike."""
-    fits = [_fit(pieces, dead) for dead in range(LONGEST_DEAD_TIME + 1)]
-    least = min(fit[0] for fit in fits)
-    return next(fit for fit in fits if fit[0] <= HARDLY_WORSE**2 * least)
 
 
 def _fit(pieces: Sequence[_Piece], dead: int) -> tuple[float, float, int]:

@@ -17,9 +17,9 @@ HIGHEST = 1e6
 class GainProposal:
     """Kv in 1/s, times in s.
 
-    `total`: Ta + dead time + T/2 (the command is held for a cycle, half of it late on average); `limit`: Kv at which
-    the loop begins to oscillate; `proposed` = 1/(4·total): damping 1, no overshoot; `fastest` = 1/(2·total): damping
-    0.71, 4 % overshoot, more is not advisable.
+    `total`: Ta + dead time + T/2 (the command is held for a cycle, half of it late on average). `limit`: Kv at which
+    the loop begins to oscillate, the lowest of all (Ta, dead time) that fit. `proposed` = 1/(4·total): damping 1, no
+    overshoot. `fastest` = 1/(2·total): damping 0.71, 4 % overshoot, more is not advisable.
     """
 
     total: float
@@ -36,7 +36,8 @@ def propose_gain(fit: DriveFit) -> GainProposal:
     times the proposal, a third of the limit is proposed.
     """
     total = fit.delay + 0.5 * fit.cycle_time
-    limit = stability_limit(fit.time_constant, fit.dead_cycles, fit.cycle_time)
+    possible = {(fit.time_constant, fit.dead_cycles), *fit.alternatives}
+    limit = min(stability_limit(lag, dead, fit.cycle_time) for lag, dead in possible)
     proposed = min(1.0 / (4.0 * total), limit / 3.0)
     return GainProposal(total, limit, proposed, min(1.0 / (2.0 * total), limit / 2.0))
 

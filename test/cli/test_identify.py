@@ -1,6 +1,7 @@
 """`cnc_ptp identify`: from the simulated plant, from recordings, and what is refused."""
 
 import math
+import re
 import sys
 
 import numpy as np
@@ -10,6 +11,7 @@ from commands_support import MILL, PTP, call, changed_mill, paste, recording_of
 
 from cnc_ptp import cli
 from cnc_ptp.parameters import load_machine, read_machine
+from cnc_ptp.parameters.stability import stability_limit
 from cnc_ptp.recording.reader import read_recording
 
 
@@ -146,6 +148,11 @@ def test_the_cascaded_drive_of_x_with_friction(tmp_path):
     written = yaml.safe_load(path.read_text())["/x"]["ros__parameters"]
     assert written["vorsteuer"]["vs_a_faktor"] == pytest.approx(3000, rel=0.02)
     assert written["getriebe"]["0"]["load"] == pytest.approx(0.002, rel=0.01)
+    # Seen from outside the limit is a guess, but no wild one; the proposal is far below.
+    limit = float(re.search(r"Kv limit +about (\d+) 1/s", result.stdout)[1])
+    axis = read_machine(str(MILL)).axes["x"].control
+    assert 0.5 < limit / stability_limit(axis.plant, 0.001) < 1.5
+    assert written["getriebe"]["0"]["kv"] < 100 * limit / 3
     again = call("identify", "dynamics", "x", "--recording", recording)
     assert yaml.safe_load(again.stdout[again.stdout.index("# Drive of axis x") :]) == yaml.safe_load(path.read_text())
 

@@ -40,6 +40,7 @@ def test_time_constant_and_dead_time_come_back(time_constant, dead):
     assert fit.time_constant == pytest.approx(time_constant, rel=1e-4, abs=2e-5)
     assert fit.gain == pytest.approx(1.0, rel=1e-6)
     assert fit.misfit < 1e-5
+    assert fit.alternatives == ((fit.time_constant, dead),)
     assert fit.delay == pytest.approx(time_constant + dead * T, rel=1e-4, abs=2e-5)
 
 

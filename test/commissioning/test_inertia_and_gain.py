@@ -125,3 +125,10 @@ def test_the_proposal_of_the_mill():
     proposal = propose_gain(DriveFit(0.003, 0, 1.0, 0.0, 1000, T))
     assert proposal.proposed == pytest.approx(71.43, abs=0.01)
     assert proposal.fastest == pytest.approx(142.86, abs=0.01)
+
+
+def test_the_limit_reckons_with_all_that_fits():
+    fit = DriveFit(0.003, 0, 1.0, 0.0, 1000, T, alternatives=((0.003, 0), (0.001, 2)))
+    proposal = propose_gain(fit)
+    assert proposal.limit == stability_limit(0.001, 2, T) < stability_limit(0.003, 0, T)
+    assert proposal.proposed == pytest.approx(71.43, abs=0.01)
