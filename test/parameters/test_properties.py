@@ -45,6 +45,8 @@ def values_of(declaration: Declaration) -> st.SearchStrategy[Any]:
         return st.sampled_from(list(declaration.choices))
     if declaration.type == "bool":
         return st.booleans()
+    if declaration.type == "strings":
+        return st.lists(st.sampled_from(["S-0-0036", "S-0-0051", "60B2", "nothing"]))
     if declaration.type in ("int", "float"):
         low, high = (
             [limit.value + (0 if limit.inclusive else step) for limit in limits if not isinstance(limit.value, str)]
@@ -70,7 +72,8 @@ def test_values_inside_the_range_come_back(data: st.DataObject) -> None:
         assert {problem.error_id for problem in error.problems} <= crossed | OF_THE_MANUALS
         return
     parameters = machine.raw(UNITS[kind])
-    assert parameters.value(declaration.id, *(0,) * declaration.index_count) == value
+    wanted = tuple(value) if isinstance(value, list) else value
+    assert parameters.value(declaration.id, *(0,) * declaration.index_count) == wanted
 
 
 def test_every_default_round_trips() -> None:
