@@ -4,6 +4,7 @@
 ParameterError with everything that is wrong.
 """
 
+from cnc_ptp.parameters.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle
 from cnc_ptp.parameters.declarations import Declaration, catalogue
 from cnc_ptp.parameters.descriptors import RosDescriptor, ros_descriptors
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
@@ -12,9 +13,6 @@ from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.synchronisation import Synchronisation
 from cnc_ptp.parameters.views import (
     AxisParameters,
-    ChannelAxis,
-    ChannelParameters,
-    ChannelSpindle,
     MachineParameters,
     SpindleParameters,
 )
