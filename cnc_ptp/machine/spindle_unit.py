@@ -39,16 +39,17 @@ class SpindleUnit(Unit):
         """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
         super().__init__(parameters.name)
         self._parameters = parameters
+        self._gear = parameters.gears[parameters.gear]
         self._cycle_time = cycle_time
         self._controller = PositionController(
-            kv=parameters.kv,
-            following_error_limit=parameters.following_error_limit,
-            monitoring=parameters.following_error_monitoring,
+            kv=self._gear.kv,
+            following_error_limit=self._gear.following_error_limit,
+            monitoring=self._gear.following_error_monitoring,
         )
         self._drive: Drive = drive or SimulatedDrive(
             cycle_time=cycle_time,
             time_constant=parameters.drive_time_constant,
-            encoder_increment=parameters.encoder_increment,
+            encoder_increment=self._gear.encoder_increment,
             start_position=parameters.start_position,
         )
         self._origin = 0
@@ -90,7 +91,7 @@ class SpindleUnit(Unit):
     def _check_speed(self, command: str, speed_rpm: float) -> None:
         if speed_rpm < 0.0:
             self._refuse(command, BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
-        limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
+        limit_rpm = self._gear.max_speed / DEG_S_PER_RPM
         if speed_rpm > limit_rpm:
             reason = f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm (P-AXIS-00212)"
             self._refuse(command, SPEED_TOO_HIGH, reason)
@@ -144,7 +145,7 @@ class SpindleUnit(Unit):
             self._state = S.STANDSTILL
         following_error = position - drive.position
         if self._error_id == 0 and self._controller.exceeds_limit(following_error):
-            limit = self._parameters.following_error_limit
+            limit = self._gear.following_error_limit
             self._fault(
                 cycle, FOLLOWING_ERROR, f"following error {following_error:.3f} deg exceeds {limit} deg (P-AXIS-00168)"
             )
@@ -160,7 +161,7 @@ class SpindleUnit(Unit):
             self._mode,
             self._parameters.gear,
             self._speed_reached(actual_speed),
-            abs(actual_speed) <= self._parameters.zero_speed_deg_s,
+            abs(actual_speed) <= self._gear.zero_speed,
             self._parameters.referenced_at_start,
             self._state,
             self._error_id,
@@ -175,7 +176,7 @@ class SpindleUnit(Unit):
         """
         wanted = self._wanted_speed
         if wanted == 0.0:
-            return self._commanded_speed == 0.0 and abs(actual_speed) <= self._parameters.zero_speed_deg_s
+            return self._commanded_speed == 0.0 and abs(actual_speed) <= self._gear.zero_speed
         return abs(actual_speed - wanted) <= self._parameters.speed_reached_band * abs(wanted)
 
     def _setpoint(self, cycle: int) -> tuple[float, float, float, float]:
@@ -183,15 +184,15 @@ class SpindleUnit(Unit):
 
     def _ramp(self, cycle: int) -> None:
         position, speed, _, _ = self._setpoint(cycle)
-        limit = self._parameters.max_speed_deg_s
+        limit = self._gear.max_speed
         self._wanted_speed = max(-limit, min(limit, self._commanded_speed * self._override_percent / 100.0))
         self._origin = cycle
         self._profile = plan_speed(
             position,
             speed,
             self._wanted_speed,
-            acceleration=self._parameters.acceleration,
-            deceleration=self._parameters.deceleration,
+            acceleration=self._gear.acceleration,
+            deceleration=self._gear.deceleration,
         )
 
     def _check_preferred_direction(self, cycle: int, direction: str, sign: float) -> None:

@@ -10,19 +10,18 @@ from cnc_ptp.parameters.descriptors import RosDescriptor, ros_descriptors
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.loader import load_machine, read_machine
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.spindle_view import CurveParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.synchronisation import Synchronisation
-from cnc_ptp.parameters.views import (
-    AxisParameters,
-    MachineParameters,
-    SpindleParameters,
-)
+from cnc_ptp.parameters.views import AxisParameters, MachineParameters
 
 __all__ = [
     "AxisParameters",
     "ChannelAxis",
     "ChannelParameters",
     "ChannelSpindle",
+    "CurveParameters",
     "Declaration",
+    "GearParameters",
     "MachineParameters",
     "ParameterError",
     "ParameterSet",

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
+from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
 SIMULATED_DRIVES = (4, 16)
@@ -18,6 +19,7 @@ def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
         else:
             yield from simulated_drive(parameters)
             yield from following_error(parameters)
+            yield from corrected_resolution(parameters)
 
 
 def line(parameters: ParameterSet, number: str, indexes: tuple[int, ...], text: str) -> str:
@@ -28,7 +30,7 @@ def line(parameters: ParameterSet, number: str, indexes: tuple[int, ...], text: 
 def without_effect(parameters: ParameterSet) -> Iterator[str]:
     for ros_name in parameters.given:
         declaration, indexes, _ = parameters.find(ros_name)
-        if not declaration.effective:
+        if not declaration.effective_for(parameters.axis_type):
             yield line(parameters, declaration.id, indexes, "accepted, but without effect in this version")
 
 
@@ -45,6 +47,13 @@ def simulated_drive(parameters: ParameterSet) -> Iterator[str]:
     drive = parameters.number("P-AXIS-00020")
     if drive not in SIMULATED_DRIVES:
         yield line(parameters, "P-AXIS-00020", (), f"drive type {drive} does not exist here, the drive is simulated")
+
+
+def corrected_resolution(parameters: ParameterSet) -> Iterator[str]:
+    for gear in parameters.used_indexes("getriebe"):
+        for number, warning in CORRECTED.items():
+            if parameters.number(number, gear) == 0:
+                yield line(parameters, number, (gear,), f"P-WARN-{warning} value 0 is corrected to 1")
 
 
 def following_error(parameters: ParameterSet) -> Iterator[str]:

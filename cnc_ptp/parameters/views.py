@@ -8,6 +8,7 @@ from cnc_ptp.parameters import notices
 from cnc_ptp.parameters.channel_view import ChannelParameters, channel_view
 from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.spindle_view import SpindleParameters, spindle_view
 
 MODULO = 0x4
 VIRTUAL_AXIS = 16
@@ -69,42 +70,6 @@ class AxisParameters:
     velocity_window: float
     """An actual velocity below it is 0 for slaves."""
     velocity_filter_time: float
-    powered_at_start: bool
-    referenced_at_start: bool
-    start_position: float
-
-
-@dataclass(frozen=True, slots=True)
-class SpindleParameters:
-    """A spindle. Positions in °, speeds in °/s, accelerations in °/s², times in s."""
-
-    name: str
-    number: int
-    drive_type: int
-    kv: float
-    max_speed_deg_s: float
-    positioning_speed_deg_s: float
-    max_acceleration: float
-    acceleration: float
-    deceleration: float
-    emergency_deceleration: float
-    speed_reached_band: float
-    """Speed reached within (1 ± band) times the commanded speed."""
-    zero_speed_deg_s: float
-    preferred_direction: int
-    """+1 or -1 where only that direction is permitted (P-AXIS-00224), 0 otherwise."""
-    gear: int
-    """Gear stage at start, from 1."""
-    stops_at_reset: bool
-    modulo_low: float
-    modulo_high: float
-    following_error_monitoring: bool
-    following_error_limit: float
-    following_error_standstill_limit: float
-    position_window: float
-    encoder_increment: float
-    drive_time_constant: float
-    max_override_percent: float
     powered_at_start: bool
     referenced_at_start: bool
     start_position: float
@@ -194,39 +159,6 @@ def axis_view(parameters: ParameterSet) -> AxisParameters:
     )
 
 
-def spindle_view(parameters: ParameterSet) -> SpindleParameters:
-    gear = active_gear(parameters)
-    return SpindleParameters(
-        name=parameters.node,
-        number=int(parameters.number("P-AXIS-00016")),
-        drive_type=int(parameters.number("P-AXIS-00020")),
-        kv=parameters.kernel("P-AXIS-00099", gear),
-        max_speed_deg_s=parameters.kernel("P-AXIS-00212", gear),
-        positioning_speed_deg_s=parameters.kernel("P-AXIS-00209", gear),
-        max_acceleration=parameters.kernel("P-AXIS-00008", gear),
-        acceleration=parameters.kernel("P-AXIS-00001", gear),
-        deceleration=parameters.kernel("P-AXIS-00002", gear),
-        emergency_deceleration=emergency_deceleration(parameters, gear),
-        speed_reached_band=parameters.kernel("P-AXIS-00217"),
-        zero_speed_deg_s=parameters.kernel("P-AXIS-00216", gear),
-        preferred_direction=preferred_direction(parameters),
-        gear=gear + 1,
-        stops_at_reset=not parameters.number("P-AXIS-00455"),
-        modulo_low=parameters.kernel("P-AXIS-00127", gear),
-        modulo_high=parameters.kernel("P-AXIS-00126", gear),
-        following_error_monitoring=parameters.number("P-AXIS-00172", gear) in MONITORING_TYPES,
-        following_error_limit=parameters.kernel("P-AXIS-00168", gear),
-        following_error_standstill_limit=parameters.kernel("P-AXIS-00169", gear),
-        position_window=parameters.kernel("P-AXIS-00236", gear),
-        encoder_increment=encoder_increment(parameters, gear),
-        drive_time_constant=parameters.kernel("P-SIM-00001"),
-        max_override_percent=parameters.percent("P-AXIS-00109"),
-        powered_at_start=bool(parameters.number("P-SIM-00004")),
-        referenced_at_start=bool(parameters.number("P-SIM-00005")),
-        start_position=parameters.kernel("P-SIM-00003"),
-    )
-
-
 def active_gear(parameters: ParameterSet) -> int:
     """Index of the gear record in use after start-up."""
     return int(parameters.number("P-AXIS-00079")) - 1
@@ -239,9 +171,3 @@ def jerk(parameters: ParameterSet, gear: int) -> float:
 
 def emergency_deceleration(parameters: ParameterSet, gear: int) -> float:
     return parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear)
-
-
-def preferred_direction(parameters: ParameterSet) -> int:
-    if not parameters.number("P-AXIS-00224"):
-        return 0
-    return 1 if parameters.number("P-AXIS-00031") else -1

@@ -39,7 +39,7 @@ def test_mill() -> None:
         assert axis.following_error_limit > axis.max_velocity / axis.kv
     assert mill.axes["x"].max_velocity == 500.0
     assert mill.spindles["s"].max_speed_deg_s == 12_000 * 6.0
-    assert mill.spindles["s"].acceleration == 36_000.0
+    assert mill.spindles["s"].gears[1].acceleration == 36_000.0
 
 
 def test_channel_of_the_mill() -> None:
