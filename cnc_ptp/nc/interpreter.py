@@ -4,12 +4,14 @@ from collections.abc import Callable, Iterator
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Motion, Source
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, Motion, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Block, Channel, ModalState, Program
+from cnc_ptp.nc.program import Block, Channel, ModalState, Program, SpindleTable
+from cnc_ptp.nc.spindle_links import end_of_links
+from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import G_CODES
 
 CENTRE_OFFSET = 2.0
@@ -30,7 +32,7 @@ def interpret(
     program: Program,
     start: tuple[float, ...],
     axes: tuple[str, ...],
-    spindles: tuple[str, ...] = ("S",),
+    spindles: tuple[str, ...] | SpindleTable = ("S",),
     *,
     state: ModalState | None = None,
     check_target: CheckTarget | None = None,
@@ -41,7 +43,8 @@ def interpret(
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
-    `spindles`: names as programmed, the first is the main spindle (DIN words M3, S1000).
+    `spindles`: the first is the main spindle (DIN words M3, S1000); names are enough where gears and links are not
+    needed.
     `state`: modal state to continue from and to carry on (MDI); None begins with the initial state.
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
@@ -51,7 +54,7 @@ def interpret(
     Raises ProgramError; the state is then undefined, so MDI continues with a copy taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
-    channel = Channel(axes, index, spindles, centre_offset, centre_offset_ratio)
+    channel = Channel(axes, index, spindle_table(spindles), centre_offset, centre_offset_ratio)
     state = ModalState() if state is None else state
     state.position = tuple(start)
     for count, block in enumerate(_executed(program, block_skip, call_depth)):
@@ -101,6 +104,9 @@ def _resolve(
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.error is not None:
         raise block.error
+    if block.command is not None:
+        functions = block.command.run(channel, state, block, block.command)
+        return CanonicalBlock(block.source, functions, None, (), "") if functions else None
     path = G_CODES[state.path]
     for code in block.codes:
         if code.motion is not None:
@@ -112,7 +118,9 @@ def _resolve(
     motion: Motion | None = None
     if (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
-    before = block_functions(channel, state, block) if block.functions and not path.own_words else ()
+    before: tuple[Function, ...] = ()
+    if block.functions and (path.spindle or not path.own_words):
+        before = block_functions(channel, state, block)
     if motion is not None and not isinstance(motion, Dwell):
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None
@@ -121,6 +129,8 @@ def _resolve(
                 _check_move(state.position, motion, block.source, check_target)
             state.position = motion.target
     stop = block.flow if block.flow != "return" else ""
+    if stop == "end" and state.spindle.active:
+        before += end_of_links(state)
     if motion is None and not before and not stop:
         return None
     return CanonicalBlock(block.source, before, motion, (), stop)
@@ -138,7 +148,7 @@ def check(
     text: str,
     file: str,
     axes: tuple[str, ...],
-    spindles: tuple[str, ...] = ("S",),
+    spindles: tuple[str, ...] | SpindleTable = ("S",),
     *,
     start: tuple[float, ...] | None = None,
     check_target: CheckTarget | None = None,

@@ -18,7 +18,8 @@ points = st.lists(st.tuples(values, values, values), min_size=1, max_size=20)
 VOCABULARY = """
     G0 G1 G01 G2 G3 G04 G4 G17 G18 G19 G90 G91 G161 G162 G165 G54 M0 M3 M4 M5 M8 M29 M30 M19 N10 X10 X-5.5 Y3 Z.5 C1 X=3
     X1=2 I5 J-5 K1 R10 R-3 F100 F0 S500 S[M3 S[M3] S2[M5] S2[REV10] T1 D0 D1.5 / /2 % %L %UP LL UP ( ) ; = - . 12 #IF E3
-    [ ] é
+    [ ] é S.POS=5 S.POS POS9 S[M19 G74] REV1 S1 G74 G167 M19 M41 #EXPL SYN] #MAIN SPINDLE [S2] [S9] #AX LINK ON OFF ALL
+    [1, S2=S] #ENABLE #DISABLE #SET S[DEFAULT_DYNAMIC_DATA] DEFAULT_DYNAMIC_DATA
 """
 words = st.sampled_from(VOCABULARY.split())
 breaks = st.sampled_from(["\n", "\n", " ", "\t", "%L UP\n", "\n%MAIN\n", "\nM30", "LL UP\n"])
