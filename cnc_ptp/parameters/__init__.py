@@ -4,7 +4,7 @@
 ParameterError with everything that is wrong.
 """
 
-from cnc_ptp.parameters.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle
+from cnc_ptp.parameters.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
 from cnc_ptp.parameters.declarations import Declaration, catalogue
 from cnc_ptp.parameters.descriptors import RosDescriptor, ros_descriptors
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
@@ -30,6 +30,7 @@ __all__ = [
     "RosDescriptor",
     "SpindleParameters",
     "Synchronisation",
+    "ToolLimits",
     "catalogue",
     "load_machine",
     "read_machine",

@@ -10,6 +10,7 @@ from cnc_ptp.parameters.channels import ChannelAxisEntry, axis_entries, is_path_
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.problems import problem
+from cnc_ptp.parameters.spindle_list_checks import SPINDLE_LIST_CHECKS
 
 Sets = Mapping[str, ParameterSet]
 
@@ -43,6 +44,8 @@ def unit_trouble(
 ) -> tuple[str, int]:
     if entry.number == 0:
         return "no logical axis number is given", errors.NO_SUCH_AXIS
+    if entry.plc_control:
+        return plc_spindle_trouble(entry, numbers)
     if entry.node is None:
         known = ", ".join(
             f"{int(unit.number('P-AXIS-00016'))} /{unit.node}" for unit in sets.values() if unit.kind != "channel"
@@ -57,22 +60,42 @@ def unit_trouble(
     return "", 0
 
 
+def plc_spindle_trouble(entry: ChannelAxisEntry, numbers: dict[int, ChannelAxisEntry]) -> tuple[str, int]:
+    """A spindle that the PLC moves through the channel has a number that no unit has (TF5200 spindle 2.2.2.2)."""
+    if entry.node is not None:
+        rule = "a spindle with P-CHAN-00069 (plc_control) has a number of its own"
+        return f"value {entry.number} is /{entry.node}, {rule}", errors.DUPLICATE_NUMBER
+    if numbers.setdefault(entry.number, entry) is not entry:
+        return f"value {entry.number} is listed twice in the channel", errors.DUPLICATE_NUMBER
+    return "", 0
+
+
 def name_trouble(
     channel: ParameterSet, entry: ChannelAxisEntry, name: str, names: dict[str, ChannelAxisEntry]
 ) -> Iterator[Problem]:
     """A program name has the right first letter (a name made of the node name may not) and is used once."""
+    text = wrong_name(entry, name) or used_twice(entry, names)
+    if text:
+        place = channel.where(name, *entry.indexes) if entry.indexes else channel.place
+        yield Problem(errors.UNIT_NAME, place, f"channel /{channel.node}: {text}")
+
+
+def wrong_name(entry: ChannelAxisEntry, name: str) -> str:
     letters, listed_as = ("S", "spindel[i]") if name == "P-CHAN-00007" else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
-    if not entry.name:
-        return
-    if entry.name[0] not in letters:
+    if entry.plc_control and not entry.own_name:
+        return f"a spindle with P-CHAN-00069 (plc_control) has no node name: give {listed_as}.bezeichnung"
+    if entry.name and entry.name[0] not in letters:
         rule = f"the first letter must be one of {', '.join(letters)}: give {listed_as}.bezeichnung"
-        text = f"/{entry.node} would be called {entry.name}, {rule}"
-    elif names.setdefault(entry.name, entry) is not entry:
-        text = f"program name {entry.name} is used twice"
-    else:
-        return
-    place = channel.where(name, *entry.indexes) if entry.indexes else channel.place
-    yield Problem(errors.UNIT_NAME, place, f"channel /{channel.node}: {text}")
+        return f"/{entry.node} would be called {entry.name}, {rule}"
+    return ""
+
+
+def used_twice(entry: ChannelAxisEntry, names: dict[str, ChannelAxisEntry]) -> str:
+    """The main spindle has two names: its own counts as soon as another one is the main spindle."""
+    for used in (entry.name, entry.own_name):
+        if used and names.setdefault(used, entry) is not entry:
+            return f"program name {used} is used twice"
+    return ""
 
 
 def axis_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
@@ -103,4 +126,11 @@ def main_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     yield problem(channel, errors.MAIN_SPINDLE, "P-CHAN-00051", (), text)
 
 
-CHANNEL_CHECKS = (channel_axes, channel_spindles, axis_count, spindle_count, main_spindle)
+CHANNEL_CHECKS = (
+    channel_axes,
+    channel_spindles,
+    axis_count,
+    spindle_count,
+    main_spindle,
+    *SPINDLE_LIST_CHECKS,
+)

@@ -7,7 +7,6 @@ from cnc_ptp.parameters.parameter_set import ParameterSet
 
 SIMULATED_DRIVES = (4, 16)
 VELOCITY_INDEPENDENT = 4
-LATE_TYPES = ("MVS_SLM", "MVS_SLP", "MNE_SNS")
 
 
 def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
@@ -15,7 +14,8 @@ def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
     for parameters in sets.values():
         yield from without_effect(parameters)
         if parameters.kind == "channel":
-            yield from late_synchronisation(parameters)
+            yield from tools_without_limit(parameters)
+            yield from couplings_without_effect(parameters)
         else:
             yield from simulated_drive(parameters)
             yield from following_error(parameters)
@@ -34,13 +34,24 @@ def without_effect(parameters: ParameterSet) -> Iterator[str]:
             yield line(parameters, declaration.id, indexes, "accepted, but without effect in this version")
 
 
-def late_synchronisation(parameters: ParameterSet) -> Iterator[str]:
-    """Types that wait later than the path does here."""
-    for ros_name in parameters.given:
-        declaration, indexes, value = parameters.find(ros_name)
-        late = [name for name in LATE_TYPES if "_synch" in ros_name and name in str(value)]
-        if late:
-            yield line(parameters, declaration.id, indexes, f"{late[0]} waits before the motion, like MVS_SVS")
+def tools_without_limit(parameters: ParameterSet) -> Iterator[str]:
+    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
+    for tool in parameters.used_indexes("wz"):
+        if not parameters.number("P-TOOL-00012", tool):
+            continue
+        for number in ("P-TOOL-00014", "P-TOOL-00015"):
+            if not parameters.is_given(number, tool):
+                yield line(parameters, number, (tool,), f"not given, tool {tool} has no such limit")
+
+
+def couplings_without_effect(parameters: ParameterSet) -> Iterator[str]:
+    """Coupled pairs that no command can enable: path axes, and other groups than 0."""
+    for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
+        for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
+            if group:
+                yield line(parameters, "P-CHAN-00038", (group, pair), "only coupling group 0 is taken from here")
+            elif not parameters.number("P-CHAN-00061", group, pair):
+                yield line(parameters, "P-CHAN-00061", (group, pair), "a pair of path axes is not coupled here")
 
 
 def simulated_drive(parameters: ParameterSet) -> Iterator[str]:

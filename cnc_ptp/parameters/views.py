@@ -83,6 +83,8 @@ class MachineParameters:
     block_cycles: int
     watchdog_ms: int
     life_sign_timeout_ms: int
+    handshake_timeout_ms: int
+    """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]
@@ -102,6 +104,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         block_cycles=int(machine.number("P-MACH-00002")),
         watchdog_ms=int(machine.number("P-MACH-00003")),
         life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
+        handshake_timeout_ms=int(machine.number("P-MACH-00060")),
         channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
         axes={unit.node: axis_view(unit) for unit in of_kind["axis"]},
         spindles={unit.node: spindle_view(unit) for unit in of_kind["spindle"]},

@@ -46,7 +46,9 @@ def test_channel_of_the_mill() -> None:
     channel = read_machine(CONFIG / "mill.yaml").channels["channel"]
     wait, tell = Synchronisation.MVS_SVS, Synchronisation.MOS
     assert channel.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("Z", "z"))
-    assert channel.spindles == (ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell),)
+    assert channel.spindles == (
+        ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell, own_name="S1", number=4),
+    )
     assert (channel.main_spindle, channel.m_functions[8]) == ("S", wait)
 
 

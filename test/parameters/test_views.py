@@ -182,8 +182,8 @@ def test_channel_of_defaults_has_everything() -> None:
     view = channel()
     assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("C", "c"))
     assert view.spindles == (
-        ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE),
-        ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE),
+        ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE, own_name="S", number=4),
+        ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE, own_name="S2", number=5),
     )
     assert view.main_spindle == "S"
     assert view.m_functions == dict.fromkeys((0, 1, 2, 3, 4, 5, 17, 19, 29, 30), NONE)
@@ -202,8 +202,8 @@ def test_channel_with_lists() -> None:
     plc = Synchronisation.PLC_INFO | Synchronisation.MVS_SVS
     assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("C1", "c"))
     assert view.spindles == (
-        ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE),
-        ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE),
+        ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE, own_name="S1", number=4),
+        ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE, own_name="S2", number=5),
     )
     assert view.main_spindle == "SMAIN"
     assert view.m_functions[8] is Synchronisation.MVS_SVS
