@@ -277,8 +277,10 @@ def test_a_speed_alone_keeps_the_direction_and_starts_nothing() -> None:
 
 
 def test_unknown_command() -> None:
-    assert spindle_bench().refused("orient") == (
-        "P-ERR-22002 spindle s: unknown command 'orient'; nothing was changed. Known: reset, set_override, set_speed, start, stop"
+    assert spindle_bench().refused("turn") == (
+        "P-ERR-22002 spindle s: unknown command 'turn'; nothing was changed. Known: couple, decouple, gear_changed, home, "
+        "orient, power, reset, reset_limits, select_gear, set_limits, set_override, set_speed, start, stop, "
+        "stop_at_program_end, suppress_override"
     )
 
 
@@ -372,8 +374,7 @@ def test_following_error_fault() -> None:
 def test_a_spindle_without_power() -> None:
     bench = spindle_bench(powered_at_start=False)
     assert bench.refused("start", direction="cw", speed_rpm=100.0) == (
-        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled, the machine starts it without power; "
-        "nothing was changed"
+        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed"
     )
     for command in ("stop", "reset"):
         assert bench.accepted(command) == ""
