@@ -74,8 +74,7 @@ class ChannelUnit(Unit):
         self._parameters = parameters
         self._axis_nodes = [axis.node for axis in parameters.axes]
         self._motion = PathMotion(parameters, [axes[node] for node in self._axis_nodes], cycle_time)
-        by_plc = {node for node, spindle in spindles.items() if spindle.plc_controlled}
-        functions = FunctionOutput(parameters, request_numbers or numbers(1), acknowledged_by_plc=by_plc)
+        functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         self._sequence = ProgramSequence(self._motion, functions)

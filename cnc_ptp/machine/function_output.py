@@ -23,7 +23,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     SpindleLink,
 )
-from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, Synchronisation
+from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
 
 
 class Moment(Enum):
@@ -38,16 +38,12 @@ class FunctionOutput:
     """Turns the functions of canonical blocks into spindle commands, handshake requests and waits."""
 
     def __init__(
-        self,
-        channel: ChannelParameters,
-        request_numbers: Iterator[int],
-        *,
-        acknowledged_by_plc: Container[str] = frozenset(),
+        self, channel: ChannelParameters, units: Mapping[str, SpindleParameters], request_numbers: Iterator[int]
     ) -> None:
-        """`acknowledged_by_plc`: nodes of PLC spindles (P-AXIS-00015 0x40000)."""
+        """`units`: the spindles of the machine by node name."""
         self._channel = channel
         self._request_numbers = request_numbers
-        self.spindles = SpindleOutput(channel, acknowledged_by_plc=acknowledged_by_plc)
+        self.spindles = SpindleOutput(channel, units)
 
     def of_block(self, block: CanonicalBlock, moment: Moment) -> Outputs:
         """The functions of `block` that go out at `moment`."""

@@ -7,14 +7,14 @@ Source: TF5200 spindle 2.2, 2.4.1, 2.5, 2.8.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.waits import Condition, Wait
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
-from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, Synchronisation
+from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
 CONDITIONS = {
@@ -29,11 +29,11 @@ CONDITIONS = {
 class SpindleOutput:
     """The spindles of one channel: what it has set turning, coupled, or freed of the override."""
 
-    def __init__(self, channel: ChannelParameters, *, acknowledged_by_plc: Container[str]) -> None:
-        """`acknowledged_by_plc`: nodes of the spindles that the PLC controls through their own interface."""
+    def __init__(self, channel: ChannelParameters, units: Mapping[str, SpindleParameters]) -> None:
+        """`units`: the spindles of the machine by node name."""
         self._channel = channel
         self._spindles = {spindle.name: spindle for spindle in channel.spindles}
-        self._acknowledged_by_plc = acknowledged_by_plc
+        self._units = units
         self._directions: dict[str, str] = {}
         self._standing_after_gear: set[str] = set()
         """A gear change has ended their rotation: the next speed starts them again."""
@@ -46,7 +46,7 @@ class SpindleOutput:
 
     def told_to_plc(self, name: str) -> bool:
         """The PLC gets every function of the spindle, whatever its synchronisation type says."""
-        return self[name].plc_control or self[name].node in self._acknowledged_by_plc
+        return self[name].plc_control or self._units[self[name].node].plc_controlled
 
     def follows(self, name: str) -> bool:
         """A slave: the PLC hears of its master only (2.8.3)."""
@@ -144,7 +144,11 @@ class SpindleOutput:
         """The command for another gear and the wait for it; None where the spindle is in that gear."""
         node = self[change.spindle].node
         block = feedback.get(node)
-        if isinstance(block, SpindleBlock) and block.gear[-1] == change.stage and not block.gear_change_active[-1]:
+        if isinstance(block, SpindleBlock):
+            in_gear = block.gear[-1] == change.stage and not block.gear_change_active[-1]
+        else:
+            in_gear = change.stage == self._units[node].gear
+        if in_gear:
             return None
         if change.spindle in self._directions:
             self._standing_after_gear.add(change.spindle)
