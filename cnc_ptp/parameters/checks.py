@@ -13,6 +13,7 @@ from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.parameter_set import Parameter, ParameterSet, parameter_limits
 from cnc_ptp.parameters.problems import problem
+from cnc_ptp.parameters.spindle_checks import spindle_problems
 from cnc_ptp.parameters.values import shown, violates_lower, violates_upper, with_unit
 
 Sets = Mapping[str, ParameterSet]
@@ -151,5 +152,5 @@ NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] 
     "machine": (),
     "channel": (parameter_against_parameter,),
     "axis": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
-    "spindle": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits),
+    "spindle": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits, spindle_problems),
 }

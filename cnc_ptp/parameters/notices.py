@@ -6,6 +6,11 @@ from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
 SIMULATED_DRIVES = (4, 16)
+SERCOS = 2
+ANALOGUE_DRIVES = (1, 5, 6)
+HYPERBOLA = 1
+SMALL_STEP = 0.001
+"""Part of the constant acceleration."""
 VELOCITY_INDEPENDENT = 4
 
 
@@ -20,6 +25,7 @@ def machine_warnings(sets: Mapping[str, ParameterSet]) -> Iterator[str]:
             yield from simulated_drive(parameters)
             yield from following_error(parameters)
             yield from corrected_resolution(parameters)
+            yield from spindle_notices(parameters)
 
 
 def line(parameters: ParameterSet, number: str, indexes: tuple[int, ...], text: str) -> str:
@@ -65,6 +71,39 @@ def corrected_resolution(parameters: ParameterSet) -> Iterator[str]:
         for number, warning in CORRECTED.items():
             if parameters.number(number, gear) == 0:
                 yield line(parameters, number, (gear,), f"P-WARN-{warning} value 0 is corrected to 1")
+
+
+def spindle_notices(parameters: ParameterSet) -> Iterator[str]:
+    if parameters.kind == "spindle":
+        yield from homing_mode(parameters)
+        yield from step_in_the_curve(parameters)
+
+
+def homing_mode(parameters: ParameterSet) -> Iterator[str]:
+    """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
+    drive, no_automatic = parameters.number("P-AXIS-00020"), int(parameters.number("P-AXIS-00015")) & 0x100
+    if drive == SERCOS and not no_automatic:
+        text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
+        yield line(parameters, "P-AXIS-00015", (), text)
+    elif drive in ANALOGUE_DRIVES and no_automatic:
+        text = f"0x100 (no automatic homing) should not be set for the analogue drive type {drive}"
+        yield line(parameters, "P-AXIS-00015", (), text)
+    if drive in ANALOGUE_DRIVES and not parameters.number("P-AXIS-00156"):
+        text = f"should be 1 for a spindle with the analogue drive type {drive}; it is homed without a cam"
+        yield line(parameters, "P-AXIS-00156", (), text)
+
+
+def step_in_the_curve(parameters: ParameterSet) -> Iterator[str]:
+    """A hyperbola that does not begin with the constant acceleration."""
+    for gear in parameters.used_indexes("getriebe"):
+        if parameters.number("P-AXIS-00202", gear) != HYPERBOLA:
+            continue
+        b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+        begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
+        constant = parameters.kernel("P-AXIS-00007", gear)
+        if abs(begin - constant) > SMALL_STEP * constant:
+            text = f"the hyperbola begins with {begin:g} °/s², P-AXIS-00007 is {constant:g} °/s²: a step in the curve"
+            yield line(parameters, "P-AXIS-00026", (gear,), text)
 
 
 def following_error(parameters: ParameterSet) -> Iterator[str]:
