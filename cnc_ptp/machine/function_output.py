@@ -139,7 +139,7 @@ class FunctionOutput:
         return self._request(
             block,
             kind,
-            spindle.node or spindle.name,
+            spindle.node or spindle.own_name or spindle.name,
             number,
             waits=bool(synchronisation & WAITING),
             value=function.speed_rpm or 0.0,

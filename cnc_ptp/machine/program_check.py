@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, SpindleBlock
-from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Function, Source, SpindleFunction
+from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, Function, Source, SpindleCommand, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
 from cnc_ptp.nc.parser import parse_program
@@ -19,6 +19,7 @@ from cnc_ptp.parameters import (
     SpindleParameters,
     catalogue,
 )
+from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 SOFT_LIMIT_POSITIVE = 120002
 SOFT_LIMIT_NEGATIVE = 120003
@@ -48,6 +49,7 @@ class ProgramCheck:
         self._axis_names = tuple(axis.name for axis in channel.axes)
         self._spindles = spindle_table(channel, spindles)
         self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
+        self._units = spindles
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -134,6 +136,8 @@ class ProgramCheck:
                 raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
 
     def _function(self, function: Function, source: Source) -> None:
+        if isinstance(function, (SpindleFunction, SpindleCommand)):
+            self._position_known(function, source)
         if isinstance(function, SpindleFunction):
             limit = self._speeds.get(function.spindle)
             if limit is not None and function.speed_rpm is not None and function.speed_rpm > limit:
@@ -146,6 +150,17 @@ class ProgramCheck:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
             text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
             raise ProgramError(UNKNOWN_M_FUNCTION, text, source, 1)
+
+    def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
+        """A spindle without actual position can be neither positioned nor homed (TF5200 spindle 2.2.4)."""
+        spindle = self._units.get(self._nodes[function.spindle])
+        if spindle is None or spindle.has_position:
+            return
+        why = f"spindle {function.spindle} has no actual position (P-AXIS-00320, P-SIM-00050) and cannot be"
+        if isinstance(function, SpindleFunction) and function.m == 19:
+            raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
+        if isinstance(function, SpindleCommand) and function.command == "home":
+            raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

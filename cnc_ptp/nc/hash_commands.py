@@ -10,7 +10,7 @@ from collections.abc import Callable
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
 from cnc_ptp.nc.canonical import ExplicitSynchronisation, Function, Source
 from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState
-from cnc_ptp.nc.spindles import current_main, names
+from cnc_ptp.nc.spindles import current_main, name_of, names
 
 Run = Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]
 
@@ -56,6 +56,11 @@ def main_spindle(channel: Channel, state: ModalState, block: Block, command: Has
         raise arguments_fault(block, command, "#MAIN SPINDLE [name or logical axis number]")
     else:
         key = _spindle_key(channel, state, block, command, command.arguments[0])
+    first = channel.table.spindles[0]
+    if key != first.key and first.own_name == channel.table.main_name:
+        raise spindle_faults.MAIN_WITHOUT_NAME.at(
+            block.source, command.column, spindle=first.own_name, other=name_of(channel, state, key)
+        )
     spindle_links.check_main(channel, state, block, command, key)
     state.spindle.main = key
     return ()

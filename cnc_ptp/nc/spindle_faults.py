@@ -41,6 +41,9 @@ COMMAND_ARGUMENTS = Fault(21076, "{command} is written {syntax}")
 MAIN_SPINDLE_NUMBER = Fault(
     21306, "no spindle of this channel has the logical axis number {number}; known are: {known}"
 )
+MAIN_WITHOUT_NAME = Fault(
+    21082, "spindle {spindle} has no other name (P-CHAN-00007) that it could have while {other} is the main spindle"
+)
 LINK_GROUP = Fault(21077, "coupling group {group} must be a number from {first} to {last}")
 LINK_GROUP_DEFAULT = Fault(21078, "coupling group 0 is defined by P-CHAN-00037 and P-CHAN-00038 and by nothing else")
 LINK_EMPTY = Fault(21079, "coupling group {group} has no coupled pair")

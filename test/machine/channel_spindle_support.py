@@ -27,7 +27,7 @@ def channel_spindle(
 
 def three(kind: Synchronisation = MVS_SVS, **main: Any) -> tuple[ChannelSpindle, ...]:
     """S1 (node s, 6) as main spindle S, S2 (t, 11), S3 (u, 30); `main` changes S1."""
-    first = channel_spindle("S", "s", 6, kind, **{"own_name": "S1", **main})
+    first = channel_spindle("S", "s", 6, kind)._replace(**{"own_name": "S1", **main})
     return first, channel_spindle("S2", "t", 11, kind), channel_spindle("S3", "u", 30, kind)
 
 
