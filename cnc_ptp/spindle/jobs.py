@@ -60,6 +60,8 @@ class Jobs:
         self._zero_pulse = ZeroPulse(spindle.parameters.zero_pulse)
         self._search_from: float | None = None
         self._since = 0
+        self._turns = 1.0
+        """Direction in which the target is reached."""
         self.job: Job | None = None
         self.done = True
         """The last job came to its end."""
@@ -145,9 +147,9 @@ class Jobs:
         position, speed, _ = spindle.motion(cycle)
         limits = spindle.limits.positioning(job.speed * spindle.override)
         turn = spindle.gear.modulo_high - spindle.gear.modulo_low
-        direction = self._direction(position, speed, job, turn)
-        spindle.target = next_target(position, speed, job.goal, turn, direction, limits)
-        table = plan_positioning(position, speed, spindle.target, limits)
+        self._turns = self._direction(position, speed, job, turn)
+        spindle.target = next_target(position, speed, job.goal, turn, self._turns, limits)
+        table = plan_positioning(position, speed, spindle.target, self._turns, limits)
         assert table is not None, "the target was chosen so that the spindle can stop there"
         spindle.follow(cycle, table)
 
@@ -181,7 +183,7 @@ class Jobs:
             return True
         position, speed, _ = spindle.motion(cycle)
         limits = spindle.limits.positioning(job.speed * spindle.override)
-        table = plan_positioning(position, speed, spindle.target, limits)
+        table = plan_positioning(position, speed, spindle.target, self._turns, limits)
         if table is None:
             return False
         spindle.follow(cycle, table)

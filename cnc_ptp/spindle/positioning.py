@@ -61,25 +61,25 @@ def shortest_direction(position: float, goal: float, turn: float) -> float:
     return 1.0 if (goal - position) % turn <= 0.5 * turn + SAME_PLACE else -1.0
 
 
-def plan_positioning(position: float, speed: float, target: float, limits: PositioningLimits) -> SpeedTable | None:
-    """The table to standstill exactly at `target`; None when the spindle cannot stop there any more.
+def plan_positioning(
+    position: float, speed: float, target: float, direction: float, limits: PositioningLimits
+) -> SpeedTable | None:
+    """The table to standstill exactly at `target`, reached in `direction` (±1); None when it is too late for that.
 
-    With a positioning speed of 0 (override 0) it comes to rest before the target, unless it brakes for it already.
+    A spindle that turns the other way comes to rest first. With a positioning speed of 0 (override 0) it stops before
+    the target, unless it brakes for it already.
     """
-    direction = 1.0 if target > position or (target == position and speed > 0.0) else -1.0
     legs: list[Leg] = []
-    if speed * direction < 0.0:
-        legs = list(ramp_legs(abs(speed), 0.0, limits.ramp))
-        legs = [(d, tuple(-power for power in powers)) for d, powers in legs]
-        speed = 0.0
-    rest = (target - position) * direction - way_of(legs)
     amount = abs(speed)
+    if speed * direction < 0.0:
+        legs = signed(list(ramp_legs(amount, 0.0, limits.ramp)), -1.0)
+        amount = 0.0
+    rest = (target - position) * direction - way_of(legs)
     least = stop_way(amount, limits)
     if least > rest + SAME_PLACE:
         return None
     if limits.speed == 0.0 and least < rest - SAME_PLACE:
-        down = list(ramp_legs(amount, 0.0, limits.ramp))
-        return table(position, signed([*legs, *down], direction), 0.0)
+        return table(position, signed([*legs, *ramp_legs(amount, 0.0, limits.ramp)], direction), 0.0)
     legs += approach(amount, rest, limits)
     return table(position, signed(legs, direction), 0.0, end_position=target)
 
