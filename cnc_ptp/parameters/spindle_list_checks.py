@@ -1,4 +1,6 @@
-"""The spindles of a channel: gears against the axis list, coupled pairs and tools against the spindles it has."""
+"""The spindles of a channel: one synchronisation type a function, a record for each gear, coupled pairs and tools of
+spindles that the channel has.
+"""
 
 from collections.abc import Iterator, Mapping
 
@@ -11,6 +13,18 @@ from cnc_ptp.parameters.problems import problem
 
 Sets = Mapping[str, ParameterSet]
 COUPLING_GROUP = 0
+SYNCHRONISATIONS = ("P-CHAN-00041", "P-CHAN-00043", "P-CHAN-00045", "P-CHAN-00047", "P-CHAN-00049", "P-CHAN-00081")
+"""M functions, M19, M3, M4, M5, S."""
+
+
+def one_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
+    """A function goes out and is waited for in one way; PLC_INFO alone may be added (TF5200 spindle 2.5)."""
+    for ros_name in channel.given:
+        declaration, indexes, value = channel.find(ros_name)
+        types = [name for name in str(value).split(" | ") if name not in ("PLC_INFO", "NO_SYNCH")]
+        if declaration.id in SYNCHRONISATIONS and len(types) > 1:
+            text = f"value {value} has {len(types)} synchronisation types, one is possible (PLC_INFO may be added)"
+            yield problem(channel, errors.CONTRADICTION, declaration.id, indexes, text)
 
 
 def gear_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
@@ -83,4 +97,4 @@ def tool_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
             yield problem(channel, errors.NO_SUCH_AXIS, "P-TOOL-00012", (tool,), text)
 
 
-SPINDLE_LIST_CHECKS = (gear_synchronisation, gear_records, coupled_pairs, tool_spindles)
+SPINDLE_LIST_CHECKS = (one_synchronisation, gear_synchronisation, gear_records, coupled_pairs, tool_spindles)

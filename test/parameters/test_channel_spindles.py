@@ -138,6 +138,11 @@ WRONG = {
         "P-ERR-25009 m.yaml:9:17: channel list, P-CHAN-00041 m_synch[41] of /ch: "
         "value MVS_SNS must be MVS_SVS, M41 selects a gear (P-CHAN-00052)",
     ),
+    "two synchronisation types": (
+        (TWO, "spindel.0.m3_synch: MVS_SVS | MVS_SLM | PLC_INFO"),
+        "P-ERR-25009 m.yaml:8:25: channel list, P-CHAN-00045 spindel[0].m3_synch of /ch: "
+        "value MVS_SVS | MVS_SLM | PLC_INFO has 2 synchronisation types, one is possible (PLC_INFO may be added)",
+    ),
     "gear without a record": (
         (TWO, "main_spindle_gear_change: 1", "spindel.1.range_table.3: {min_speed: 1, max_speed: 2}"),
         "P-ERR-25009 m.yaml:9:56: channel list, P-CHAN-00055 spindel[1].range_table[3].max_speed of /ch: "
