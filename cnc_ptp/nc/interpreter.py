@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, Motion, Source
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, LinearMove, Motion, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.lexer import column_of
@@ -127,13 +127,24 @@ def _resolve(
         else:
             if check_target is not None:
                 _check_move(state.position, motion, block.source, check_target)
+            if state.spindle.speedless:
+                _require_speed(state, motion)
             state.position = motion.target
     stop = block.flow if block.flow != "return" else ""
-    if stop == "end" and state.spindle.active:
+    if stop == "end":
+        _require_speed(state, None)
         before += end_of_links(state)
     if motion is None and not before and not stop:
         return None
     return CanonicalBlock(block.source, before, motion, (), stop)
+
+
+def _require_speed(state: ModalState, motion: Motion | None) -> None:
+    """M3 without a speed is an error as soon as something is machined, and when the program ends without one."""
+    rapid = isinstance(motion, LinearMove) and motion.rapid
+    if not rapid:
+        for error in state.spindle.speedless.values():
+            raise error
 
 
 def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_target: CheckTarget) -> None:

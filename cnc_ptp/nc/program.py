@@ -169,6 +169,7 @@ class SpindleModes:
     turning     3 or 4 while endless rotation is programmed
     links       coupling groups that were defined (#SET AX LINK), by number
     active      numbers of the groups that are enabled, the last one last
+    speedless   errors of M3 and M4 that still have no speed: it must come before something is machined
     """
 
     main: str = ""
@@ -177,11 +178,18 @@ class SpindleModes:
     turning: dict[str, int] = field(default_factory=dict)
     links: dict[int, Pairs] = field(default_factory=dict)
     active: tuple[int, ...] = ()
+    speedless: dict[str, ProgramError] = field(default_factory=dict)
 
     def copy(self) -> "SpindleModes":
         """An independent copy."""
         return SpindleModes(
-            self.main, dict(self.positions), dict(self.gears), dict(self.turning), dict(self.links), self.active
+            self.main,
+            dict(self.positions),
+            dict(self.gears),
+            dict(self.turning),
+            dict(self.links),
+            self.active,
+            dict(self.speedless),
         )
 
 

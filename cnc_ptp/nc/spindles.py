@@ -152,7 +152,12 @@ def _parallel(state: ModalState, function: Function) -> list[Function]:
         for slave, master in state.spindle.links[group]
         if master == function.spindle
     ]
+    speedless = state.spindle.speedless
     for slave in slaves:
+        if function.spindle in speedless:
+            speedless[slave] = speedless[function.spindle]
+        else:
+            speedless.pop(slave, None)
         _note(state, slave, function)
     return [function._replace(spindle=slave) for slave in slaves]
 
@@ -162,8 +167,10 @@ def _note(state: ModalState, key: str, function: SpindleFunction | SpindleComman
     if isinstance(function, SpindleCommand):
         state.spindle.turning.pop(key, None)
         return
-    if function.speed_rpm is not None:
+    if function.speed_rpm is not None and key not in state.spindle.speedless:
         state.speeds[key] = function.speed_rpm
+    if function.m in (5, 19):
+        state.spindle.speedless.pop(key, None)
     if function.position_deg is not None:
         state.spindle.positions[key] = function.position_deg
     if function.m in ROTATION:
@@ -215,6 +222,7 @@ class _SpindleBlock:
         if speed < 0.0:
             raise self._fault(faults.SPEED_NEGATIVE, value=number(speed))
         self.state.speeds[self.key] = speed
+        self.state.spindle.speedless.pop(self.key, None)
 
     def _check_homing_alone(self) -> None:
         """In DIN syntax; brackets have been looked at when they were read."""
@@ -238,7 +246,10 @@ class _SpindleBlock:
             raise self._fault(spindle_faults.PLC_SPINDLE, word=word)
 
     def _rotation(self, stage: int) -> SpindleFunction | None:
-        """M3, M4, M5 or a speed; after M40 to M45 alone a turning spindle turns on with the stored speed."""
+        """M3, M4, M5 or a speed; after M40 to M45 alone a turning spindle turns on with the stored speed.
+
+        M3 and M4 before any speed stand still until it comes (TF5200 spindle p.30).
+        """
         words, m = self.words, self.words.m
         if m == 5:
             return SpindleFunction(self.key, 5, None, full_override=words.full_override)
@@ -249,8 +260,8 @@ class _SpindleBlock:
                 return None
             return SpindleFunction(self.key, None, stored if turns_on else None, full_override=words.full_override)
         if stored is None:
-            raise self._fault(faults.SPEED_MISSING, m=f"{m:02d}")
-        return SpindleFunction(self.key, m, stored, full_override=words.full_override)
+            self.state.spindle.speedless[self.key] = self._fault(faults.SPEED_MISSING, m=f"{m:02d}")
+        return SpindleFunction(self.key, m, stored or 0.0, full_override=words.full_override)
 
     def _positioning(self) -> SpindleFunction:
         """M19: to the programmed, else the last position, else 0."""

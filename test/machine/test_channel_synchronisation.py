@@ -295,3 +295,21 @@ def test_an_acknowledgement_just_in_time() -> None:
     machine = replace(with_m(), handshake_timeout_ms=500)
     bench = run("M08\nG01 X1 F3000", machine, MANUAL + "- {at: 0.5, to: plc, do: acknowledge, id: 1}")
     assert bench.errors() == [] and moves(bench)[0][0] == 501
+
+
+def test_a_spindle_that_is_not_synchronised_and_one_that_is() -> None:
+    """TF5200 spindle 2.5.2, figures 11 and 12: s MVS_SVS, m3 MOS."""
+    machine = mill(s=MVS_SVS)
+    free = run("N10 X0 Y0 G0\nN20 X40 Y40 G1 F1500 M3 S500\nN30 M3 S100 X0 Y0", machine)
+    assert moves(free)[0][0] == 1 and C.WAITING not in free.states("channel")
+    bound = run("N10 M3 X0 Y0 G0\nN20 X40 Y40 G1 F1500 S500\nN30 S100 X0 Y0", machine)
+    first, second = moves(bound)
+    up, down = (told_at_speed(bound, rpm) for rpm in (500.0, 100.0))
+    assert first[0] == reported(bound, "s", "speed_reached", up) + 1
+    assert second[0] == reported(bound, "s", "speed_reached", down) + 1
+    assert [command for command, _ in told(bound)] == ["start", "set_speed", "set_speed", "stop"]
+
+
+def told_at_speed(bench: MachineBench, rpm: float) -> int:
+    """Cycle of the command for a speed."""
+    return next(r.cycle for r in bench.records if r.target == "s" and f'"speed_rpm": {rpm}' in r.arguments_json)

@@ -116,3 +116,38 @@ def test_ranges_include_their_limits() -> None:
     draw = random.Random(5)
     assert [gears.holds(spindle, 1, speed) for speed in (49.9, 50.0, 560.0, 560.1)] == [False, True, True, False]
     assert not any(gears.holds(spindle, stage, draw.uniform(0.1, 9999.0)) for stage in (2, 3) for _ in range(50))
+
+
+def test_rotation_before_any_speed_stands_until_the_speed_comes() -> None:
+    """The program of TF5200 spindle p.30: M3 first, S with the first cut."""
+    assert lines("M3 X1 G0\nX40 G1 F1500 S500\nS2[M4]\nS2[M3]\nS2=70\nX41") == [
+        "S[M3 REV0] | rapid (1, 0, 0)",
+        "S[REV500] | line (40, 0, 0) feed 25",
+        "S2[M4 REV0]",
+        "S2[M3 REV0]",
+        "S2[REV70]",
+        "line (41, 0, 0) feed 25",
+    ]
+    assert lines("M3\nM5\nG1 X1 F60") == ["S[M3 REV0]", "S[M5]", "line (1, 0, 0) feed 1"]
+
+
+@pytest.mark.parametrize("rest", ["G1 X1 F60", "G2 X4 Y1 R1 F60", "M30"])
+def test_rotation_without_a_speed_does_not_machine(rest: str) -> None:
+    with pytest.raises(ProgramError) as caught:
+        lines(f"N10 G0 X2 M04\nG0 X3\n{rest}")
+    assert str(caught.value) == (
+        "P-ERR-21036 test.nc line 1 column 11 'N10 G0 X2 M04': "
+        "M04 of spindle S without a speed: none was programmed before"
+    )
+
+
+def test_a_slave_gets_its_speed_with_its_master() -> None:
+    table = three_spindles()._replace(default_link=(("S2", "S"),))
+    assert lines("#ENABLE AX LINK\nM3\nS500\n#DISABLE AX LINK\nS2[M4]\nG1 X1 F60\nM30", spindles=table)[1:] == [
+        "S[M3 REV0] | S2[M3 REV0]",
+        "S[REV500] | S2[REV500]",
+        "unlink S2=S",
+        "S2[M4 REV500]",
+        "line (1, 0, 0) feed 1",
+        "end",
+    ]
