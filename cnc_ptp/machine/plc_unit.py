@@ -124,7 +124,8 @@ class PlcUnit(Unit):
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
             if unit not in self._lost and (block is None or needs_stop(block) or self._let_go(unit, block)):
-                self._outgoing.append(Command(unit, STOP_COMMAND[kind], {}))
+                waits_for_gear = isinstance(block, SpindleBlock) and block.gear_request
+                self._outgoing.append(Command(unit, "reset" if waits_for_gear else STOP_COMMAND[kind], {}))
 
     def _let_go(self, unit: str, block: Block) -> bool:
         """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
