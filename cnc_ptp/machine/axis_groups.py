@@ -20,9 +20,10 @@ class AxisGroups:
     then those that are still in the group.
     """
 
-    def __init__(self, axes: Mapping[str, AxisParameters], *, cycle_time: float) -> None:
-        """`axes` of the machine by name, `cycle_time` in s."""
+    def __init__(self, axes: Mapping[str, AxisParameters], *, cycle_time: float, spindles: Container[str] = ()) -> None:
+        """`axes` and `spindles` of the machine by name, `cycle_time` in s."""
         self._axes = axes
+        self._spindles = spindles
         self._cycle_time = cycle_time
         self._masters: dict[str, str] = {}
         self._leads: dict[str, str] = {}
@@ -76,7 +77,9 @@ class AxisGroups:
         edges = {slave: [master] for slave, master in self._masters.items()}
         for command in commands:
             master = command.arguments.get("master")
-            if command.command in COUPLINGS and isinstance(master, str):
+            if command.target in self._spindles:
+                pass  # couples otherwise (spindle_groups.py)
+            elif command.command in COUPLINGS and isinstance(master, str):
                 above = reachable(edges, master)
                 stands = self._stands(master) and not started & {master, *above}
                 group = {"above": above, "master_stands": stands, "master_lost": master in lost}

@@ -14,17 +14,8 @@ from typing import Any, NamedTuple
 
 from cnc_ptp.axis.states import AxisStateCode as AxisStateCode
 from cnc_ptp.axis.states import StatusBit as StatusBit
-
-
-class SpindleMode(IntEnum):
-    """HLI mode bits of a spindle (SpindleState.msg)."""
-
-    STOP = 1
-    CW = 2
-    CCW = 4
-    POSITION = 8
-    SUPERIMPOSED = 16
-    HOMING = 32
+from cnc_ptp.spindle.states import SpindleBit as SpindleBit
+from cnc_ptp.spindle.states import SpindleMode as SpindleMode
 
 
 class ChannelStateCode(IntEnum):
@@ -128,6 +119,8 @@ class HandshakeRequest:
     value: float
     line: int
     acknowledge_needed: bool
+    position: float = 0.0
+    direction: str = ""
 
 
 class CycleTick(NamedTuple):
@@ -213,18 +206,33 @@ class SpindleBlock:
     count: int
     set_speed_rpm: list[float]
     actual_speed_rpm: list[float]
+    programmed_speed_rpm: list[float]
     set_acceleration_deg_s2: list[float]
     set_position_deg: list[float]
     actual_position_deg: list[float]
+    target_position_deg: list[float]
+    distance_to_go_deg: list[float]
     following_error_deg: list[float]
     override_percent: list[float]
+    drive_output: list[int]
     mode: list[int]
     gear: list[int]
     speed_reached: list[bool]
     speed_zero: list[bool]
+    in_position: list[bool]
     referenced: list[bool]
+    gear_change_active: list[bool]
+    status_bits: list[int]
     state: list[int]
     error_id: list[int]
+    gear_request: int = 0
+    master: str = ""
+    master_wanted: str = ""
+    source: str = ""
+    plc_commands: int = 0
+    plc_acknowledged: int = 0
+    refused: list[str] = field(default_factory=list)
+    commands: list[Command] = field(default_factory=list)
 
 
 Block = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
-from typing import ClassVar, NamedTuple, NoReturn
+from typing import ClassVar, NoReturn
 
 from cnc_ptp.axis.states import state_name
 from cnc_ptp.errors import CncError
@@ -22,14 +22,15 @@ from cnc_ptp.machine.blocks import (
     Severity,
     SpindleBlock,
 )
-from cnc_ptp.machine.function_output import FunctionOutput, Outputs
-from cnc_ptp.machine.path_motion import AxisStates, PathMotion, PathPoint
+from cnc_ptp.machine.channel_rows import Prepared, Rows
+from cnc_ptp.machine.function_output import FunctionOutput
+from cnc_ptp.machine.path_motion import PathMotion, PathPoint
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.machine.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
-from cnc_ptp.nc.canonical import CanonicalBlock
+from cnc_ptp.machine.waits import Outputs
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Program
+from cnc_ptp.nc.program import ModalState, Pairs, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 
 NO_PROGRAM = 22003
@@ -41,35 +42,12 @@ STILL_MOVING = 22008
 NO_TEXT = 22009
 MEMBER_IN_ERROR = 22012
 AXIS_NOT_FOLLOWING = 22015
+NOT_ACKNOWLEDGED = 22016
+NO_MEASURING_EVENT = 22017
+SPINDLE_REFUSED = 22018
+NOTHING_AWAITS_EVENT = 22020
 
 C = ChannelStateCode
-
-
-class Rows:
-    """The cycles of a block as they are made: the state of each axis, and the columns of ChannelState."""
-
-    def __init__(self) -> None:
-        self.axes: list[AxisStates] = []
-        self.line: list[int] = []
-        self.block_number: list[int] = []
-        self.path_velocity: list[float] = []
-        self.programmed_feed: list[float] = []
-        self.override_percent: list[float] = []
-        self.distance_to_go: list[float] = []
-        self.state: list[int] = []
-        self.error_id: list[int] = []
-
-    def __len__(self) -> int:
-        return len(self.axes)
-
-
-class Prepared(NamedTuple):
-    """A program that was interpreted before its load, from the position `start`."""
-
-    text: str
-    program: Program
-    start: tuple[float, ...]
-    blocks: list[CanonicalBlock]
 
 
 class ChannelUnit(Unit):
@@ -85,16 +63,20 @@ class ChannelUnit(Unit):
         spindles: Mapping[str, SpindleParameters],
         cycle_time: float,
         request_numbers: Iterator[int] | None = None,
+        handshake_timeout: float = 0.0,
     ) -> None:
         """`axes` and `spindles` of the machine by node name, `cycle_time` in s.
 
         `request_numbers`: numbers for handshake requests that no other channel of the machine uses.
+        `handshake_timeout`: s in which the PLC must have acknowledged them, 0 is for ever.
         """
         super().__init__(parameters.name)
         self._parameters = parameters
         self._axis_nodes = [axis.node for axis in parameters.axes]
         self._motion = PathMotion(parameters, [axes[node] for node in self._axis_nodes], cycle_time)
-        functions = FunctionOutput(parameters, request_numbers or numbers(1))
+        functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
+        self._handshake_timeout = handshake_timeout
+        self._handshake_cycles = round(handshake_timeout / cycle_time)
         self._sequence = ProgramSequence(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._program: Program | None = None
@@ -102,9 +84,9 @@ class ChannelUnit(Unit):
         self._modal = ModalState()
         """What an MDI text finds: the state that the one before has left, if that was carried out in full."""
         self._modal_at_end: ModalState | None = None
-        self._turning_after_reset = {
-            spindle.node for spindle in parameters.spindles if not spindles[spindle.node].stops_at_reset
-        }
+        self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
+        self._links: dict[int, Pairs] = {}
+        """Coupling groups that programs have defined; they stay for the next one."""
         self._axis_states = {
             node: AxisStateCode.STANDSTILL if axes[node].powered_at_start else AxisStateCode.DISABLED
             for node in self._axis_nodes
@@ -123,8 +105,10 @@ class ChannelUnit(Unit):
     def prepare(self, program: str, text: str) -> None:
         """Parses and interprets before time matters what `load` and `start` then find ready. Raises ProgramError."""
         parsed = parse_program(text, program)
-        blocks = self._check.blocks(parsed, self._motion.position, ModalState())
-        self._prepared = Prepared(text, parsed, self._motion.position, blocks)
+        modal = self._check.initial_state(self._feedback, self._links)
+        before = modal.copy()
+        blocks = self._check.blocks(parsed, self._motion.position, modal)
+        self._prepared = Prepared(text, parsed, self._motion.position, before, modal, blocks)
 
     # commands
 
@@ -145,12 +129,15 @@ class ChannelUnit(Unit):
         self._require_idle("start")
         if self._program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        self._begin("start", self._program, ModalState())
+        self._begin("start", self._program, self._check.initial_state(self._feedback, self._links))
+        self._sequence.end_couplings()
 
     def do_mdi(self, cycle: int, *, text: str) -> None:
         """Executes NC text at once; modal states are kept from one such text to the next."""
         self._require_idle("mdi")
-        self._begin("mdi", parse_program(text, "mdi", mdi=True), self._modal.copy())
+        modal = self._modal.copy()
+        modal.spindle.gears = self._check.gears(self._feedback)
+        self._begin("mdi", parse_program(text, "mdi", mdi=True), modal)
 
     def do_feed_hold(self, cycle: int, *, on: bool) -> None:
         """Feed hold: the path goes to velocity 0 on its ramp, and on again when it is taken away."""
@@ -195,7 +182,12 @@ class ChannelUnit(Unit):
         if id not in open_requests:
             waiting = ", ".join(map(str, sorted(open_requests))) or "none"
             self._refuse("acknowledge", NOTHING_TO_ACKNOWLEDGE, f"no request {id} waits (waiting: {waiting})")
-        open_requests.discard(id)
+        self._sequence.acknowledge(id)
+
+    def do_measuring_event(self, cycle: int) -> None:
+        """The event for which functions of type MNE_SNS wait; refused (22020) when the running block has none."""
+        if not self._sequence.measuring_event():
+            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: PLC, clock, an axis or a spindle has sent nothing in time; the path stops."""
@@ -216,6 +208,7 @@ class ChannelUnit(Unit):
         """
         first_cycle, count = tick
         self._read_feedback(first_cycle, inputs)
+        self._watch_handshake(first_cycle)
         outputs = self._sequence.take_outputs(first_cycle)
         has_axes = self._unfinished or self._sequence.phase is not Phase.IDLE
         rows = Rows()
@@ -259,17 +252,18 @@ class ChannelUnit(Unit):
         """Adds rows up to `wanted`: the path's while a motion runs, standing ones while nothing can go on."""
         while len(rows) < wanted:
             if self._sequence.phase in (Phase.MOTION, Phase.RAMP_DOWN):
-                self._follow_path(rows, wanted - len(rows))
+                self._follow_path(rows, wanted - len(rows), first_cycle + len(rows))
             elif not self._go_on(first_cycle, first_cycle + len(rows)):
                 self._motion.stand()
                 self._add(rows, [self._motion.point])
 
-    def _follow_path(self, rows: Rows, missing: int) -> None:
+    def _follow_path(self, rows: Rows, missing: int, cycle: int) -> None:
         """Rows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
         self._add(rows, points)
         if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
             self._sequence.motion_ended()
+            self._warn(cycle)
 
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
@@ -278,6 +272,12 @@ class ChannelUnit(Unit):
             source = self._sequence.source
             self._fault(cycle, error.error_id, f"{error.message} in line {source.line} '{source.text}'")
             return True
+
+    def _warn(self, cycle: int) -> None:
+        notes, self._sequence.notes = self._sequence.notes, []
+        for note in notes:
+            text = f"channel {self.name}: {note}"
+            self.event(cycle, Severity.WARNING, NO_MEASURING_EVENT, text, self._sequence.source.line)
 
     def _add(self, rows: Rows, points: Sequence[PathPoint]) -> None:
         """Adds the cycles of `points`, all of the same phase and program line."""
@@ -315,19 +315,23 @@ class ChannelUnit(Unit):
         for node in self.lost:
             if node in self._axis_nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
-        blocks = self._prepared_blocks(command, program)
-        if blocks is None:
+        ready = self._ready(command, program, modal)
+        if ready is not None:
+            blocks, modal = ready.blocks, ready.modal_at_end
+        else:
             blocks = self._check.blocks(program, self._motion.position, modal)
-        self._modal = ModalState()
-        self._modal_at_end = modal if command == "mdi" else ModalState()
+        self._links = modal.spindle.links
+        self._modal = self._check.initial_state({}, self._links)
+        self._modal_at_end = modal if command == "mdi" else self._check.initial_state({}, self._links)
         self._sequence.begin(blocks, program=command == "start")
         self._just_started = True
 
-    def _prepared_blocks(self, command: str, program: Program) -> list[CanonicalBlock] | None:
+    def _ready(self, command: str, program: Program, modal: ModalState) -> Prepared | None:
+        """What was interpreted before, if it was from where things stand now."""
         ready = self._prepared
-        if ready is None or command != "start" or ready.program is not program or ready.start != self._motion.position:
+        if ready is None or command != "start" or ready.program is not program or ready.modal != modal:
             return None
-        return ready.blocks
+        return ready if ready.start == self._motion.position else None
 
     # override, feedback, faults
 
@@ -350,9 +354,28 @@ class ChannelUnit(Unit):
             return
         if block.error_id[-1]:
             self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
+        elif isinstance(block, SpindleBlock):
+            self._check_refused(first_cycle, node, block)
         elif self._had_axes and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
             state = state_name(AxisStateCode(block.state[-1]))
             self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
+
+    def _check_refused(self, first_cycle: int, node: str, block: SpindleBlock) -> None:
+        """A spindle has refused what this channel asked it for: it is at work for somebody else, for instance."""
+        source = f"{self.name}: "
+        refused = next((text for text in block.refused if text.startswith(source)), None)
+        if refused is not None:
+            self._fault(first_cycle, SPINDLE_REFUSED, f"{node} has refused a command, {refused.removeprefix(source)}")
+
+    def _watch_handshake(self, first_cycle: int) -> None:
+        """The PLC must acknowledge within P-MACH-00060."""
+        limit = self._handshake_cycles
+        request = self._sequence.overdue(first_cycle, limit) if limit else None
+        if request is not None:
+            function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
+            what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
+            waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
+            self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
 
     def _take_axes(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""
@@ -390,6 +413,8 @@ class ChannelUnit(Unit):
 
 PHASE_STATES = {
     Phase.NEXT: C.RUNNING,
+    Phase.WAIT_GEAR: C.WAITING,
+    Phase.WAIT_END: C.WAITING,
     Phase.MOTION: C.WAITING,
     Phase.WAIT_BEFORE: C.WAITING,
     Phase.WAIT_AFTER: C.WAITING,

@@ -40,6 +40,8 @@ ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
+FOR: Arguments = {"source": OPTIONAL_TEXT}
+"""For whom a spindle is to do it: the name of a channel, or plc for the external commanding of the PLC."""
 OPTIONAL_SWITCH = Argument("switch", required=False)
 CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
 COUPLING: Arguments = {
@@ -109,10 +111,31 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "upstream_lost": SOURCE,
     },
     "spindle": {
-        "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER},
-        "set_speed": {"speed_rpm": NUMBER},
-        "stop": {},
+        "power": {"on": SWITCH},
+        "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER, **FOR},
+        "set_speed": {"speed_rpm": NUMBER, **FOR},
+        "stop": {**FOR},
+        "orient": {
+            "position_deg": NUMBER,
+            "speed_rpm": OPTIONAL_POSITIVE,
+            "direction": Argument("text", required=False, choices=("cw", "ccw", "shortest")),
+            **FOR,
+        },
+        "home": {**FOR},
         "set_override": {"percent": NUMBER},
+        "suppress_override": {"on": SWITCH},
+        "select_gear": {"stage": INTEGER, **FOR},
+        "gear_changed": {},
+        "set_limits": {
+            "max_speed_rpm": OPTIONAL_POSITIVE,
+            "min_speed_rpm": OPTIONAL_NUMBER,
+            "max_acceleration": OPTIONAL_POSITIVE,
+        },
+        "reset_limits": {},
+        "stop_at_program_end": {"on": SWITCH},
+        "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER},
+        "coupling_answer": {"granted": SWITCH, "reason": TEXT},
+        "decouple": {},
         "reset": {},
         "upstream_lost": SOURCE,
     },
@@ -126,6 +149,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "reset": {},
         "mdi": {"text": TEXT},
         "acknowledge": {"id": INTEGER},
+        "measuring_event": {},
         "upstream_lost": SOURCE,
     },
     "plc": {
@@ -139,7 +163,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 }
 COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
 """Commands that make a slave of an axis."""
-INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error"})
+INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list}

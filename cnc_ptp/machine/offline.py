@@ -13,6 +13,7 @@ from cnc_ptp.machine.blocks import (
     CycleTick,
     Event,
     PlcBlock,
+    SpindleBlock,
     StatusBit,
 )
 from cnc_ptp.machine.channel_unit import ChannelUnit
@@ -137,11 +138,21 @@ class OfflineMachine:
 
 
 def endless_motion(block: Block, name: str) -> str:
-    """A slave that was decoupled in motion drives on until somebody stops it; empty for all others."""
+    """A slave that was decoupled in motion drives on, a spindle may wait for the PLC; empty for all others."""
+    if isinstance(block, SpindleBlock):
+        return spindle_wait(block, name)
     if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.CONTINUOUS_MOTION:
         return ""
     drives = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
     return f"axis {name} drives on without an end" if drives else ""
+
+
+def spindle_wait(block: SpindleBlock, name: str) -> str:
+    """What a spindle waits for that does not come with time alone."""
+    if block.gear_request:
+        return f"spindle {name} waits for the PLC to change to gear {block.gear_request}"
+    held = block.state[-1] == AxisStateCode.DISCRETE_MOTION and block.override_percent[-1] == 0.0
+    return f"spindle {name} is held by override 0" if held and block.set_speed_rpm[-1] == 0.0 else ""
 
 
 def on_path(block: Block) -> bool:

@@ -24,6 +24,7 @@ from cnc_ptp.machine.blocks import (
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.setpoint_file import placed
 from cnc_ptp.machine.setpoint_queue import SETPOINTS, SetpointQueue
+from cnc_ptp.machine.spindle_groups import spindle_answers
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
 from cnc_ptp.parameters import AxisParameters
 
@@ -33,6 +34,7 @@ SETTLING_TIME = 0.2
 """Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
 
 STANDING_STATES = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
+SPINDLE_AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
 STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
 
 
@@ -63,7 +65,8 @@ class PlcUnit(Unit):
         self._scenario = deque(scenario)
         self._cycle_time = cycle_time
         self._end_when_idle = end_when_idle
-        self._groups = AxisGroups(axes or {}, cycle_time=cycle_time)
+        spindles = {unit for unit, kind in self._kinds.items() if kind == "spindle"}
+        self._groups = AxisGroups(axes or {}, cycle_time=cycle_time, spindles=spindles)
         self._outgoing: list[Command] = []
         self.setpoints = SetpointQueue(cycle_time=cycle_time, warn=self._warn)
         """External setpoints that scenario and topics give."""
@@ -121,7 +124,8 @@ class PlcUnit(Unit):
         for unit, kind in self._kinds.items():
             block = self._reported.get(unit)
             if unit not in self._lost and (block is None or needs_stop(block) or self._let_go(unit, block)):
-                self._outgoing.append(Command(unit, STOP_COMMAND[kind], {}))
+                waits_for_gear = isinstance(block, SpindleBlock) and block.gear_request
+                self._outgoing.append(Command(unit, "reset" if waits_for_gear else STOP_COMMAND[kind], {}))
 
     def _let_go(self, unit: str, block: Block) -> bool:
         """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
@@ -158,6 +162,7 @@ class PlcUnit(Unit):
         self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
         self._answer_requests(first_cycle, inputs)
+        self._outgoing += spindle_answers(inputs, changes_gears=self._auto_acknowledge)
         self._outgoing += self.setpoints.take(first_cycle, count)
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
@@ -226,7 +231,8 @@ def at_rest(block: Block) -> bool:
         waits = held or bool(bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB)
         return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in STANDING_STATES)
     if isinstance(block, SpindleBlock):
-        return block.set_acceleration_deg_s2[-1] == 0.0
+        busy = block.state[-1] in SPINDLE_AT_WORK or block.gear_change_active[-1]
+        return block.set_acceleration_deg_s2[-1] == 0.0 and not busy
     return True
 
 

@@ -5,13 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import CanonicalBlock, CompensationSwitch, ControlFunction, Function, Source, SpindleFunction
+from cnc_ptp.machine.blocks import Block, SpindleBlock
+from cnc_ptp.nc.canonical import (
+    AuxiliaryFunction,
+    CanonicalBlock,
+    CompensationSwitch,
+    Function,
+    Source,
+    SpindleCommand,
+    SpindleFunction,
+)
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Program
-from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters
+from cnc_ptp.nc.program import ModalState, Pairs, Program, Spindle, SpindleTable
+from cnc_ptp.parameters import (
+    AxisParameters,
+    ChannelParameters,
+    ChannelSpindle,
+    MachineParameters,
+    SpindleParameters,
+    catalogue,
+)
+from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 SOFT_LIMIT_POSITIVE = 120002
 SOFT_LIMIT_NEGATIVE = 120003
@@ -35,12 +52,14 @@ class ProgramCheck:
         self._channel = channel
         self._axes = [axes[axis.node] for axis in channel.axes]
         self._speeds = {
-            spindle.name: spindles[spindle.node].max_speed_deg_s / DEG_S_PER_RPM for spindle in channel.spindles
+            spindle.name: spindles[spindle.node].max_speed_deg_s / DEG_S_PER_RPM
+            for spindle in channel.spindles
+            if not spindle.plc_control
         }
         self._axis_names = tuple(axis.name for axis in channel.axes)
-        main = [spindle.name for spindle in channel.spindles if spindle.name == channel.main_spindle]
-        others = [spindle.name for spindle in channel.spindles if spindle.name != channel.main_spindle]
-        self._spindle_names = tuple(main + others)
+        self._spindles = spindle_table(channel, spindles)
+        self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
+        self._units = spindles
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -55,7 +74,7 @@ class ProgramCheck:
             text,
             file,
             self._axis_names,
-            self._spindle_names,
+            self._spindles,
             start=self.start,
             check_target=self.target,
             centre_offset=self._channel.circle_center_tolerance,
@@ -74,6 +93,22 @@ class ProgramCheck:
         """Start positions of the channel's axes, mm."""
         return tuple(axis.start_position for axis in self._axes)
 
+    def initial_state(self, feedback: Mapping[str, Block], links: Mapping[int, Pairs]) -> ModalState:
+        """The modal state in which programs begin: gears as the spindles report them, coupling groups as defined."""
+        state = ModalState()
+        state.spindle.gears = self.gears(feedback)
+        state.spindle.links = dict(links)
+        return state
+
+    def gears(self, feedback: Mapping[str, Block]) -> dict[str, int]:
+        """Gear stages of the spindles that are not in the one of their start-up, by name."""
+        reported = {}
+        for spindle in self._spindles.spindles:
+            block = feedback.get(self._nodes[spindle.key])
+            if isinstance(block, SpindleBlock) and block.gear[-1] != spindle.gear:
+                reported[spindle.key] = block.gear[-1]
+        return reported
+
     def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
         """All blocks from `start` (mm, in the channel's order of axes). Raises ProgramError; then `state` is void."""
         blocks = list(
@@ -81,7 +116,7 @@ class ProgramCheck:
                 program,
                 tuple(start),
                 self._axis_names,
-                self._spindle_names,
+                self._spindles,
                 state=state,
                 check_target=self.target,
                 centre_offset=self._channel.circle_center_tolerance,
@@ -111,15 +146,18 @@ class ProgramCheck:
                 raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
 
     def _function(self, function: Function, source: Source) -> None:
+        if isinstance(function, (SpindleFunction, SpindleCommand)):
+            self._position_known(function, source)
         if isinstance(function, SpindleFunction):
-            limit = self._speeds[function.spindle]
-            if function.speed_rpm is not None and function.speed_rpm > limit:
+            limit = self._speeds.get(function.spindle)
+            if limit is not None and function.speed_rpm is not None and function.speed_rpm > limit:
                 above = f"{function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
                 text = f"spindle {function.spindle}: {above}"
                 raise ProgramError(SPINDLE_TOO_FAST, text, source, 1)
-        elif isinstance(function, ControlFunction):
-            if isinstance(function, CompensationSwitch):
-                self._compensation(function, source)
+        elif isinstance(function, CompensationSwitch):
+            self._compensation(function, source)
+        elif not isinstance(function, AuxiliaryFunction):
+            return
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
             text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
@@ -132,3 +170,35 @@ class ProgramCheck:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             text = f"axis {function.axis}: {reason}"
             raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))
+
+    def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
+        """A spindle without actual position can be neither positioned nor homed (TF5200 spindle 2.2.4)."""
+        spindle = self._units.get(self._nodes[function.spindle])
+        if spindle is None or spindle.has_position:
+            return
+        why = f"spindle {function.spindle} has no actual position (P-AXIS-00320, P-SIM-00050) and cannot be"
+        if isinstance(function, SpindleFunction) and function.m == 19:
+            raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
+        if isinstance(function, SpindleCommand) and function.command == "home":
+            raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
+
+
+def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:
+    """The spindles of a channel as its programs see them, the main spindle first."""
+    ordered = sorted(channel.spindles, key=lambda spindle: spindle.name != channel.main_spindle)
+    table = tuple(_spindle(spindle, spindles.get(spindle.node)) for spindle in ordered)
+    groups = catalogue().arrays["koppel_gruppe"].size
+    return SpindleTable(table, channel.main_spindle or "S", channel.gear_change, channel.coupled, groups)
+
+
+def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle:
+    return Spindle(
+        key=spindle.name,
+        own_name=spindle.own_name or spindle.name,
+        number=spindle.number,
+        ranges=spindle.ranges,
+        from_top=spindle.from_top,
+        automatic=spindle.automatic,
+        gear=unit.gear if unit else 1,
+        plc_control=spindle.plc_control,
+    )

@@ -1,15 +1,23 @@
-"""The sequence of a program in a channel: block after block its functions, its motion and what the path waits for."""
+"""The sequence of a program in a channel: block after block its functions, its motion and what the path waits for.
+
+A block goes: gear change (and wait), functions before the motion, waits (its own; before G01, G02, G03 those of
+MVS_SLM; at #EXPL SYN those of MVS_SLP; at the end of the program all), motion (functions of MNE_SNS with the measuring
+event), functions after it, waits, stop or next block.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
-from cnc_ptp.machine.blocks import Block
-from cnc_ptp.machine.function_output import FunctionOutput, Outputs, Wait
+from cnc_ptp.machine.blocks import Block, HandshakeRequest
+from cnc_ptp.machine.function_output import FunctionOutput, Moment
 from cnc_ptp.machine.path_motion import PathMotion
-from cnc_ptp.nc.canonical import CanonicalBlock, Source
+from cnc_ptp.machine.waits import Condition, Outputs, Wait
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 
+ENDS = ("stop", "decouple")
+"""Commands that go out although the program was aborted."""
 NO_SOURCE = Source("", 0, 0, "")
 
 
@@ -18,15 +26,20 @@ class Phase(Enum):
 
     IDLE = auto()
     NEXT = auto()
+    WAIT_GEAR = auto()
     WAIT_BEFORE = auto()
     MOTION = auto()
     WAIT_AFTER = auto()
+    WAIT_END = auto()
     STOPPED = auto()
     RAMP_DOWN = auto()
 
 
+WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
+
+
 class ProgramSequence:
-    """Runs canonical blocks: functions before the motion, waits, motion, functions after it, waits, stop or next block.
+    """Runs canonical blocks.
 
     `go_on` makes one step that takes no time; it returns False when only time, the PLC or a spindle can help. While
     `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` tells when it is through.
@@ -48,8 +61,15 @@ class ProgramSequence:
         self._unsent: list[Wait] = []
         self._waits: list[Wait] = []
         self._waits_after: list[Wait] = []
+        self._waits_machining: list[Wait] = []
+        self._waits_explicit: list[Wait] = []
+        self._awaits_event = False
+        """Functions of the block go out with the measuring event."""
         self.open_requests: set[int] = set()
         """Numbers of the handshake requests that the PLC has not acknowledged."""
+        self._asked: dict[int, HandshakeRequest] = {}
+        self.notes: list[str] = []
+        """What the channel is to warn of."""
 
     # from outside
 
@@ -72,7 +92,8 @@ class ProgramSequence:
             return
         moving = self.phase is Phase.MOTION and self._motion.on_path
         self.phase = Phase.RAMP_DOWN
-        self._outputs = Outputs(commands=[command for command in self._outputs.commands if command.command == "stop"])
+        self._awaits_event = False
+        self._outputs = Outputs(commands=[command for command in self._outputs.commands if command.command in ENDS])
         self._unsent = []
         if moving:
             self._motion.stop()
@@ -85,14 +106,39 @@ class ProgramSequence:
         return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
 
     def stop_spindles(self, *, keep: Container[str] = ()) -> None:
-        """M05 for the spindles that the channel has set turning, except the nodes in `keep`."""
-        self._outputs.commands += self._functions.stop_spindles(keep)
+        """M05 for the spindles that the channel has set turning, except the nodes in `keep`; its couplings end."""
+        self._queue(self._functions.at_abort(keep))
+
+    def end_couplings(self) -> None:
+        """Couplings that manual blocks have left end before a program begins."""
+        self._outputs.commands += self._functions.spindles.decouple_all()
+
+    def measuring_event(self) -> bool:
+        """The functions of type MNE_SNS of the running motion go out; False when there are none."""
+        if not self._awaits_event or self._block is None:
+            return False
+        self._awaits_event = False
+        outputs = self._functions.of_block(self._block, Moment.EVENT)
+        self._queue(outputs)
+        self._waits_after += outputs.waits_after
+        return True
+
+    def overdue(self, cycle: int, limit: int) -> HandshakeRequest | None:
+        """The oldest request that the PLC has left unacknowledged for `limit` cycles."""
+        return next((request for request in self._asked.values() if cycle - request.cycle >= limit), None)
+
+    def acknowledge(self, request_id: int) -> None:
+        """The PLC has carried out what it was asked for."""
+        self.open_requests.discard(request_id)
+        self._asked.pop(request_id, None)
 
     def take_outputs(self, first_cycle: int) -> Outputs:
         """What is to go out with the block that begins at `first_cycle`; from there on its waits count."""
         outputs, self._outputs = self._outputs, Outputs()
         for request in outputs.requests:
             request.cycle = first_cycle
+            if request.id in self.open_requests:
+                self._asked[request.id] = request
         for wait in self._unsent:
             wait.sent_cycle = first_cycle
         self._unsent = []
@@ -104,7 +150,7 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0 or the end of the feed hold"
-        if self.phase in (Phase.WAIT_BEFORE, Phase.WAIT_AFTER):
+        if self.phase in WAITING:
             waits = [wait.text(self.open_requests) for wait in self._waits]
             return " and ".join(text for text in waits if text)
         return ""
@@ -112,22 +158,27 @@ class ProgramSequence:
     # from block to block
 
     def go_on(self, first_cycle: int, feedback: Mapping[str, Block]) -> bool:
-        """One step forward between motions; False when the path has to wait. Raises CncError of PathMotion.start.
+        """One step forward between motions; False when the path has to wait.
 
+        Raises CncError of PathMotion.start, and 22019 for a coupling that did not come about.
         `feedback`: blocks that the spindles have reported for the cycles before `first_cycle`.
         """
         if self.phase is Phase.NEXT:
-            self._begin_block()
+            self._begin_block(feedback)
             return True
-        if self.phase not in (Phase.WAIT_BEFORE, Phase.WAIT_AFTER):
+        if self.phase not in WAITING:
             return False
         self._waits = [wait for wait in self._waits if not wait.fulfilled(first_cycle, feedback, self.open_requests)]
         if self._waits:
             return False
-        if self.phase is Phase.WAIT_BEFORE:
+        if self.phase is Phase.WAIT_GEAR:
+            self._functions_before()
+        elif self.phase is Phase.WAIT_BEFORE:
             self._start_motion()
+        elif self.phase is Phase.WAIT_END:
+            self._end_program()
         else:
-            self._end_block()
+            self._end_block(feedback)
         return True
 
     def motion_ended(self) -> None:
@@ -138,21 +189,55 @@ class ProgramSequence:
             self.stop_spindles(keep=self._keep)
             return
         self._motion.finish()
-        outputs = self._functions.of_block(self._block, after_motion=True) if self._block else Outputs()
+        if self._awaits_event:
+            self.notes.append("no measuring event has come in the block; its functions go out after the motion")
+            self.measuring_event()
+        outputs = self._functions.of_block(self._block, Moment.AFTER) if self._block else Outputs()
         self._queue(outputs)
         self._waits = self._waits_after + outputs.waits_after
         self.phase = Phase.WAIT_AFTER
 
-    def _begin_block(self) -> None:
+    def _begin_block(self, feedback: Mapping[str, Block]) -> None:
         if self.blocks_done >= len(self.blocks):
-            self._end_program()
+            self._waits = self._late_waits(machining=True, explicit=True)
+            self.phase = Phase.WAIT_END
             return
         self._block = block = self.blocks[self.blocks_done]
         self.source = block.source
-        outputs = self._functions.of_block(block, after_motion=False)
+        gear = self._functions.gear_change(block, feedback)
+        if not gear.commands:
+            self._functions_before()
+            return
+        self._queue(gear)
+        self._waits = gear.waits_before
+        self.phase = Phase.WAIT_GEAR
+
+    def _functions_before(self) -> None:
+        """Functions that go out before the motion, and all that the motion has to wait for."""
+        block = self._block
+        assert block is not None
+        outputs = self._functions.of_block(block, Moment.BEFORE)
         self._queue(outputs)
         self._waits, self._waits_after = outputs.waits_before, outputs.waits_after
+        end = block.stop == "end"
+        machining = isinstance(block.motion, CircularMove) or (
+            isinstance(block.motion, LinearMove) and not block.motion.rapid
+        )
+        explicit = any(isinstance(function, ExplicitSynchronisation) for function in block.before)
+        self._waits += self._late_waits(machining=machining, explicit=explicit)
+        if end:
+            self._waits_after += self._late_waits(machining=True, explicit=True)
+        self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.before)
         self.phase = Phase.WAIT_BEFORE
+
+    def _late_waits(self, *, machining: bool, explicit: bool) -> list[Wait]:
+        """Waits of MVS_SLM and, or, MVS_SLP whose moment has come."""
+        waits: list[Wait] = []
+        if machining:
+            waits, self._waits_machining = self._waits_machining, []
+        if explicit:
+            waits, self._waits_explicit = waits + self._waits_explicit, []
+        return waits
 
     def _start_motion(self) -> None:
         motion = self._block.motion if self._block else None
@@ -162,10 +247,11 @@ class ProgramSequence:
         self._motion.start(motion)
         self.phase = Phase.MOTION
 
-    def _end_block(self) -> None:
+    def _end_block(self, feedback: Mapping[str, Block]) -> None:
         stop = self._block.stop if self._block else ""
         self.blocks_done += 1
         if stop == "end":
+            self._queue(self._functions.at_program_end(feedback))
             self._end_program()
         elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED
@@ -179,12 +265,27 @@ class ProgramSequence:
         self._motion.feed = 0.0
         self._block = None
         self._waits, self._waits_after = [], []
+        self._waits_machining, self._waits_explicit = [], []
+        self._awaits_event = False
         self.open_requests.clear()
+        self._asked.clear()
         self.phase = Phase.IDLE
 
     def _queue(self, outputs: Outputs) -> None:
         """Functions go out with the next block; the path waits for them if their synchronisation type says so."""
         self._outputs.commands += outputs.commands
         self._outputs.requests += outputs.requests
-        self._unsent += outputs.waits_before + outputs.waits_after
+        self._unsent += outputs.waits
+        self._drop_old_waits(outputs.waits)
+        self._waits_machining += outputs.waits_machining
+        self._waits_explicit += outputs.waits_explicit
         self.open_requests |= {request.id for request in outputs.requests if request.acknowledge_needed}
+
+    def _drop_old_waits(self, waits: Sequence[Wait]) -> None:
+        """A newer function of a spindle takes the place of what MVS_SLM and MVS_SLP still wait for: only the PLC's
+        acknowledgement of the older one remains.
+        """
+        nodes = {wait.spindle for wait in waits if wait.condition is not Condition.NONE}
+        for wait in self._waits_machining + self._waits_explicit:
+            if wait.spindle in nodes:
+                wait.condition = Condition.NONE

@@ -17,6 +17,7 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     Severity,
 )
+from cnc_ptp.machine.spindle_unit import SpindleUnit
 from cnc_ptp.machine.unit import Unit
 
 LIFE_SIGN = "plc"
@@ -47,9 +48,9 @@ class UnitRunner:
 
     @property
     def master(self) -> str | None:
-        """The axis whose block of the same tick `compute` needs besides; known once the commands are applied."""
+        """The axis or spindle whose block of the same tick `compute` needs besides; known after the commands."""
         unit = self.unit
-        return unit.master if isinstance(unit, AxisUnit) and unit.master not in unit.lost else None
+        return unit.master if isinstance(unit, (AxisUnit, SpindleUnit)) and unit.master not in unit.lost else None
 
     def apply(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
         """Applies the commands that `inputs` carry for this unit."""

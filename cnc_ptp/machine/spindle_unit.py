@@ -1,220 +1,182 @@
-"""The spindle: endless rotation on speed ramps in a position loop, with speed monitoring."""
+"""The spindle unit: takes commands in their order, closes the position loop, makes blocks."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, NoReturn
+from functools import partial
+from typing import Any, ClassVar
 
-from cnc_ptp.axis.states import state_name
+from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.control.drives import Drive, FirstOrderDrive
-from cnc_ptp.control.position_controller import PositionController
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisStateCode, Block, CycleTick, Severity, SpindleBlock, SpindleMode
-from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
-from cnc_ptp.motion import Profile
-from cnc_ptp.parameters import SpindleParameters
-from cnc_ptp.spindle.speed_ramp import plan_speed
-
-BAD_SPEED = 24001
-SPEED_TOO_HIGH = 24002
-NOT_READY = 24003
-STILL_TURNING = 24004
-BAD_OVERRIDE = 24005
-FOLLOWING_ERROR = 0x4550
-AGAINST_PREFERRED_DIRECTION = 60254
-
-DEG_S_PER_RPM = 6.0
-S = AxisStateCode
+from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
+from cnc_ptp.machine.spindle_cycles import SpindleCycles
+from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
+from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
+from cnc_ptp.spindle.faults import MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
+from cnc_ptp.spindle.position_commands import PositionCommands
+from cnc_ptp.spindle.power_commands import PowerCommands
+from cnc_ptp.spindle.rotation_commands import RotationCommands
+from cnc_ptp.spindle.spindle import Spindle
 
 
 class SpindleUnit(Unit):
-    """One NC spindle: M03/M04 with a speed, M05, override, speed reached and speed zero.
+    """One spindle with its functions (cnc_ptp.spindle), position loop and drive.
 
-    Speeds inside are deg/s, + = M03. Source: TF5200 spindle 2.3.1, 2.4.1, 2.6.
+    States (PLCopen): Disabled, Standstill, ContinuousMotion (M03, M04), Stopping (M05), DiscreteMotion (M19, way to the
+    change position), Homing (G74, automatic homing), ErrorStop. Speeds inside are °/s, + = M03.
     """
 
     kind: ClassVar[str] = "spindle"
 
-    def __init__(self, parameters: SpindleParameters, *, cycle_time: float, drive: Drive | None = None) -> None:
-        """`cycle_time` in s; without `drive` the simulated one of the parameters is used."""
+    def __init__(
+        self,
+        parameters: SpindleParameters,
+        *,
+        cycle_time: float,
+        drive: Drive | None = None,
+        spindles: tuple[str, ...] = (),
+    ) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `spindles` of the machine."""
         super().__init__(parameters.name)
-        self._parameters = parameters
+        self._given_drive = drive
         self._cycle_time = cycle_time
-        self._controller = PositionController(
-            kv=parameters.kv,
-            following_error_limit=parameters.following_error_limit,
-            monitoring=parameters.following_error_monitoring,
-        )
-        self._drive: Drive = drive or FirstOrderDrive(
+        self._time_constant = parameters.drive_time_constant
+        gear = parameters.gears[parameters.gear]
+        self.spindle = Spindle(
+            parameters,
+            drive=self._make_drive(gear, parameters.start_position * (-1.0 if gear.reversed else 1.0)),
+            make_drive=self._make_drive,
             cycle_time=cycle_time,
-            time_constant=parameters.drive_time_constant,
-            encoder_increment=parameters.encoder_increment,
-            start_position=parameters.start_position,
+            report_error=partial(self._report, Severity.ERROR),
+            report_warning=partial(self._report, Severity.WARNING),
         )
-        self._origin = 0
-        self._profile: Profile = plan_speed(parameters.start_position, 0.0, 0.0, acceleration=1.0, deceleration=1.0)
-        self._commanded_speed = 0.0
-        self._wanted_speed = 0.0
-        """Where the ramp in work leads to: the commanded speed under the override, deg/s."""
-        self._override_percent = min(100.0, parameters.max_override_percent)
-        self._mode = SpindleMode.STOP
-        self._state = S.STANDSTILL if parameters.powered_at_start else S.DISABLED
-        self._error_id = 0
+        self.spindle.loop.count_from(self.spindle.loop.position)
+        self._orders = Orders(self.spindle)
+        self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
+        self._rotation = RotationCommands(self.spindle)
+        self._power = PowerCommands(self.spindle)
+        self._groups = (
+            self,
+            self._rotation,
+            PositionCommands(self.spindle),
+            self._power,
+            self._coupling,
+        )
+        self._cycles = SpindleCycles(self.spindle, self._orders, self._rotation)
+        self._passed_on: list[Command] = []
+        self._refused: list[str] = []
+
+    def _make_drive(self, gear: GearParameters, position: float) -> Drive:
+        return self._given_drive or FirstOrderDrive(
+            cycle_time=self._cycle_time,
+            time_constant=self._time_constant,
+            encoder_increment=gear.encoder_increment,
+            start_position=position,
+        )
+
+    def _report(self, severity: Severity, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, severity, error_id, text)
+
+    @property
+    def master(self) -> str | None:
+        """The spindle whose block of the same cycles is needed before this one's can be computed."""
+        return self._coupling.master or None
 
     # commands
 
-    def do_start(self, cycle: int, *, direction: str, speed_rpm: float) -> None:
-        """M03 (cw) or M04 (ccw) at `speed_rpm`. Refusals 24001–24003; 60254 puts the spindle into ErrorStop."""
-        if self._state == S.ERROR_STOP:
-            self._refuse("start", NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self._error_id}); reset it first")
-        if self._state == S.DISABLED:
-            self._refuse("start", NOT_READY, "the spindle is in Disabled, the machine starts it without power")
-        self._check_speed("start", speed_rpm)
-        sign = 1.0 if direction == "cw" else -1.0
-        self._check_preferred_direction(cycle, direction, sign)
-        self._mode = SpindleMode.CW if direction == "cw" else SpindleMode.CCW
-        self._commanded_speed = sign * speed_rpm * DEG_S_PER_RPM
-        self._state = S.CONTINUOUS_MOTION
-        self._ramp(cycle)
+    def command(self, command: Command, cycle: int) -> CommandRecord:
+        """As every unit; the source of a refused command finds the refusal in the next block."""
+        record = super().command(command, cycle)
+        source = command.arguments.get("source")
+        if not record.accepted and source and command.command != "upstream_lost":
+            self._refused.append(f"{source}: P-ERR-{record.error_id} {record.message}")
+        return record
 
-    def do_set_speed(self, cycle: int, *, speed_rpm: float) -> str | None:
-        """An S word alone: a new speed in the same direction; without effect while the spindle does not rotate."""
-        self._check_speed("set_speed", speed_rpm)
-        if self._state != S.CONTINUOUS_MOTION:
-            return f"spindle {self.name}: set_speed without effect in {state_name(self._state)}"
-        sign = 1.0 if self._mode == SpindleMode.CW else -1.0
-        self._commanded_speed = sign * speed_rpm * DEG_S_PER_RPM
-        self._ramp(cycle)
-        return None
+    def handler(self, command: str) -> Handler:
+        """Motion commands come in the order that `Orders` gives them; all others act at once."""
+        handler = self._group_handler(command)
+        return partial(self._ordered, command) if command in MOTION else handler
 
-    def _check_speed(self, command: str, speed_rpm: float) -> None:
-        if speed_rpm < 0.0:
-            self._refuse(command, BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
-        limit_rpm = self._parameters.max_speed_deg_s / DEG_S_PER_RPM
-        if speed_rpm > limit_rpm:
-            reason = f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm (P-AXIS-00212)"
-            self._refuse(command, SPEED_TOO_HIGH, reason)
+    def _group_handler(self, command: str) -> Handler:
+        group = next(group for group in self._groups if hasattr(group, f"do_{command}"))
+        handler: Handler = getattr(group, f"do_{command}")
+        return handler
 
-    def do_stop(self, cycle: int) -> None:
-        """M05: down to speed 0 with P-AXIS-00002."""
-        if self._state in (S.ERROR_STOP, S.DISABLED):
-            return
-        self._mode = SpindleMode.STOP
-        self._commanded_speed = 0.0
-        self._state = S.STOPPING
-        self._ramp(cycle)
+    def _ordered(self, command: str, cycle: int, *, source: str = "", **arguments: Any) -> str | None:
+        self._orders.check(command, source, self._coupling.master)
+        if self._orders.must_wait(command, source):
+            self._orders.add(Order(command, arguments, source))
+            message: str | None = f"spindle {self.name}: {command} waits until what is in work is done"
+        else:
+            message = self._carry_out(cycle, Order(command, arguments, source))
+        self._orders.taken += source == PLC
+        return message
 
-    def do_set_override(self, cycle: int, *, percent: float) -> None:
-        """Spindle override of endless rotation, 0 … P-AXIS-00109 %; the speed stays within P-AXIS-00212."""
-        limit = self._parameters.max_override_percent
-        if not 0.0 <= percent <= limit:
-            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
-            self._refuse("set_override", BAD_OVERRIDE, reason)
-        self._override_percent = float(percent)
-        if self._state == S.CONTINUOUS_MOTION:
-            self._ramp(cycle)
+    def _carry_out(self, cycle: int, order: Order) -> str | None:
+        message = self._group_handler(order.command)(cycle, **order.arguments)
+        if order.command == "stop":
+            self._orders.clear()
+        self._orders.begin(order.source)
+        if order.command in PASSED_ON:
+            self._passed_on.append(Command(self.name, order.command, dict(order.arguments)))
+        return message
+
+    def _take_turns(self, cycle: int) -> None:
+        """Commands whose turn has come act at the first cycle of a block, like all others."""
+        while (order := self._orders.next()) is not None:
+            try:
+                self._carry_out(cycle, order)
+            except CncError as error:
+                self.event(cycle, Severity.WARNING, error.error_id, error.message)
+                if order.source:
+                    self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
 
     def do_reset(self, cycle: int) -> None:
-        """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle (CNC reset)."""
-        if self._state != S.ERROR_STOP:
-            self.do_stop(cycle)
-            return
-        if self._setpoint(cycle)[1] != 0.0:
-            self._refuse("reset", STILL_TURNING, "the spindle still turns on its error ramp; wait for standstill")
-        self._error_id = 0
-        self._state = S.STANDSTILL
+        """As PowerCommands.do_reset; what waits is forgotten."""
+        self._power.do_reset(cycle)
+        self._orders.clear()
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
-        """The watchdog: `source` (channel, PLC or clock) has sent nothing in time; the spindle stops."""
-        if self._state not in (S.ERROR_STOP, S.DISABLED):
-            self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+        """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
+        if can_follow(self.spindle):
+            self.spindle.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> SpindleBlock:
-        """Computes one block; a spindle is moved by commands alone."""
+        """Computes one block; a slave carries out first what its master does from this block on."""
         first_cycle, count = tick
-        rows = [self._cycle(first_cycle + index) for index in range(count)]
-        return SpindleBlock(first_cycle, count, *map(list, zip(*rows, strict=True)))
+        master = inputs.get(self._coupling.master)
+        if isinstance(master, SpindleBlock):
+            self._follow(first_cycle, master)
+        self._take_turns(first_cycle)
+        columns = self._cycles.block(first_cycle, count)
+        block = SpindleBlock(first_cycle, count, *columns)
+        block.gear_request = self.spindle.jobs.gear_request
+        block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
+        block.source = self._orders.source
+        block.plc_commands, block.plc_acknowledged = self._orders.taken, self._orders.acknowledged
+        block.refused, self._refused = self._refused, []
+        block.commands, self._passed_on = self._passed_on, []
+        return block
 
-    def _cycle(self, cycle: int) -> tuple[float | int | bool, ...]:
-        drive = self._drive
-        position, speed, acceleration, _ = self._setpoint(cycle)
-        if speed == 0.0 and self._state == S.STOPPING:
-            self._state = S.STANDSTILL
-        following_error = position - drive.position
-        if self._error_id == 0 and self._controller.exceeds_limit(following_error):
-            limit = self._parameters.following_error_limit
-            self._fault(
-                cycle, FOLLOWING_ERROR, f"following error {following_error:.3f} deg exceeds {limit} deg (P-AXIS-00168)"
-            )
-        actual_speed = drive.velocity
-        row = (
-            speed / DEG_S_PER_RPM,
-            actual_speed / DEG_S_PER_RPM,
-            acceleration,
-            position,
-            drive.position,
-            following_error,
-            self._override_percent,
-            self._mode,
-            self._parameters.gear,
-            self._speed_reached(actual_speed),
-            abs(actual_speed) <= self._parameters.zero_speed_deg_s,
-            self._parameters.referenced_at_start,
-            self._state,
-            self._error_id,
-        )
-        drive.step(self._controller.command_velocity(following_error) if self._state != S.DISABLED else 0.0)
-        return row
-
-    def _speed_reached(self, actual_speed: float) -> bool:
-        """P-AXIS-00217: within the tolerance band around the commanded speed; for speed 0 the zero limit P-AXIS-00216.
-
-        A spindle that override 0 holds has not reached its speed.
-        """
-        wanted = self._wanted_speed
-        if wanted == 0.0:
-            return self._commanded_speed == 0.0 and abs(actual_speed) <= self._parameters.zero_speed_deg_s
-        return abs(actual_speed - wanted) <= self._parameters.speed_reached_band * abs(wanted)
-
-    def _setpoint(self, cycle: int) -> tuple[float, float, float, float]:
-        return self._profile.state_at((cycle - self._origin) * self._cycle_time)
-
-    def _ramp(self, cycle: int) -> None:
-        position, speed, _, _ = self._setpoint(cycle)
-        limit = self._parameters.max_speed_deg_s
-        self._wanted_speed = max(-limit, min(limit, self._commanded_speed * self._override_percent / 100.0))
-        self._origin = cycle
-        self._profile = plan_speed(
-            position,
-            speed,
-            self._wanted_speed,
-            acceleration=self._parameters.acceleration,
-            deceleration=self._parameters.deceleration,
-        )
-
-    def _check_preferred_direction(self, cycle: int, direction: str, sign: float) -> None:
-        preferred = self._parameters.preferred_direction
-        if preferred and sign != preferred:
-            word = "positive" if preferred > 0 else "negative"
-            reason = f"{direction} contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: {word})"
-            self._fault(cycle, AGAINST_PREFERRED_DIRECTION, reason)
-            raise CncError(
-                AGAINST_PREFERRED_DIRECTION,
-                f"spindle {self.name}: start refused: {reason}; the spindle is in ErrorStop",
-            )
-
-    def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
-        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; nothing was changed")
-
-    def _fault(self, cycle: int, error_id: int, reason: str) -> None:
-        """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
-        self._error_id = error_id
-        self._state = S.ERROR_STOP
-        self._mode = SpindleMode.STOP
-        self._commanded_speed = 0.0
-        self._ramp(cycle)
-        self.event(
-            cycle, Severity.ERROR, error_id, f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
-        )
+    def _follow(self, cycle: int, master: SpindleBlock) -> None:
+        spindle = self.spindle
+        for command in master.commands:
+            if not can_follow(spindle):
+                return
+            try:
+                self._group_handler(command.command)(
+                    cycle, **self._coupling.of_slave(command.command, command.arguments)
+                )
+            except CncError as error:
+                name = self._coupling.master
+                if can_follow(spindle):
+                    reason = f"cannot carry out '{command.command}' of its master {name}: {why_not(error)}"
+                    spindle.fault(cycle, SLAVE_CANNOT, reason)
+        if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
+            reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
+            spindle.fault(cycle, MASTER_IN_ERROR, reason)

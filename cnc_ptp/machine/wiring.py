@@ -38,7 +38,7 @@ def unit_kinds(machine: MachineParameters) -> dict[str, str]:
 def wiring(machine: MachineParameters) -> dict[str, Inputs]:
     """Inputs of every unit: PLC -> channel -> axes, spindles; their reports reach PLC and channel a block later."""
     members = {
-        name: [axis.node for axis in channel.axes] + [s.node for s in channel.spindles]
+        name: [axis.node for axis in channel.axes] + [s.node for s in channel.spindles if not s.plc_control]
         for name, channel in machine.channels.items()
     }
     inputs = {PLC: Inputs((), tuple(name for name in unit_kinds(machine) if name != PLC))}
@@ -58,7 +58,7 @@ def build_unit(
     if kinds[name] == "axis":
         return AxisUnit(machine.axes[name], cycle_time=cycle_time, axes=machine.axes)
     if kinds[name] == "spindle":
-        return SpindleUnit(machine.spindles[name], cycle_time=cycle_time)
+        return SpindleUnit(machine.spindles[name], cycle_time=cycle_time, spindles=tuple(machine.spindles))
     if kinds[name] == "channel":
         return ChannelUnit(
             machine.channels[name],
@@ -66,6 +66,7 @@ def build_unit(
             spindles=machine.spindles,
             cycle_time=cycle_time,
             request_numbers=count(1 + list(machine.channels).index(name), len(machine.channels)),
+            handshake_timeout=machine.handshake_timeout_ms / 1000.0,
         )
     return PlcUnit(
         name,

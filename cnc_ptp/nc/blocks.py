@@ -8,11 +8,12 @@ from collections.abc import Sequence
 
 from cnc_ptp.nc import compensation, faults, feedforward
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
-from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, bracket_words, normalise, tokens
+from cnc_ptp.nc.hash_commands import hash_block
+from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, normalise, tokens
 from cnc_ptp.nc.program import Block, GCode, MCode, SpindleWords
+from cnc_ptp.nc.spindle_words import spindle_bracket
 from cnc_ptp.nc.vocabulary import (
     AXIS_LETTERS,
-    BRACKET_WORDS,
     FUNCTION_WORDS,
     G_CODES,
     MAX_SKIP_LEVEL,
@@ -23,7 +24,9 @@ from cnc_ptp.nc.vocabulary import (
 MAX_BLOCK_NUMBER = 999_999_999
 
 _PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
-_G_BY_TEXT = {text: code for number_, code in G_CODES.items() for text in (f"{number_}", f"{number_:02d}")}
+_G_BY_TEXT = {
+    text: code for number_, code in G_CODES.items() for text in (f"{number_}", f"{number_:02d}") if not code.spindle
+}
 
 
 def plain_block(file: str, line: int, text: str) -> Block | None:
@@ -59,6 +62,10 @@ def careful_block(source: Source) -> Block | None:
     """Any line: comments, M functions, names, brackets, calls; raises with the column. None without words."""
     line = normalise(source)
     skip, begin = _skip_level(line, source)
+    if "#" in line:
+        command = hash_block(line, source, begin, skip)
+        if command is not None:
+            return command
     found = tokens(line, source, begin)
     if not found:
         return None
@@ -158,9 +165,14 @@ class _BlockWords:
         if token.name[0] in AXIS_LETTERS:
             self._value(token)
         elif token.name[0] == "S":
-            self.spindles.append(SpindleWords(token.name, None, float(token.text)))
+            self.spindles.append(SpindleWords(token.name, None, float(token.text), din=True))
         else:
             raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
+
+    def position(self, token: Token) -> None:
+        """The position of M19: `S.POS=90`."""
+        name = token.name.removesuffix(".POS")
+        self.spindles.append(SpindleWords(name, None, None, float(token.text), din=True))
 
     def bracket(self, token: Token) -> None:
         """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
@@ -173,23 +185,7 @@ class _BlockWords:
         if token.name[0] != "S":
             column = token.column + token.shown.index("[")
             raise faults.UNEXPECTED_CHARACTER.at(self.source, column, character="[")
-        m: int | None = None
-        speed: float | None = None
-        for name, text, column in bracket_words(token, self.source):
-            value = float(text)
-            if name == "REV" and speed is None:
-                speed = value
-            elif name == "M" and value in (3, 4, 5):
-                if m is not None:
-                    spindle = token.name
-                    raise faults.SPINDLE_M_TWICE.at(self.source, column, first=m, second=int(value), spindle=spindle)
-                m = int(value)
-            else:
-                known = ", ".join(BRACKET_WORDS)
-                raise faults.BRACKET_WORD.at(self.source, column, word=name + text, spindle=token.name, known=known)
-        if m is None and speed is None:
-            raise faults.BRACKET_EMPTY.at(self.source, token.column, spindle=token.name)
-        self.spindles.append(SpindleWords(token.name, m, speed))
+        self.spindles.append(spindle_bracket(token, self.source))
 
     def bare(self, token: Token) -> None:
         """A number without a letter: the time of G04."""
@@ -207,6 +203,7 @@ class _BlockWords:
     def block(self, skip: int) -> Block:
         """The finished block."""
         functions = bool(self.m or self.spindles or FUNCTION_WORDS & self.words.keys())
+        functions = functions or any(code.spindle for code in self.codes)
         flow = next((code.flow for code in self.m if code.flow), "")
         return Block(
             self.source,
@@ -226,6 +223,7 @@ class _BlockWords:
 _TAKERS = {
     "word": _BlockWords.word,
     "named": _BlockWords.named,
+    "position": _BlockWords.position,
     "bracket": _BlockWords.bracket,
     "bare": _BlockWords.bare,
     "call": _BlockWords.subroutine,

@@ -3,11 +3,12 @@
 Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
 All types are immutable and cheap to create (one of each per program block).
 
-Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, spindle, other M,
-however the line orders them; behind them feedforward and compensations. When it goes out and who waits for it (before
-the motion, after it, at the next G01) is decided at run time by its synchronisation type (P-CHAN-00041, 00045, 00047,
-00049, 00081), which the language does not know. `after` is kept for functions that the language itself binds to the
-block's end. M00, M01 and the program end stand in `stop` and act when motion and functions are done.
+Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, main spindle (gear
+first), other spindles, other M, however the line orders them; behind them feedforward and compensations. When it goes
+out and who waits for it (before the motion, after it, at the next G01) is decided at run time by its synchronisation
+type (P-CHAN-00041, 00043, 00045, 00047, 00049, 00081), which the language does not know. `after` is kept for functions
+that the language itself binds to the block's end. M00, M01 and the program end stand in `stop` and act when motion and
+functions are done.
 """
 
 from typing import NamedTuple
@@ -52,22 +53,55 @@ class Dwell(NamedTuple):
 
 
 class SpindleFunction(NamedTuple):
-    """A function of one spindle: `m` is 3 (clockwise), 4 (counter-clockwise), 5 (stop) or None for a new speed alone.
+    """A function of one spindle: `m` is 3 (clockwise), 4 (counter-clockwise), 5 (stop), 19 (positioning) or None.
 
     With M3 and M4 `speed_rpm` is always given (the programmed or the stored speed), with M5 never, since a speed beside
-    M5 is only stored for the next M3 or M4.
+    M5 is only stored for the next M3 or M4. None is a new speed alone, or, without a speed, G167 alone.
+    M19 goes to `position_deg`, in the programmed `direction` ("cw", "ccw", "" for none), with the programmed or the
+    stored speed, without any with that of P-AXIS-00209. `full_override`: G167, the external override does not act.
+    Spindles have here the name that they have at start-up, whatever #MAIN SPINDLE says.
     """
 
     spindle: str
     m: int | None
     speed_rpm: float | None
+    position_deg: float | None = None
+    direction: str = ""
+    full_override: bool = False
+
+
+class SpindleCommand(NamedTuple):
+    """What a spindle does without speed or position: `command` is "home" (G74) or "reset_limits"."""
+
+    spindle: str
+    command: str
+
+
+class GearChange(NamedTuple):
+    """The gear stage (1 to 6) in which the functions after it need the spindle; nothing happens where it is in it."""
+
+    spindle: str
+    stage: int
+
+
+class SpindleLink(NamedTuple):
+    """Synchronous operation of two spindles begins or ends; functions of the master are in the stream for both."""
+
+    slave: str
+    master: str
+    on: bool
+
+
+class ExplicitSynchronisation(NamedTuple):
+    """#EXPL SYN: the path waits for all functions of type MVS_SLP before it."""
 
 
 class AuxiliaryFunction(NamedTuple):
-    """A function for the PLC or the tool management: letter "M", "T" or "D"."""
+    """A function for the PLC or the tool management: letter "M", "T" or "D"; with the `spindle` of S2[M8]."""
 
     letter: str
     number: int
+    spindle: str = ""
 
 
 class AxisFeedforward(NamedTuple):
@@ -108,7 +142,15 @@ class CompensationSwitch(NamedTuple):
 
 ControlFunction = AxisFeedforward | SpindleFeedforward | CompensationSwitch
 """Functions for position controllers."""
-Function = SpindleFunction | AuxiliaryFunction | ControlFunction
+Function = (
+    SpindleFunction
+    | SpindleCommand
+    | GearChange
+    | SpindleLink
+    | ExplicitSynchronisation
+    | AuxiliaryFunction
+    | ControlFunction
+)
 Motion = LinearMove | CircularMove | Dwell
 
 
@@ -135,14 +177,34 @@ def format_block(block: CanonicalBlock) -> str:
 
 
 def _function(function: Function) -> str:
-    if isinstance(function, AuxiliaryFunction):
-        return f"{function.letter}{function.number}"
-    if isinstance(function, ControlFunction):
-        return _control(function)
-    words = [] if function.m is None else [f"M{function.m}"]
+    match function:
+        case AuxiliaryFunction(letter, code, ""):
+            return f"{letter}{code}"
+        case AuxiliaryFunction(letter, code, spindle):
+            return f"{spindle}[{letter}{code}]"
+        case SpindleCommand(spindle, command):
+            return f"{spindle}[{command}]"
+        case GearChange(spindle, stage):
+            return f"{spindle}[gear {stage}]"
+        case SpindleLink(slave, master, on):
+            return f"{'link' if on else 'unlink'} {slave}={master}"
+        case ExplicitSynchronisation():
+            return "wait for MVS_SLP"
+        case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
+            return _control(function)
+        case SpindleFunction():
+            return f"{function.spindle}[{' '.join(_spindle_words(function))}]"
+
+
+def _spindle_words(function: SpindleFunction) -> list[str]:
+    words = ["G167"] if function.full_override else []
+    if function.m is not None:
+        words.append(f"M{function.m}")
     if function.speed_rpm is not None:
         words.append(f"REV{number(function.speed_rpm)}")
-    return f"{function.spindle}[{' '.join(words)}]"
+    if function.position_deg is not None:
+        words.append(f"POS{number(function.position_deg)}")
+    return words + ([function.direction] if function.direction else [])
 
 
 def _control(function: ControlFunction) -> str:

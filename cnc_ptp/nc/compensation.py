@@ -19,8 +19,8 @@ KINDS = ("FRICT",)
 def bracket(token: Token, source: Source) -> CompensationSwitch:
     """The words in an axis' brackets: COMP, ON or OFF, what is switched.
 
-    Raises 21039 for empty brackets, 21066 when COMP is not the first word, 21067 for unknown words, 21012 and 21042 for
-    words that exclude each other or come twice, 21068 when a word is missing.
+    Raises 21039 for empty brackets, 21096 when COMP is not the first word, 21097 for unknown words, 21012 and 21042 for
+    words that exclude each other or come twice, 21098 when a word is missing.
     """
     words = list(_words(token))
     if not words:

@@ -1,26 +1,32 @@
 """Brackets with feedforward or COMP of a block -> canonical functions, once their axis or spindle is known."""
 
 from cnc_ptp.nc import faults
-from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleFeedforward, SpindleFunction
+from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleCommand, SpindleFeedforward, SpindleFunction
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel
+from cnc_ptp.nc.program import Block, Channel, ModalState
+from cnc_ptp.nc.spindles import names
 
 
 def bracketed_controls(
-    channel: Channel, block: Block, before: tuple[Function, ...]
+    channel: Channel, state: ModalState, block: Block, before: tuple[Function, ...]
 ) -> tuple[SpindleFeedforward | CompensationSwitch, ...]:
     """The control functions in brackets, in their order; `before`: the block's other functions.
 
-    Raises 20797, 20180 for axes and spindles that the channel has not, 21069 and 21037 for one that is named twice.
+    Raises 20797, 20180 for axes and spindles that the channel has not, 21099 and 21037 for one that is named twice.
     """
-    spindles = {function.spindle for function in before if isinstance(function, SpindleFunction)}
+    spindles = names(channel, state)
+    moved = {function.spindle for function in before if isinstance(function, (SpindleFunction, SpindleCommand))}
+    used = {name for name, spindle in spindles.items() if spindle.key in moved}
     axes: set[str] = set()
+    controls: list[SpindleFeedforward | CompensationSwitch] = []
     for control in block.controls:
         if isinstance(control, CompensationSwitch):
             _check(block, control.axis, channel.axes, axes, faults.AXIS_UNKNOWN, faults.COMP_TWICE)
+            controls.append(control)
         else:
-            _check(block, control.spindle, channel.spindles, spindles, faults.SPINDLE_UNKNOWN, faults.SPINDLE_TWICE)
-    return block.controls
+            _check(block, control.spindle, tuple(spindles), used, faults.SPINDLE_UNKNOWN, faults.SPINDLE_TWICE)
+            controls.append(control._replace(spindle=spindles[control.spindle].key))
+    return tuple(controls)
 
 
 def _check(

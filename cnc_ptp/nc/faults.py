@@ -105,18 +105,18 @@ RADII_DIFFER = Fault(
 )
 
 # Feedforward and compensations
-WEIGHT_RANGE = Fault(21060, "feedforward weight {value} % of {unit} is not within 0 ... 100 %")
-WEIGHTS_WITHOUT_AXIS = Fault(21061, "G136 without an axis: axis words are its weights in percent")
-WEIGHTS_AND_MOTION = Fault(21062, "G136 takes the axis words of its block as weights, {g} cannot stand beside it")
+WEIGHT_RANGE = Fault(21090, "feedforward weight {value} % of {unit} is not within 0 ... 100 %")
+WEIGHTS_WITHOUT_AXIS = Fault(21091, "G136 without an axis: axis words are its weights in percent")
+WEIGHTS_AND_MOTION = Fault(21092, "G136 takes the axis words of its block as weights, {g} cannot stand beside it")
 FEEDFORWARD_ALONE = Fault(
-    21063, "'{word}' beside feedforward in the brackets of spindle {spindle}: G135, G136 and G137 stand there alone"
+    21093, "'{word}' beside feedforward in the brackets of spindle {spindle}: G135, G136 and G137 stand there alone"
 )
-WEIGHT_MISSING = Fault(21064, "G136 of spindle {spindle} without a weight in percent, as in G136=80")
-SELECTION_WITH_VALUE = Fault(21065, "{g} of spindle {spindle} takes no value")
-COMP_FIRST = Fault(21066, "the brackets of axis {axis} begin with COMP, not with '{word}'")
-COMP_WORD = Fault(21067, "'{word}' is not available behind COMP of axis {axis}; known are: {known}")
-COMP_INCOMPLETE = Fault(21068, "COMP of axis {axis} does not say {missing}")
-COMP_TWICE = Fault(21069, "COMP of axis {axis} twice in one block")
+WEIGHT_MISSING = Fault(21094, "G136 of spindle {spindle} without a weight in percent, as in G136=80")
+SELECTION_WITH_VALUE = Fault(21095, "{g} of spindle {spindle} takes no value")
+COMP_FIRST = Fault(21096, "the brackets of axis {axis} begin with COMP, not with '{word}'")
+COMP_WORD = Fault(21097, "'{word}' is not available behind COMP of axis {axis}; known are: {known}")
+COMP_INCOMPLETE = Fault(21098, "COMP of axis {axis} does not say {missing}")
+COMP_TWICE = Fault(21099, "COMP of axis {axis} twice in one block")
 
 # Spindles
 SPINDLE_UNKNOWN = Fault(20180, "spindle {word} is not in the machine; spindles of this channel: {known}")

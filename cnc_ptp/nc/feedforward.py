@@ -23,7 +23,7 @@ _NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
 def block_function(channel: Channel, state: ModalState, block: Block, code: GCode) -> tuple[Function, ...]:
     """G135, G136 and G137 of a block as one function for the channel's axes, made where the first of them stands.
 
-    With G136 the axis words are weights, so no path function can stand in the block (21062). Raises 21060, 21061 for
+    With G136 the axis words are weights, so no path function can stand in the block (21092). Raises 21090, 21091 for
     weights beyond 0 ... 100 % and for a G136 without an axis.
     """
     codes = [other for other in block.codes if other.number in (ON, WEIGHTS, OFF)]
@@ -57,8 +57,8 @@ def is_in(token: Token) -> bool:
 def bracket(token: Token, source: Source) -> SpindleFeedforward:
     """The words in a spindle's brackets: G135 or G137, and G136=weight; nothing else.
 
-    Raises 21063 for other words, 21003 for what is no number, 21012 and 21042 for words that exclude each other or come
-    twice, 21060 for the weight, 21064 for a G136 without and 21065 for a G135 or G137 with a value.
+    Raises 21093 for other words, 21003 for what is no number, 21012 and 21042 for words that exclude each other or come
+    twice, 21090 for the weight, 21094 for a G136 without and 21095 for a G135 or G137 with a value.
     """
     found: dict[int, float] = {}
     for code, value, column in _codes(token, source):

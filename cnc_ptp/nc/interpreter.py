@@ -4,13 +4,15 @@ from collections.abc import Callable, Iterator
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, Motion, Source
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, LinearMove, Motion, Source
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Block, Channel, ModalState, Program
+from cnc_ptp.nc.program import Block, Channel, ModalState, Program, SpindleTable
+from cnc_ptp.nc.spindle_links import end_of_links
+from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import G_CODES
 
 CENTRE_OFFSET = 2.0
@@ -31,7 +33,7 @@ def interpret(
     program: Program,
     start: tuple[float, ...],
     axes: tuple[str, ...],
-    spindles: tuple[str, ...] = ("S",),
+    spindles: tuple[str, ...] | SpindleTable = ("S",),
     *,
     state: ModalState | None = None,
     check_target: CheckTarget | None = None,
@@ -42,7 +44,8 @@ def interpret(
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
-    `spindles`: names as programmed, the first is the main spindle (DIN words M3, S1000).
+    `spindles`: the first is the main spindle (DIN words M3, S1000); names are enough where gears and links are not
+    needed.
     `state`: modal state to continue from and to carry on (MDI); None begins with the initial state.
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
@@ -52,7 +55,7 @@ def interpret(
     Raises ProgramError; the state is then undefined, so MDI continues with a copy taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
-    channel = Channel(axes, index, spindles, centre_offset, centre_offset_ratio)
+    channel = Channel(axes, index, spindle_table(spindles), centre_offset, centre_offset_ratio)
     state = ModalState() if state is None else state
     state.position = tuple(start)
     for count, block in enumerate(_executed(program, block_skip, call_depth)):
@@ -102,6 +105,9 @@ def _resolve(
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.error is not None:
         raise block.error
+    if block.command is not None:
+        functions = block.command.run(channel, state, block, block.command)
+        return CanonicalBlock(block.source, functions, None, (), "") if functions else None
     path = G_CODES[state.path]
     control: tuple[Function, ...] = ()
     moves = True
@@ -118,20 +124,35 @@ def _resolve(
     motion: Motion | None = None
     if moves and (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
-    before = block_functions(channel, state, block) if block.functions and not path.own_words else ()
+    before: tuple[Function, ...] = ()
+    if block.functions and (path.spindle or not path.own_words):
+        before = block_functions(channel, state, block)
     if control or block.controls:
-        before += control + bracketed_controls(channel, block, before)
+        before += control + bracketed_controls(channel, state, block, before)
     if motion is not None and not isinstance(motion, Dwell):
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None
         else:
             if check_target is not None:
                 _check_move(state.position, motion, block.source, check_target)
+            if state.spindle.speedless:
+                _require_speed(state, motion)
             state.position = motion.target
     stop = block.flow if block.flow != "return" else ""
+    if stop == "end":
+        _require_speed(state, None)
+        before += end_of_links(state)
     if motion is None and not before and not stop:
         return None
     return CanonicalBlock(block.source, before, motion, (), stop)
+
+
+def _require_speed(state: ModalState, motion: Motion | None) -> None:
+    """M3 without a speed is an error as soon as something is machined, and when the program ends without one."""
+    rapid = isinstance(motion, LinearMove) and motion.rapid
+    if not rapid:
+        for error in state.spindle.speedless.values():
+            raise error
 
 
 def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_target: CheckTarget) -> None:
@@ -146,7 +167,7 @@ def check(
     text: str,
     file: str,
     axes: tuple[str, ...],
-    spindles: tuple[str, ...] = ("S",),
+    spindles: tuple[str, ...] | SpindleTable = ("S",),
     *,
     start: tuple[float, ...] | None = None,
     check_target: CheckTarget | None = None,

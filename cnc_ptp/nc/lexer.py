@@ -1,8 +1,8 @@
 """Lexical rules: one line of program text -> tokens with their columns.
 
 A word is a letter with a number (`X10`, `G01`, `X=10`), with or without blanks around it. A longer name needs an equals
-sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`), `LL name` calls a subroutine, a bare number
-belongs to G04.
+sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`) and a position (`S.POS=90`), `LL name` calls
+a subroutine, a bare number belongs to G04.
 `( )` comments nest and end at the line's end at the latest, `;` begins a comment up to the line's end.
 """
 
@@ -22,6 +22,7 @@ PLAIN_WORDS = re.compile(rf"\s*([A-Z])\s*=?\s*({_NUMBER})\s*", re.ASCII)
 _TOKEN = re.compile(
     rf"""\s*(?:
       (?P<call> LL\s+ (?P<callee>[^\s"\],#$\[]+) )
+    | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{_NUMBER}) (?![\d.]) )
     | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{_NUMBER}) (?!\s*[=\[]|[\d.]) )
     | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{_NUMBER}) (?![\d.]) )
     | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>[^\[\]]*) \] )
@@ -29,7 +30,9 @@ _TOKEN = re.compile(
     )""",
     re.ASCII | re.VERBOSE,
 )
+_KINDS = ("call", "position", "word", "named", "bracket", "bare")
 _BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({_NUMBER})(?![\d.])", re.ASCII)
+_BRACKET_NAME = re.compile(r"\s*([A-Z_]{2,}+)()(?=\s|$)", re.ASCII)
 _UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
 
 
@@ -38,7 +41,10 @@ SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
 
 
 class Token(NamedTuple):
-    """`kind`: call, word, named, bracket, bare; `name`: letter or name, `text`: number or content; `column` from 1."""
+    """`kind`: call, position, word, named, bracket, bare; `column` from 1.
+
+    `name`: letter or name (S.POS for a position), `text`: number or content.
+    """
 
     kind: str
     name: str
@@ -86,19 +92,21 @@ def tokens(line: str, source: Source, begin: int = 0) -> list[Token]:
 
 def _token(match: "re.Match[str]") -> Token:
     part = match.groupdict()
-    kind = next(kind for kind in ("call", "word", "named", "bracket", "bare") if part[kind] is not None)
+    kind = next(kind for kind in _KINDS if part[kind] is not None)
+    if kind == "position":
+        return Token(kind, f"{part['positioned']}.POS", part["angle"], match.start(kind) + 1, part[kind])
     name = part["callee"] or part["letter"] or part["name"] or part["owner"] or ""
     text = part["number"] or part["value"] or part["inside"] or part["bare"] or ""
     return Token(kind, name, text, match.start(kind) + 1, part[kind])
 
 
 def bracket_words(token: Token, source: Source) -> list[tuple[str, str, int]]:
-    """Words inside the bracket of a token: (name, number text, column)."""
+    """Words inside the bracket of a token: (name, number text, column); no number behind a longer name."""
     words: list[tuple[str, str, int]] = []
     begin = token.column + token.shown.index("[")
     position, length = 0, len(token.text.rstrip())
     while position < length:
-        match = _BRACKET_WORD.match(token.text, position)
+        match = _BRACKET_WORD.match(token.text, position) or _BRACKET_NAME.match(token.text, position)
         if match is None:
             blank = len(token.text[position:]) - len(token.text[position:].lstrip())
             rest = token.text[position:].split()[0]

@@ -10,9 +10,9 @@ from cnc_ptp.nc import arcs, faults
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Block, Channel, GCode, ModalState
+from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
 
 MM_PER_MIN = 60.0
-FUNCTION_WORDS = frozenset("STD")
 
 
 class Plane(NamedTuple):
@@ -212,8 +212,8 @@ def _seconds(channel: Channel, state: ModalState, block: Block, times: dict[str,
     word, value = next(iter(times.items()))
     if word != "S":
         return value
-    spindle = channel.spindles[0] if channel.spindles else "S"
-    speed = state.speeds.get(spindle, 0.0)
+    speed = state.speeds.get(current_main(channel, state).key, 0.0) if channel.table.spindles else 0.0
     if speed <= 0.0:
-        raise faults.DWELL_WITHOUT_SPEED.at(block.source, column_of(block.source, "S"), spindle=spindle)
+        main = channel.table.main_name
+        raise faults.DWELL_WITHOUT_SPEED.at(block.source, column_of(block.source, "S"), spindle=main)
     return value / speed * 60.0

@@ -15,6 +15,7 @@ class GCode(NamedTuple):
     a path function: it builds the motion of a block, and of the blocks after it if `modal`. `words` are the words that
     this motion uses besides axes and F; `own_words`: it reads all words of its block by itself (dwell). `function`
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
+    `spindle`: the code makes a function of a spindle (G74, G167), whatever it does to the path.
     """
 
     number: int
@@ -26,6 +27,7 @@ class GCode(NamedTuple):
     own_words: bool = False
     function: "Callable[[Channel, ModalState, Block, GCode], tuple[Function, ...]] | None" = None
     takes_axes: bool = False
+    spindle: bool = False
 
     @property
     def name(self) -> str:
@@ -34,7 +36,10 @@ class GCode(NamedTuple):
 
 
 class MCode(NamedTuple):
-    """A row of the M table: `flow` is "", "M00", "M01", "end" or "return"; `handler` gives the canonical function."""
+    """A row of the M table: `flow` is "", "M00", "M01", "end" or "return"; `handler` gives the canonical function.
+
+    It is None where the function is made of several words of the block (spindles).
+    """
 
     number: int
     group: str
@@ -48,11 +53,62 @@ class MCode(NamedTuple):
 
 
 class SpindleWords(NamedTuple):
-    """Words for one spindle by its name: `S2[M3 REV1000]` or `S2=1000`; speed in rpm."""
+    """Words for one spindle by its name: `S2[M3 REV1000]`, `S2=1000` or `S.POS=90`; speed in rpm, position in deg.
+
+    `m` is 3, 4, 5 or None, beside `positioning` (M19) the direction. `functions` are free M functions for the spindle,
+    `din` says that the words stand outside of brackets.
+    """
 
     name: str
     m: int | None
     speed_rpm: float | None
+    position_deg: float | None = None
+    positioning: bool = False
+    homing: bool = False
+    full_override: bool = False
+    default_dynamics: bool = False
+    functions: tuple[int, ...] = ()
+    din: bool = False
+
+
+class Spindle(NamedTuple):
+    """A spindle of the channel: `key` is its name in the canonical stream, the one that programs use at start-up.
+
+    own_name      what programs call it while it is not the main spindle (P-CHAN-00007)
+    number        logical axis number, 0 if none
+    ranges        (lowest, highest) speed of each gear stage, rpm; (0, 0) for stages without (P-CHAN-00058, 00055)
+    from_top      the search for a gear begins at the highest stage (P-CHAN-00074)
+    automatic     the speed selects the gear (P-CHAN-00004)
+    gear          stage at start-up, from 1
+    plc_control   the PLC moves it through the channel's interface (P-CHAN-00069)
+    """
+
+    key: str
+    own_name: str
+    number: int = 0
+    ranges: tuple[tuple[float, float], ...] = ()
+    from_top: bool = False
+    automatic: bool = False
+    gear: int = 1
+    plc_control: bool = False
+
+
+Pairs = tuple[tuple[str, str], ...]
+"""Coupled spindles by key: (slave, master)."""
+
+
+class SpindleTable(NamedTuple):
+    """The spindles of a channel, at start-up the first is the main spindle.
+
+    `main_name`: what programs call whichever spindle is the main one (P-CHAN-00053). `gear_change`: M40 to M45 change
+    its gear (P-CHAN-00052). `default_link`: coupling group 0 (P-CHAN-00037, 00038); `link_groups`: number of groups.
+    """
+
+    spindles: tuple[Spindle, ...]
+    main_name: str
+    gear_change: bool = False
+    default_link: Pairs = ()
+    link_groups: int = 4
 
 
 class Block(NamedTuple):
@@ -76,6 +132,16 @@ class Block(NamedTuple):
     functions: bool = False
     error: ProgramError | None = None
     controls: tuple[SpindleFeedforward | CompensationSwitch, ...] = ()
+    command: "HashCommand | None" = None
+
+
+class HashCommand(NamedTuple):
+    """A command beginning with #, alone in its block: its name, arguments in brackets (None without), their column."""
+
+    name: str
+    arguments: tuple[str, ...] | None
+    column: int
+    run: "Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]"
 
 
 class Program(NamedTuple):
@@ -88,13 +154,47 @@ class Program(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """What is constant while a program is interpreted: axes, spindles (main spindle first), arc limits (mm, ratio)."""
+    """What is constant while a program is interpreted: axes, spindles, arc limits (mm, ratio)."""
 
     axes: tuple[str, ...]
     axis_index: dict[str, int]
-    spindles: tuple[str, ...]
+    table: SpindleTable
     centre_offset: float
     centre_offset_ratio: float
+
+
+@dataclass(slots=True)
+class SpindleModes:
+    """What one block leaves to the next about spindles; by key where there is one for each.
+
+    main        the main spindle, "" for the one at start-up
+    positions   last POS, deg
+    gears       gear stage; that at start-up where there is none
+    turning     3 or 4 while endless rotation is programmed
+    links       coupling groups that were defined (#SET AX LINK), by number
+    active      numbers of the groups that are enabled, the last one last
+    speedless   errors of M3 and M4 that still have no speed: it must come before something is machined
+    """
+
+    main: str = ""
+    positions: dict[str, float] = field(default_factory=dict)
+    gears: dict[str, int] = field(default_factory=dict)
+    turning: dict[str, int] = field(default_factory=dict)
+    links: dict[int, Pairs] = field(default_factory=dict)
+    active: tuple[int, ...] = ()
+    speedless: dict[str, ProgramError] = field(default_factory=dict)
+
+    def copy(self) -> "SpindleModes":
+        """An independent copy."""
+        return SpindleModes(
+            self.main,
+            dict(self.positions),
+            dict(self.gears),
+            dict(self.turning),
+            dict(self.links),
+            self.active,
+            dict(self.speedless),
+        )
 
 
 @dataclass(slots=True)
@@ -112,7 +212,8 @@ class ModalState:
     feed: float = 0.0
     radius: float = 0.0
     speeds: dict[str, float] = field(default_factory=dict)
+    spindle: SpindleModes = field(default_factory=SpindleModes)
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line can leave the state as it was."""
-        return replace(self, speeds=dict(self.speeds))
+        return replace(self, speeds=dict(self.speeds), spindle=self.spindle.copy())

@@ -3,7 +3,7 @@
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """
 
-from cnc_ptp.nc import feedforward, functions, motions
+from cnc_ptp.nc import feedforward, functions, motions, spindles
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
 INITIAL_G = ("G00", "G17", "G90", "G162", "G165")
@@ -51,7 +51,9 @@ G_CODES: dict[int, GCode] = {
         _dimension(91, False),
         _centre(161, True),
         _centre(162, False),
+        GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
         GCode(165, "centre correction"),
+        GCode(167, "spindle override", spindle=True),
     )
 }
 
@@ -61,38 +63,36 @@ M_CODES: dict[int, MCode] = {
         MCode(0, "program flow", "M00", None),
         MCode(1, "program flow", "M01", None),
         MCode(2, "program flow", "end", None),
-        MCode(3, "spindle", "", functions.rotation),
-        MCode(4, "spindle", "", functions.rotation),
-        MCode(5, "spindle", "", functions.rotation),
+        MCode(3, "spindle", "", None),
+        MCode(4, "spindle", "", None),
+        MCode(5, "spindle", "", None),
         MCode(17, "program flow", "return", None),
+        MCode(19, "positioning", "", None),
         MCode(29, "program flow", "return", None),
         MCode(30, "program flow", "end", None),
     )
 }
-
-RESERVED_M = frozenset((19, 40, 41, 42, 43, 44, 45))
-"""M functions with a meaning in the vendor's language that is not built yet: an error, never a free function."""
 
 MAX_M = 999
 
 VALUE_WORDS = frozenset("FSTDIJKR")
 """Words with a number and a meaning of their own, besides axes."""
 
-FUNCTION_WORDS = motions.FUNCTION_WORDS
+FUNCTION_WORDS = spindles.FUNCTION_WORDS
 
 AXIS_LETTERS = frozenset("ABCQUVWXYZ")
 """Letters with which an axis name can begin (X, X1, Y_ACHSE)."""
-
-BRACKET_WORDS = ("M3", "M4", "M5", "REV", "G135", "G136", "G137")
-"""What the brackets of a spindle take."""
 
 MAX_SKIP_LEVEL = 10
 
 
 def m_code(number: int) -> MCode | None:
-    """Row of an M function: its own, that of a free function, or None if there is no such function."""
+    """Row of an M function: its own, that of a free function, or None if there is no such function.
+
+    M40 to M45 are free functions too, as long as P-CHAN-00052 does not make them select gears.
+    """
     if number in M_CODES:
         return M_CODES[number]
-    if number in RESERVED_M or not 0 <= number <= MAX_M:
+    if not 0 <= number <= MAX_M:
         return None
     return MCode(number, f"M{number}", "", functions.free_m)

@@ -23,7 +23,7 @@ from cnc_ptp.machine.blocks import (
     SpindleBlock,
 )
 
-TYPECODES = {"sequence<double>": "d", "sequence<uint8>": "B", "sequence<uint32>": "I"}
+TYPECODES = {"sequence<double>": "d", "sequence<uint8>": "B", "sequence<uint32>": "I", "sequence<int32>": "i"}
 BLOCK_CLASSES: dict[type, type] = {
     msg.PlcBlock: PlcBlock,
     msg.ChannelBlock: ChannelBlock,
@@ -49,7 +49,7 @@ def block_to_message(block: Block, stamp: Time) -> Any:
     for name, typecode in _PLANS[type(block)]:
         value = getattr(block, name)
         setattr(message, name, array(typecode, value) if typecode else value)
-    if isinstance(block, (PlcBlock, ChannelBlock)):
+    if isinstance(block, (PlcBlock, ChannelBlock, SpindleBlock)):
         message.commands = [command_to_message(command) for command in block.commands]
     if isinstance(block, ChannelBlock):
         message.requests = [request_to_message(request, stamp) for request in block.requests]
@@ -60,7 +60,7 @@ def message_to_block(message: Any) -> Any:
     """The block of a message; sequences stay arrays, which index and slice like lists."""
     block_class = BLOCK_CLASSES[type(message)]
     values = {name: getattr(message, name) for name, _ in _PLANS[block_class]}
-    if block_class in (PlcBlock, ChannelBlock):
+    if block_class in (PlcBlock, ChannelBlock, SpindleBlock):
         values["commands"] = [message_to_command(command) for command in message.commands]
     if block_class is ChannelBlock:
         values["requests"] = [_message_to_request(request) for request in message.requests]

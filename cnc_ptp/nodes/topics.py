@@ -14,7 +14,7 @@ BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 REMEMBERED_BLOCKS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
 )
-"""Blocks of axes: an axis that is coupled to another one finds the blocks of the tick in which that was commanded."""
+"""Blocks of axes and spindles: one that is coupled to another finds the blocks of the tick in which that was commanded."""
 
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
@@ -69,9 +69,21 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_friction_compensation": srv.SetSwitch,
     },
     "spindle": {
+        "power": srv.SetSwitch,
         "start": srv.StartSpindle,
-        "stop": srv.Execute,
+        "set_speed": srv.SetSpeed,
+        "stop": srv.CommandSpindle,
+        "orient": srv.OrientSpindle,
+        "home": srv.CommandSpindle,
         "set_override": srv.SetOverride,
+        "suppress_override": srv.SetSwitch,
+        "select_gear": srv.SelectGear,
+        "gear_changed": srv.Execute,
+        "set_limits": srv.SetSpindleLimits,
+        "reset_limits": srv.Execute,
+        "stop_at_program_end": srv.SetSwitch,
+        "couple": srv.CoupleSpindle,
+        "decouple": srv.Execute,
         "reset": srv.Execute,
     },
     "channel": {
@@ -83,6 +95,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "optional_stop": srv.SetSwitch,
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
+        "measuring_event": srv.Execute,
     },
     "plc": {
         "acknowledge": srv.Acknowledge,

@@ -110,7 +110,7 @@ class UnitNode(Node):
 
     def _make_publishers(self) -> None:
         name = self.unit.name
-        quality = REMEMBERED_BLOCKS if self.unit.kind == "axis" else BLOCKS
+        quality = REMEMBERED_BLOCKS if self.unit.kind in ("axis", "spindle") else BLOCKS
         self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), quality)
         self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
         self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
@@ -229,17 +229,17 @@ class UnitNode(Node):
             self._compute(*ready)
 
     def _follow_master(self) -> None:
-        """Needs the blocks of the axis that this one is coupled to now; the first ones come from the topic's memory."""
+        """Needs the blocks of what this unit is coupled to now; the first ones come from the memory of the topic."""
         master = self._runner.master
         self._gate.follow(master)
         if master is not None and master not in self._masters:
             self._heard[master] = time.monotonic()
             received = partial(self._on_master_block, master)
             self._masters[master] = self.create_subscription(
-                msg.AxisBlock, block_topic(master), received, REMEMBERED_BLOCKS
+                BLOCK_TYPES[self._kinds[master]], block_topic(master), received, REMEMBERED_BLOCKS
             )
 
-    def _on_master_block(self, master: str, message: msg.AxisBlock) -> None:
+    def _on_master_block(self, master: str, message: Any) -> None:
         self._heard[master] = time.monotonic()
         self._gate.add_master_block(master, convert.message_to_block(message))
         self._compute_ready_blocks()

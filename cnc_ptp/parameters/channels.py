@@ -1,7 +1,7 @@
 """Which axes and spindles a channel has, and what NC programs call them."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
@@ -13,13 +13,16 @@ class ChannelAxisEntry:
     """An axis or spindle of a channel.
 
     `name` is for programs; `node` is None when no unit has the logical `number`; `indexes` are those in the channel
-    list, empty for a unit that the channel got without listing it.
+    list, empty for a unit that the channel got without listing it. `own_name`: that of a spindle while it is not the
+    main spindle. `plc_control`: a spindle without a unit, the PLC moves it (P-CHAN-00069).
     """
 
     name: str
     node: str | None
     number: int
     indexes: tuple[int, ...]
+    own_name: str = ""
+    plc_control: bool = False
 
 
 def is_path_axis(parameters: ParameterSet) -> bool:
@@ -55,10 +58,7 @@ def spindle_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]
     ]
     main = main_spindle_number(channel, entries)
     main_name = channel.text("P-CHAN-00053") or "S"
-    return [
-        ChannelAxisEntry(main_name, entry.node, entry.number, entry.indexes) if main and entry.number == main else entry
-        for entry in entries
-    ]
+    return [replace(entry, name=main_name) if main and entry.number == main else entry for entry in entries]
 
 
 def listed_spindles(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEntry]:
@@ -66,7 +66,8 @@ def listed_spindles(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEn
         number = int(channel.number("P-CHAN-00036", index))
         unit = unit_with(number, sets)
         name = channel.text("P-CHAN-00007", index) or program_name(unit)
-        yield ChannelAxisEntry(name, unit.node if unit else None, number, (index,))
+        plc_control = bool(channel.number("P-CHAN-00069", index))
+        yield ChannelAxisEntry(name, unit.node if unit else None, number, (index,), name, plc_control)
 
 
 def main_spindle_number(channel: ParameterSet, entries: list[ChannelAxisEntry]) -> int:
@@ -82,7 +83,8 @@ def unit_with(number: int, sets: Sets) -> ParameterSet | None:
 
 
 def unlisted(unit: ParameterSet) -> ChannelAxisEntry:
-    return ChannelAxisEntry(program_name(unit), unit.node, int(unit.number("P-AXIS-00016")), ())
+    name = program_name(unit)
+    return ChannelAxisEntry(name, unit.node, int(unit.number("P-AXIS-00016")), (), name)
 
 
 def program_name(unit: ParameterSet | None) -> str:

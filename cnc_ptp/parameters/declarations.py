@@ -59,7 +59,8 @@ class Declaration:
     form: str
     form_text: str
     max_length: int
-    effective: bool
+    effective: bool | str
+    """False: nothing reads it; letters: it counts for these axis types only."""
     read_only: bool
 
     @property
@@ -95,6 +96,10 @@ class Declaration:
         if self.axes:
             return node_kind in ("axis", "spindle")
         return node_kind == ("channel" if self.list_name in ("channel", "tool") else "machine")
+
+    def effective_for(self, axis_type: str) -> bool:
+        """Whether it does anything for an axis of type T, R or S, or for a node that is none."""
+        return axis_type in self.effective if isinstance(self.effective, str) else self.effective
 
     def unit_for(self, axis_type: str) -> str:
         """Unit for an axis of type T, R or S."""

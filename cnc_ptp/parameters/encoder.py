@@ -4,6 +4,9 @@ from fractions import Fraction
 
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
+CORRECTED = {"P-AXIS-00234": 110386, "P-AXIS-00233": 110086}
+"""Parameters of which a 0 counts as 1, with the number of the warning."""
+
 
 def uses_feed_constant(parameters: ParameterSet) -> bool:
     """Whether the resolution comes from incr_per_rev, gear ratio and feed constant."""
@@ -14,7 +17,7 @@ def resolution(parameters: ParameterSet, gear: int) -> Fraction:
     """R in increments per 0.1 µm (0.0001°): incr_per_rev · (gear ratio) / (feed constant), else wegaufz / wegaufn."""
 
     def whole(number: str) -> int:
-        return int(parameters.number(number, gear))
+        return int(parameters.number(number, gear)) or int(number in CORRECTED)
 
     if uses_feed_constant(parameters):
         ratio = Fraction(whole("P-AXIS-00511"), whole("P-AXIS-00512"))

@@ -3,10 +3,15 @@
 from collections.abc import Iterator, Mapping
 
 from cnc_ptp.parameters.control_notices import control_notices
+from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
-LATE_TYPES = ("MVS_SLM", "MVS_SLP", "MNE_SNS")
+SERCOS = 2
+ANALOGUE_DRIVES = (1, 5, 6)
+HYPERBOLA = 1
+SMALL_STEP = 0.001
+"""Part of the constant acceleration."""
 
 
 def machine_warnings(sets: Mapping[str, ParameterSet], cycle_time: float) -> Iterator[str]:
@@ -14,22 +19,76 @@ def machine_warnings(sets: Mapping[str, ParameterSet], cycle_time: float) -> Ite
     for parameters in sets.values():
         yield from without_effect(parameters)
         if parameters.kind == "channel":
-            yield from late_synchronisation(parameters)
+            yield from tools_without_limit(parameters)
+            yield from couplings_without_effect(parameters)
         else:
             yield from control_notices(parameters, cycle_time)
+            yield from corrected_resolution(parameters)
+            yield from spindle_notices(parameters)
 
 
 def without_effect(parameters: ParameterSet) -> Iterator[str]:
     for ros_name in parameters.given:
         declaration, indexes, _ = parameters.find(ros_name)
-        if not declaration.effective:
+        if not declaration.effective_for(parameters.axis_type):
             yield line(parameters, declaration.id, indexes, "accepted, but without effect in this version")
 
 
-def late_synchronisation(parameters: ParameterSet) -> Iterator[str]:
-    """Types that wait later than the path does here."""
-    for ros_name in parameters.given:
-        declaration, indexes, value = parameters.find(ros_name)
-        late = [name for name in LATE_TYPES if "_synch" in ros_name and name in str(value)]
-        if late:
-            yield line(parameters, declaration.id, indexes, f"{late[0]} waits before the motion, like MVS_SVS")
+def tools_without_limit(parameters: ParameterSet) -> Iterator[str]:
+    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
+    for tool in parameters.used_indexes("wz"):
+        if not parameters.number("P-TOOL-00012", tool):
+            continue
+        for number in ("P-TOOL-00014", "P-TOOL-00015"):
+            if not parameters.is_given(number, tool):
+                yield line(parameters, number, (tool,), f"not given, tool {tool} has no such limit")
+
+
+def couplings_without_effect(parameters: ParameterSet) -> Iterator[str]:
+    """Coupled pairs that no command can enable: path axes, and other groups than 0."""
+    for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
+        for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
+            if group:
+                yield line(parameters, "P-CHAN-00038", (group, pair), "only coupling group 0 is taken from here")
+            elif not parameters.number("P-CHAN-00061", group, pair):
+                yield line(parameters, "P-CHAN-00061", (group, pair), "a pair of path axes is not coupled here")
+
+
+def corrected_resolution(parameters: ParameterSet) -> Iterator[str]:
+    for gear in parameters.used_indexes("getriebe"):
+        for number, warning in CORRECTED.items():
+            if parameters.number(number, gear) == 0:
+                yield line(parameters, number, (gear,), f"P-WARN-{warning} value 0 is corrected to 1")
+
+
+def spindle_notices(parameters: ParameterSet) -> Iterator[str]:
+    if parameters.kind == "spindle":
+        yield from homing_mode(parameters)
+        yield from step_in_the_curve(parameters)
+
+
+def homing_mode(parameters: ParameterSet) -> Iterator[str]:
+    """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
+    drive, no_automatic = parameters.number("P-AXIS-00020"), int(parameters.number("P-AXIS-00015")) & 0x100
+    if drive == SERCOS and not no_automatic:
+        text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
+        yield line(parameters, "P-AXIS-00015", (), text)
+    elif drive in ANALOGUE_DRIVES and no_automatic:
+        text = f"0x100 (no automatic homing) should not be set for the analogue drive type {drive}"
+        yield line(parameters, "P-AXIS-00015", (), text)
+    if drive in ANALOGUE_DRIVES and not parameters.number("P-AXIS-00156"):
+        text = f"should be 1 for a spindle with the analogue drive type {drive}; it is homed without a cam"
+        yield line(parameters, "P-AXIS-00156", (), text)
+
+
+def step_in_the_curve(parameters: ParameterSet) -> Iterator[str]:
+    """A hyperbola that does not begin with the constant acceleration."""
+    for gear in parameters.used_indexes("getriebe"):
+        if parameters.number("P-AXIS-00202", gear) != HYPERBOLA:
+            continue
+        b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+        begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
+        constant = parameters.kernel("P-AXIS-00007", gear)
+        if abs(begin - constant) > SMALL_STEP * constant:
+            text = f"the hyperbola begins with {begin:g} °/s², P-AXIS-00007 is {constant:g} °/s²: a step in the curve"
+            yield line(parameters, "P-AXIS-00026", (gear,), text)

@@ -94,6 +94,10 @@ class ParameterSet:
         """Value of an int or float parameter in kernel units (mm, °, s, ratios)."""
         return units.to_kernel(self.number(number, *indexes), self.unit(number))
 
+    def percent(self, number: str) -> float:
+        """Value in 0.1 % as percent."""
+        return self.number(number) / 10
+
     def text(self, number: str, *indexes: int) -> str:
         return str(self.value(number, *indexes))
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import errors
-from cnc_ptp.parameters.declarations import LISTS, Declaration, catalogue
+from cnc_ptp.parameters.declarations import AXIS_LETTERS, LISTS, Declaration, catalogue
 from cnc_ptp.parameters.ranges import default_text, range_text
 from cnc_ptp.parameters.source import dotted
 
@@ -37,7 +37,7 @@ Quote the name "y": ROS reads a bare y (and n) as a boolean.
 
 The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
 Axis types: T linear, R rotary, S spindle. A range with an id in it ends at the value of that parameter.
-**—** in the last column: accepted and checked, without effect in this version.
+**—** in the last column: accepted and checked, without effect in this version; *S only*: in effect for spindles only.
 """
 
 
@@ -72,9 +72,23 @@ def table_row(declaration: Declaration) -> str:
         default_text(declaration.default),
         declaration.axes,
         declaration.text,
-        "" if declaration.effective else "**—**",
+        effect_text(declaration),
     )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def effect_text(declaration: Declaration) -> str:
+    """Last column of the table."""
+    if isinstance(declaration.effective, str):
+        return f"{declaration.effective} only"
+    return "" if declaration.effective else "**—**"
+
+
+def effect_line(declaration: Declaration) -> str:
+    if isinstance(declaration.effective, str):
+        kinds = " and ".join(AXIS_LETTERS[letter] for letter in declaration.effective)
+        return f"  In effect for {kinds} only."
+    return "" if declaration.effective else "  Accepted and checked, but without effect in this version."
 
 
 def unit_text(declaration: Declaration) -> str:
@@ -125,7 +139,7 @@ def entry_text(declaration: Declaration) -> str:
         f"  unit     {unit_text(declaration)}",
         f"  default  {default_text(declaration.default)}",
         f"  source   {declaration.source}",
-        "" if declaration.effective else "  Accepted and checked, but without effect in this version.",
+        effect_line(declaration),
     ]
     return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit"))
 

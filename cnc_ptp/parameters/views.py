@@ -3,18 +3,16 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from cnc_ptp.parameters import notices
-from cnc_ptp.parameters.channels import axis_entries, main_spindle_number, spindle_entries
+from cnc_ptp.parameters.channel_view import ChannelParameters, channel_view
 from cnc_ptp.parameters.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
-from cnc_ptp.parameters.synchronisation import Synchronisation, synchronisation
+from cnc_ptp.parameters.spindle_view import SpindleParameters, spindle_view
 
 MODULO = 0x4
 VIRTUAL_AXIS = 16
-INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
 MONITORING_TYPES = (1, 2, 4)
 
 
@@ -71,79 +69,6 @@ class AxisParameters:
     control: ControlParameters
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleParameters:
-    """A spindle. Positions in °, speeds in °/s, accelerations in °/s², times in s."""
-
-    name: str
-    number: int
-    drive_type: int
-    kv: float
-    max_speed_deg_s: float
-    positioning_speed_deg_s: float
-    max_acceleration: float
-    acceleration: float
-    deceleration: float
-    emergency_deceleration: float
-    speed_reached_band: float
-    """Speed reached within (1 ± band) times the commanded speed."""
-    zero_speed_deg_s: float
-    preferred_direction: int
-    """+1 or -1 where only that direction is permitted (P-AXIS-00224), 0 otherwise."""
-    gear: int
-    """Gear stage at start, from 1."""
-    stops_at_reset: bool
-    modulo_low: float
-    modulo_high: float
-    following_error_monitoring: bool
-    following_error_limit: float
-    following_error_standstill_limit: float
-    position_window: float
-    encoder_increment: float
-    drive_time_constant: float
-    max_override_percent: float
-    powered_at_start: bool
-    referenced_at_start: bool
-    start_position: float
-
-
-class ChannelAxis(NamedTuple):
-    """An axis of a channel: what programs call it ("X") and its node ("x")."""
-
-    name: str
-    node: str
-
-
-class ChannelSpindle(NamedTuple):
-    """A spindle of a channel with the synchronisation of its functions."""
-
-    name: str
-    node: str
-    m3: Synchronisation
-    m4: Synchronisation
-    m5: Synchronisation
-    m19: Synchronisation
-    s: Synchronisation
-
-
-@dataclass(frozen=True, slots=True)
-class ChannelParameters:
-    """An NC channel."""
-
-    name: str
-    axes: tuple[ChannelAxis, ...]
-    spindles: tuple[ChannelSpindle, ...]
-    main_spindle: str
-    """Program name of the main spindle, empty when the channel has no spindle."""
-    m_functions: Mapping[int, Synchronisation]
-    """Synchronisation by M number; an M function that is missing here does not exist on the machine."""
-    max_override_percent: float
-    circle_center_tolerance: float
-    """Largest shift of an arc's centre in mm …"""
-    circle_center_ratio: float
-    """… and as a part of its radius."""
-
-
 @dataclass(frozen=True)
 class MachineParameters:
     """A whole machine. Channels, axes and spindles by node name, in the order of /machine."""
@@ -152,6 +77,8 @@ class MachineParameters:
     block_cycles: int
     watchdog_ms: int
     life_sign_timeout_ms: int
+    handshake_timeout_ms: int
+    """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]
@@ -172,6 +99,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         block_cycles=int(machine.number("P-MACH-00002")),
         watchdog_ms=int(machine.number("P-MACH-00003")),
         life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
+        handshake_timeout_ms=int(machine.number("P-MACH-00060")),
         channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
         axes={unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]},
         spindles={unit.node: spindle_view(unit) for unit in of_kind["spindle"]},
@@ -208,7 +136,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         override_type=int(parameters.number("P-MACH-00007")),
         override_steps=int(parameters.number("P-MACH-00010")),
         override_interval=parameters.number("P-MACH-00011") / 1000.0,
-        max_override_percent=percent(parameters, "P-AXIS-00109"),
+        max_override_percent=parameters.percent("P-AXIS-00109"),
         external_dead_time=parameters.kernel("P-MACH-00012"),
         external_timeout=parameters.number("P-MACH-00013") / 1000.0,
         target_time=parameters.number("P-MACH-00014") / 1000.0,
@@ -224,69 +152,6 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     )
 
 
-def spindle_view(parameters: ParameterSet) -> SpindleParameters:
-    gear = active_gear(parameters)
-    return SpindleParameters(
-        name=parameters.node,
-        number=int(parameters.number("P-AXIS-00016")),
-        drive_type=int(parameters.number("P-AXIS-00020")),
-        kv=parameters.kernel("P-AXIS-00099", gear),
-        max_speed_deg_s=parameters.kernel("P-AXIS-00212", gear),
-        positioning_speed_deg_s=parameters.kernel("P-AXIS-00209", gear),
-        max_acceleration=parameters.kernel("P-AXIS-00008", gear),
-        acceleration=parameters.kernel("P-AXIS-00001", gear),
-        deceleration=parameters.kernel("P-AXIS-00002", gear),
-        emergency_deceleration=emergency_deceleration(parameters, gear),
-        speed_reached_band=parameters.kernel("P-AXIS-00217"),
-        zero_speed_deg_s=parameters.kernel("P-AXIS-00216", gear),
-        preferred_direction=preferred_direction(parameters),
-        gear=gear + 1,
-        stops_at_reset=not parameters.number("P-AXIS-00455"),
-        modulo_low=parameters.kernel("P-AXIS-00127", gear),
-        modulo_high=parameters.kernel("P-AXIS-00126", gear),
-        following_error_monitoring=parameters.number("P-AXIS-00172", gear) in MONITORING_TYPES,
-        following_error_limit=parameters.kernel("P-AXIS-00168", gear),
-        following_error_standstill_limit=parameters.kernel("P-AXIS-00169", gear),
-        position_window=parameters.kernel("P-AXIS-00236", gear),
-        encoder_increment=encoder_increment(parameters, gear),
-        drive_time_constant=parameters.kernel("P-SIM-00001"),
-        max_override_percent=percent(parameters, "P-AXIS-00109"),
-        powered_at_start=bool(parameters.number("P-SIM-00004")),
-        referenced_at_start=bool(parameters.number("P-SIM-00005")),
-        start_position=parameters.kernel("P-SIM-00003"),
-    )
-
-
-def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> ChannelParameters:
-    spindles = spindle_entries(channel, sets)
-    main = main_spindle_number(channel, spindles)
-    return ChannelParameters(
-        name=channel.node,
-        axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axis_entries(channel, sets)),
-        spindles=tuple(channel_spindle(channel, entry.name, str(entry.node), entry.indexes) for entry in spindles),
-        main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
-        m_functions=m_functions(channel),
-        max_override_percent=percent(channel, "P-CHAN-00056"),
-        circle_center_tolerance=channel.kernel("P-CHAN-00059"),
-        circle_center_ratio=channel.kernel("P-CHAN-00060"),
-    )
-
-
-def channel_spindle(channel: ParameterSet, name: str, node: str, indexes: tuple[int, ...]) -> ChannelSpindle:
-    numbers = ("P-CHAN-00045", "P-CHAN-00047", "P-CHAN-00049", "P-CHAN-00043", "P-CHAN-00081")
-    m3, m4, m5, m19, s = (synchronisation(channel.text(number, *indexes)) for number in numbers)
-    return ChannelSpindle(name, node, m3, m4, m5, m19, s)
-
-
-def m_functions(channel: ParameterSet) -> dict[int, Synchronisation]:
-    functions = dict.fromkeys(INTERNAL_M_FUNCTIONS, Synchronisation.NO_SYNCH)
-    for number in channel.used_indexes("m_synch"):
-        constants = channel.text("P-CHAN-00041", number)
-        if constants != "NOT_VALID":
-            functions[number] = synchronisation(constants)
-    return dict(sorted(functions.items()))
-
-
 def active_gear(parameters: ParameterSet) -> int:
     """Index of the gear record in use after start-up."""
     return int(parameters.number("P-AXIS-00079")) - 1
@@ -299,14 +164,3 @@ def jerk(parameters: ParameterSet, gear: int) -> float:
 
 def emergency_deceleration(parameters: ParameterSet, gear: int) -> float:
     return parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear)
-
-
-def preferred_direction(parameters: ParameterSet) -> int:
-    if not parameters.number("P-AXIS-00224"):
-        return 0
-    return 1 if parameters.number("P-AXIS-00031") else -1
-
-
-def percent(parameters: ParameterSet, number: str) -> float:
-    """A value in 0.1 % as percent."""
-    return parameters.number(number) / 10

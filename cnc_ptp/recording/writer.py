@@ -226,7 +226,11 @@ class Recording:
         self._block_and_states(name, block, (block.count, block.master))
 
     def spindle_block(self, name: str, block: SpindleBlock) -> None:
-        self._block_and_states(name, block, block.count)
+        if block.commands or block.refused:
+            self.spindle_block_message(name, block)
+            self.states(name, block)
+        else:
+            self._block_and_states(name, block, (block.count, block.master, block.master_wanted, block.source))
 
     def channel_block(self, name: str, block: ChannelBlock) -> None:
         if block.commands or block.requests:

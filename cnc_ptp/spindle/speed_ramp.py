@@ -1,30 +1,44 @@
-"""Speed changes of an endlessly rotating spindle at constant acceleration (TF5200 spindle 2.3.1)."""
+"""Speed changes of a spindle: at constant acceleration or along an acceleration curve (TF5200 spindle 2.3.1, 2.8.4)."""
 
 from __future__ import annotations
 
-from cnc_ptp.motion import Profile
-from cnc_ptp.motion.profile import Piece, integrate
+from collections.abc import Iterator
+from typing import Protocol
+
+from cnc_ptp.spindle.acceleration_curves import AccelerationCurve, Leg
+from cnc_ptp.spindle.speed_table import SpeedTable, table
 
 
-def plan_speed(
-    position: float, speed: float, target_speed: float, *, acceleration: float, deceleration: float
-) -> Profile:
-    """The table from `speed` to `target_speed`, which then goes on at that speed.
+class Ramp(Protocol):
+    """How fast an amount of speed may grow and fall."""
 
-    Units: deg, deg/s, deg/s². |speed| grows with `acceleration` (P-AXIS-00001) and falls with `deceleration`
-    (P-AXIS-00002); a reversal passes through 0.
-    """
-    pieces: list[Piece] = []
-    if speed * target_speed < 0.0:
-        pieces.append(_piece(speed, 0.0, acceleration, deceleration))
-        pieces.append(_piece(0.0, target_speed, acceleration, deceleration))
-    else:
-        pieces.append(_piece(speed, target_speed, acceleration, deceleration))
-    rows, t, end_position, _ = integrate(0.0, position, speed, pieces)
-    return Profile([*rows, (t, end_position, target_speed, 0.0, 0.0)])
+    def legs(self, speed: float, target: float) -> Iterator[Leg]:
+        """From one amount of speed to another, both >= 0, in °/s."""
 
 
-def _piece(speed: float, target_speed: float, acceleration: float, deceleration: float) -> Piece:
-    rate = acceleration if abs(target_speed) > abs(speed) else deceleration
-    change = target_speed - speed
-    return abs(change) / rate, rate if change > 0.0 else -rate, 0.0
+class ConstantRamp:
+    """|speed| grows with `acceleration` (P-AXIS-00001) and falls with `deceleration` (P-AXIS-00002), °/s²."""
+
+    def __init__(self, *, acceleration: float, deceleration: float) -> None:
+        self.acceleration = acceleration
+        self.deceleration = deceleration
+
+    def legs(self, speed: float, target: float) -> Iterator[Leg]:
+        rate = self.acceleration if target > speed else -self.deceleration
+        yield (target - speed) / rate, (speed, rate)
+
+
+def ramp_legs(speed: float, target: float, ramp: Ramp | AccelerationCurve) -> Iterator[Leg]:
+    """From a signed speed to another; a reversal passes through 0."""
+    if speed * target < 0.0:
+        yield from ramp_legs(speed, 0.0, ramp)
+        yield from ramp_legs(0.0, target, ramp)
+    elif speed != target:
+        sign = -1.0 if speed < 0.0 or target < 0.0 else 1.0
+        for duration, powers in ramp.legs(abs(speed), abs(target)):
+            yield duration, powers if sign > 0.0 else tuple(-power for power in powers)
+
+
+def plan_speed(position: float, speed: float, target_speed: float, ramp: Ramp | AccelerationCurve) -> SpeedTable:
+    """The table from `speed` to `target_speed`, which then goes on at that speed. Units: °, °/s."""
+    return table(position, ramp_legs(speed, target_speed, ramp), target_speed)

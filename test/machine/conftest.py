@@ -1,6 +1,7 @@
-"""Makes the helper module of these tests importable (pytest runs in importlib mode)."""
+"""Makes the helper modules of these tests, and the curves of the spindle tests, importable (importlib mode)."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "spindle")]

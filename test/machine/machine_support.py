@@ -17,7 +17,7 @@ from cnc_ptp.machine.scenario import Entry, parse_scenario
 from cnc_ptp.machine.spindle_unit import SpindleUnit
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import build_units, unit_kinds
-from cnc_ptp.parameters import AxisParameters, MachineParameters, SpindleParameters, read_machine
+from cnc_ptp.parameters import AxisParameters, GearParameters, MachineParameters, SpindleParameters, read_machine
 
 ROOT = Path(__file__).parents[2]
 MILL = read_machine(ROOT / "config" / "mill.yaml")
@@ -117,8 +117,12 @@ def axis_bench(*, count: int = 10, **changes: Any) -> UnitBench:
 
 
 def spindle_parameters(**changes: Any) -> SpindleParameters:
-    """The spindle of config/mill.yaml: 12000 rpm, A+ 36000 °/s², A- 40000 °/s²."""
-    return replace(MILL.spindles["s"], **changes)
+    """The spindle of config/mill.yaml: 12000 rpm, A+ 36000 °/s², A- 40000 °/s². Changes of a gear count for all."""
+    spindle = MILL.spindles["s"]
+    of_gear = {name: value for name, value in changes.items() if name in GearParameters.__dataclass_fields__}
+    stages = sorted({1, changes.get("gear", 1)})
+    gears = {stage: replace(spindle.gears[1], stage=stage, **of_gear) for stage in stages}
+    return replace(spindle, **{"gears": gears, **{n: v for n, v in changes.items() if n not in of_gear}})
 
 
 def spindle_bench(*, count: int = 10, **changes: Any) -> UnitBench:

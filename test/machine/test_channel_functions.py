@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import pytest
@@ -49,7 +50,10 @@ def last_motion(bench: MachineBench) -> int:
 
 
 def commands(bench: MachineBench, unit: str = "s") -> list[tuple[int, str, str]]:
-    return [(r.cycle, r.command, r.arguments_json) for r in bench.records if r.target == unit]
+    """Cycle, command and arguments of what the unit was told; motion commands come from the channel."""
+    told = [(r.cycle, r.command, json.loads(r.arguments_json)) for r in bench.records if r.target == unit]
+    assert all(arguments.pop("source", "channel") == "channel" for _, _, arguments in told)
+    return [(cycle, command, json.dumps(arguments, sort_keys=True)) for cycle, command, arguments in told]
 
 
 # ---------------------------------------------------------------- spindle

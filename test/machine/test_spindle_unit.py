@@ -99,7 +99,7 @@ def test_speed_reached_within_the_band_of_the_commanded_speed() -> None:
 
 def test_speed_zero_and_the_end_of_m05() -> None:
     """P-AXIS-00216; with M05 the zero speed is the commanded one."""
-    bench = spindle_bench(zero_speed_deg_s=120.0)
+    bench = spindle_bench(zero_speed=120.0)
     bench.accepted("start", direction="cw", speed_rpm=600.0)
     bench.run(300)
     bench.accepted("stop")
@@ -113,7 +113,7 @@ def test_speed_zero_and_the_end_of_m05() -> None:
 
 
 def test_a_zero_speed_of_0_is_still_reached() -> None:
-    bench = spindle_bench(zero_speed_deg_s=0.0)
+    bench = spindle_bench(zero_speed=0.0)
     bench.run(10)
     assert set(bench.column("speed_zero")) == {True}
 
@@ -173,7 +173,7 @@ def test_override_scales_the_running_and_the_next_speed() -> None:
 
 
 def test_override_never_lifts_the_speed_above_the_maximum() -> None:
-    bench = spindle_bench(max_speed_deg_s=18_000.0)
+    bench = spindle_bench(max_speed=18_000.0)
     bench.accepted("start", direction="ccw", speed_rpm=2900.0)
     bench.accepted("set_override", percent=150.0)
     bench.run(1000)
@@ -277,8 +277,10 @@ def test_a_speed_alone_keeps_the_direction_and_starts_nothing() -> None:
 
 
 def test_unknown_command() -> None:
-    assert spindle_bench().refused("orient") == (
-        "P-ERR-22002 spindle s: unknown command 'orient'; nothing was changed. Known: reset, set_override, set_speed, start, stop"
+    assert spindle_bench().refused("turn") == (
+        "P-ERR-22002 spindle s: unknown command 'turn'; nothing was changed. Known: couple, decouple, gear_changed, home, "
+        "orient, power, reset, reset_limits, select_gear, set_limits, set_override, set_speed, start, stop, "
+        "stop_at_program_end, suppress_override"
     )
 
 
@@ -372,8 +374,7 @@ def test_following_error_fault() -> None:
 def test_a_spindle_without_power() -> None:
     bench = spindle_bench(powered_at_start=False)
     assert bench.refused("start", direction="cw", speed_rpm=100.0) == (
-        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled, the machine starts it without power; "
-        "nothing was changed"
+        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed"
     )
     for command in ("stop", "reset"):
         assert bench.accepted(command) == ""

@@ -6,6 +6,7 @@ from typing import Any
 from cnc_ptp.nc.canonical import CanonicalBlock, format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.program import Spindle, SpindleTable
 
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
@@ -25,10 +26,32 @@ def lines(text: str, **options: Any) -> list[str]:
     return [format_block(block).partition(" | ")[2] for block in run(text, **options)]
 
 
-def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+GEARS = ((50.0, 560.0), (400.0, 800.0), (700.0, 3500.0), (3501.0, 4000.0), (3800.0, 5500.0), (5400.0, 7000.0))
+"""The example of TF5200 spindle p.36, rpm."""
+
+
+def three_spindles(**main: Any) -> SpindleTable:
+    """S1 (6), S2 (11), S3 (30) as in TF5200 spindle p.65, S1 is the main spindle S; `main` changes S1."""
+    first = Spindle("S", "S1", 6)._replace(**main)
+    gear_change = "ranges" in main
+    return SpindleTable((first, Spindle("S2", "S2", 11), Spindle("S3", "S3", 30)), "S", gear_change)
+
+
+TABLES = {
+    "three": three_spindles(),
+    "gears": three_spindles(ranges=GEARS[:5]),
+    "automatic": three_spindles(ranges=GEARS, automatic=True),
+    "plc": three_spindles(plc_control=True)._replace(gear_change=True),
+    "linked": three_spindles()._replace(default_link=(("S2", "S"),)),
+    "wrongly_linked": three_spindles()._replace(default_link=(("S", "S2"),)),
+}
+"""What a program may name in its comment in place of spindles."""
+
+
+def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...] | SpindleTable]:
     """Axes and spindles from a comment `; machine X Y Z / S S2` in one of the first two lines, else the default."""
     for line in text.split("\n")[:2]:
         if line.startswith("; machine"):
             axes, spindles = line.removeprefix("; machine").split("/")
-            return tuple(axes.split()), tuple(spindles.split())
+            return tuple(axes.split()), TABLES.get(spindles.strip()) or tuple(spindles.split())
     return AXES, SPINDLES

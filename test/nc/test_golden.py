@@ -3,7 +3,7 @@
 import pytest
 from nc_support import HERE, machine
 
-from cnc_ptp.nc import faults, interpreter
+from cnc_ptp.nc import faults, interpreter, spindle_faults
 from cnc_ptp.nc.canonical import format_block
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
@@ -11,6 +11,7 @@ from cnc_ptp.nc.parser import parse_program
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
 BAD = sorted((HERE / "bad").glob("*.nc"))
+FAULTS = [fault for part in (faults, spindle_faults) for fault in vars(part).values() if isinstance(fault, Fault)]
 
 
 def stream(text: str, file: str) -> list[str]:
@@ -55,7 +56,7 @@ def test_check_finds_the_same_error(path):
 
 
 def test_every_fault_has_a_bad_program():
-    known = {fault.error_id for fault in vars(faults).values() if isinstance(fault, Fault)}
+    known = {fault.error_id for fault in FAULTS}
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
     assert known == shown | {faults.TOO_MANY_BLOCKS.error_id}
 
@@ -70,5 +71,5 @@ def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
 
 
 def test_fault_numbers_are_unique():
-    numbers = [fault.error_id for fault in vars(faults).values() if isinstance(fault, Fault)]
+    numbers = [fault.error_id for fault in FAULTS]
     assert len(numbers) == len(set(numbers))

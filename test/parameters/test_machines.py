@@ -40,14 +40,16 @@ def test_mill() -> None:
         assert axis.control.monitoring.moving_limit > axis.max_velocity / axis.control.kv
     assert mill.axes["x"].max_velocity == 500.0
     assert mill.spindles["s"].max_speed_deg_s == 12_000 * 6.0
-    assert mill.spindles["s"].acceleration == 36_000.0
+    assert mill.spindles["s"].gears[1].acceleration == 36_000.0
 
 
 def test_channel_of_the_mill() -> None:
     channel = read_machine(CONFIG / "mill.yaml").channels["channel"]
     wait, tell = Synchronisation.MVS_SVS, Synchronisation.MOS
     assert channel.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("Z", "z"))
-    assert channel.spindles == (ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell),)
+    assert channel.spindles == (
+        ChannelSpindle("S", "s", wait, wait, wait, Synchronisation.NO_SYNCH, tell, own_name="S1", number=4),
+    )
     assert (channel.main_spindle, channel.m_functions[8]) == ("S", wait)
 
 

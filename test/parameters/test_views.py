@@ -12,7 +12,6 @@ from cnc_ptp.parameters import (
     ChannelSpindle,
     MachineParameters,
     ParameterError,
-    SpindleParameters,
     Synchronisation,
     load_machine,
 )
@@ -30,10 +29,6 @@ def load(*sections: str, **units: list[str]) -> MachineParameters:
 
 def axis(parameters: str) -> AxisParameters:
     return load(f"/x: {{ros__parameters: {{{parameters}}}}}", axes=["x"]).axes["x"]
-
-
-def spindle(parameters: str) -> SpindleParameters:
-    return load(f"/s: {{ros__parameters: {{{parameters}}}}}", spindles=["s"]).spindles["s"]
 
 
 def channel(*parameters: str) -> ChannelParameters:
@@ -113,38 +108,6 @@ def test_machine_of_defaults() -> None:
     )
 
 
-def test_spindle_of_defaults() -> None:
-    assert spindle("") == SpindleParameters(
-        name="s",
-        number=1,
-        drive_type=4,
-        kv=10.0,
-        max_speed_deg_s=200.0,
-        positioning_speed_deg_s=166.666,
-        max_acceleration=1000.0,
-        acceleration=1000.0,
-        deceleration=1000.0,
-        emergency_deceleration=1000.0,
-        speed_reached_band=0.1,
-        zero_speed_deg_s=0.1,
-        preferred_direction=0,
-        gear=1,
-        stops_at_reset=True,
-        modulo_low=0.0,
-        modulo_high=360.0,
-        following_error_monitoring=False,
-        following_error_limit=10.0,
-        following_error_standstill_limit=2.0,
-        position_window=0.05,
-        encoder_increment=0.0001,
-        drive_time_constant=0.0,
-        max_override_percent=100.0,
-        powered_at_start=True,
-        referenced_at_start=True,
-        start_position=0.0,
-    )
-
-
 def test_resolution_of_the_feedforward_manual() -> None:
     """Page 20: 2^20 increments, gear 3, 5 mm a revolution: 62.91456 increments per 0.1 µm."""
     text = "antr.feed_const_num: 50000, getriebe.0: {incr_per_rev: 1048576, gear_fact_num: 3, gear_fact_denom: 1}"
@@ -187,7 +150,6 @@ def test_reference_velocity() -> None:
 @pytest.mark.parametrize(("kind", "on"), [(0, False), (1, True), (2, True), (3, False), (4, True), (5, False)])
 def test_following_error_monitoring(kind: int, on: bool) -> None:
     assert axis(f"getriebe.0: {{slep_ueberw_typ: {kind}, slep_max: 250000}}").control.monitoring.kind == kind
-    assert spindle(f"getriebe.0: {{slep_ueberw_typ: {kind}}}").following_error_monitoring is on
 
 
 def test_rotary_axis_with_and_without_modulo() -> None:
@@ -205,16 +167,6 @@ def test_rotary_axis_with_and_without_modulo() -> None:
     assert (endless.soft_limit_negative, endless.soft_limit_positive) == (-math.inf, math.inf)
 
 
-@pytest.mark.parametrize(("restricted", "positive", "direction"), [(0, 0, 0), (0, 1, 0), (1, 0, -1), (1, 1, 1)])
-def test_preferred_direction(restricted: int, positive: int, direction: int) -> None:
-    assert spindle(f"kenngr: {{vorz_richtung: {restricted}, beweg_richt: {positive}}}").preferred_direction == direction
-
-
-def test_active_gear_selects_the_record() -> None:
-    view = spindle("kenngr.getriebe_stufe: 2, getriebe: {0: {kv: 100}, 1: {kv: 300, dynamik.vb_max: 60000000}}")
-    assert (view.gear, view.kv, view.max_speed_deg_s) == (2, 3.0, 60_000.0)
-
-
 def test_logical_numbers_that_the_file_leaves_out() -> None:
     section = "/y: {ros__parameters: {kopf.achs_nr: 1}}"
     machine = load(section, axes=["x", "y"], spindles=["s"])
@@ -225,8 +177,8 @@ def test_channel_of_defaults_has_everything() -> None:
     view = channel()
     assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("Y", "y"), ChannelAxis("C", "c"))
     assert view.spindles == (
-        ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE),
-        ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE),
+        ChannelSpindle("S", "s", NONE, NONE, NONE, NONE, NONE, own_name="S", number=4),
+        ChannelSpindle("S2", "t", NONE, NONE, NONE, NONE, NONE, own_name="S2", number=5),
     )
     assert view.main_spindle == "S"
     assert view.m_functions == dict.fromkeys((0, 1, 2, 3, 4, 5, 17, 19, 29, 30), NONE)
@@ -245,8 +197,8 @@ def test_channel_with_lists() -> None:
     plc = Synchronisation.PLC_INFO | Synchronisation.MVS_SVS
     assert view.axes == (ChannelAxis("X", "x"), ChannelAxis("C1", "c"))
     assert view.spindles == (
-        ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE),
-        ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE),
+        ChannelSpindle("S1", "s", plc, NONE, NONE, NONE, NONE, own_name="S1", number=4),
+        ChannelSpindle("SMAIN", "t", NONE, NONE, NONE, Synchronisation.MNS_SNS, NONE, own_name="S2", number=5),
     )
     assert view.main_spindle == "SMAIN"
     assert view.m_functions[8] is Synchronisation.MVS_SVS

@@ -1,6 +1,7 @@
-"""Makes the helper module of the machine tests importable (pytest runs in importlib mode)."""
+"""Makes the helper modules of this folder and of the machine tests importable (pytest runs in importlib mode)."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "machine"))
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "machine")]

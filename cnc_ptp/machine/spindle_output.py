@@ -1,0 +1,188 @@
+"""Functions of spindles -> commands to their units, what the PLC is told, what there is to wait for.
+
+Three kinds of spindles: NC spindles carry out commands and report; axis-specific PLC spindles (P-AXIS-00015 0x40000) do
+so too, but their PLC alone acknowledges; channel-specific ones (P-CHAN-00069) have no unit, all goes to the PLC.
+Source: TF5200 spindle 2.2, 2.4.1, 2.5, 2.8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
+from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.machine.waits import Condition, Wait
+from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
+from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
+
+DIRECTIONS = {3: "cw", 4: "ccw"}
+CONDITIONS = {
+    3: Condition.SPEED,
+    4: Condition.SPEED,
+    None: Condition.SPEED,
+    5: Condition.STANDSTILL,
+    19: Condition.POSITION,
+}
+
+
+class SpindleOutput:
+    """The spindles of one channel: what it has set turning, coupled, or freed of the override."""
+
+    def __init__(self, channel: ChannelParameters, units: Mapping[str, SpindleParameters]) -> None:
+        """`units`: the spindles of the machine by node name."""
+        self._channel = channel
+        self._spindles = {spindle.name: spindle for spindle in channel.spindles}
+        self._units = units
+        self._directions: dict[str, str] = {}
+        self._standing_after_gear: set[str] = set()
+        """A gear change has ended their rotation: the next speed starts them again."""
+        self._full_override: set[str] = set()
+        self._masters: dict[str, str] = {}
+        """Slave -> master, both by name."""
+
+    def __getitem__(self, name: str) -> ChannelSpindle:
+        return self._spindles[name]
+
+    def told_to_plc(self, name: str) -> bool:
+        """The PLC gets every function of the spindle, whatever its synchronisation type says."""
+        return self[name].plc_control or self._units[self[name].node].plc_controlled
+
+    def follows(self, name: str) -> bool:
+        """A slave: the PLC hears of its master only (2.8.3)."""
+        return name in self._masters
+
+    def wait(self, function: SpindleFunction) -> Wait:
+        """What the spindle reports when it has carried out the function; for PLC spindles the PLC says so."""
+        node = self[function.spindle].node
+        if self.told_to_plc(function.spindle):
+            return Wait(spindle=node)
+        return Wait(spindle=node, condition=CONDITIONS[function.m])
+
+    def synchronisation(self, function: SpindleFunction) -> Synchronisation:
+        """M19, M3, M4, M5 go before S."""
+        spindle = self[function.spindle]
+        return {3: spindle.m3, 4: spindle.m4, 5: spindle.m5, 19: spindle.m19, None: spindle.s}[function.m]
+
+    def acts(self, function: SpindleFunction) -> bool:
+        """False for an S word while the spindle stands: the speed counts for the next M3 or M4. Notes the rotation."""
+        if function.m in DIRECTIONS:
+            self._directions[function.spindle] = DIRECTIONS[function.m]
+        elif function.m is not None:
+            self._directions.pop(function.spindle, None)
+        if function.m is None:
+            return function.spindle in self._directions and function.speed_rpm is not None
+        return True
+
+    def commands(self, function: SpindleFunction) -> list[Command]:
+        """For the unit of the spindle; a slave gets none, it does what its master is told (2.8.3)."""
+        spindle = self[function.spindle]
+        if spindle.plc_control:
+            return []
+        commands = self._override(spindle, function)
+        if function.spindle not in self._masters:
+            commands += self._motion(spindle, function)
+        return commands
+
+    def _override(self, spindle: ChannelSpindle, function: SpindleFunction) -> list[Command]:
+        """G167 holds for what its block commands."""
+        was_off = spindle.name in self._full_override
+        if function.full_override == was_off:
+            return []
+        (self._full_override.add if function.full_override else self._full_override.discard)(spindle.name)
+        return [self._command(spindle.node, "suppress_override", on=function.full_override)]
+
+    def _motion(self, spindle: ChannelSpindle, function: SpindleFunction) -> list[Command]:
+        if function.m == 5:
+            return [self._command(spindle.node, "stop")]
+        if function.m == 19:
+            return [self._orientation(spindle, function)]
+        direction = self._directions.get(spindle.name)
+        if direction is None or function.speed_rpm is None:
+            return []
+        resumes = spindle.name in self._standing_after_gear
+        self._standing_after_gear.discard(spindle.name)
+        if function.m is None and not resumes:
+            return [self._command(spindle.node, "set_speed", speed_rpm=function.speed_rpm)]
+        return [self._command(spindle.node, "start", direction=direction, speed_rpm=function.speed_rpm)]
+
+    def _orientation(self, spindle: ChannelSpindle, function: SpindleFunction) -> Command:
+        words: dict[str, Any] = {"position_deg": function.position_deg}
+        if function.speed_rpm is not None:
+            words["speed_rpm"] = function.speed_rpm
+        if function.direction:
+            words["direction"] = function.direction
+        return self._command(spindle.node, "orient", **words)
+
+    def _command(self, node: str, command: str, **arguments: Any) -> Command:
+        """Says where motion commands come from, so that a spindle can refuse a second commander."""
+        if "source" in COMMANDS["spindle"][command]:
+            arguments["source"] = self._channel.name
+        return Command(node, command, arguments)
+
+    # without speed and position
+
+    def plain(self, function: SpindleCommand) -> list[Command]:
+        """G74, DEFAULT_DYNAMIC_DATA: nobody waits for them."""
+        if function.command == "home":
+            self._directions.pop(function.spindle, None)
+        if function.spindle in self._masters:
+            return []
+        return [self._command(self[function.spindle].node, function.command)]
+
+    def tool_limits(self, tool: int) -> list[Command]:
+        """What a tool permits goes to the spindle that carries it; D0 leaves the last limits in force (2.8.5)."""
+        limits = self._channel.tools.get(tool) if tool else None
+        if limits is None:
+            return []
+        named = zip(("min_speed_rpm", "max_speed_rpm", "max_acceleration"), limits[1:], strict=True)
+        return [self._command(limits.node, "set_limits", **{name: value for name, value in named if value is not None})]
+
+    # gears
+
+    def gear_change(self, change: GearChange, feedback: Mapping[str, Block]) -> tuple[Command, Wait] | None:
+        """The command for another gear and the wait for it; None where the spindle is in that gear."""
+        node = self[change.spindle].node
+        block = feedback.get(node)
+        if isinstance(block, SpindleBlock):
+            in_gear = block.gear[-1] == change.stage and not block.gear_change_active[-1]
+        else:
+            in_gear = change.stage == self._units[node].gear
+        if in_gear:
+            return None
+        if change.spindle in self._directions:
+            self._standing_after_gear.add(change.spindle)
+        wait = Wait(spindle=node, condition=Condition.GEAR, value=change.stage)
+        return self._command(node, "select_gear", stage=change.stage), wait
+
+    # synchronous operation
+
+    def link(self, link: SpindleLink) -> tuple[Command, Wait]:
+        """Begin and end of a coupling: the path goes on when the slave reports it."""
+        slave, master = self[link.slave].node, self[link.master].node
+        if link.on:
+            self._masters[link.slave] = link.master
+            command = self._command(slave, "couple", master=master)
+            return command, Wait(spindle=slave, condition=Condition.MASTER, value=master)
+        self._masters.pop(link.slave, None)
+        return self._command(slave, "decouple"), Wait(spindle=slave, condition=Condition.ALONE)
+
+    # ends
+
+    def decouple_all(self) -> list[Command]:
+        """Ends all couplings of the channel at once: its program was aborted."""
+        slaves, self._masters = list(self._masters), {}
+        return [self._command(self[slave].node, "decouple") for slave in slaves]
+
+    def stop(self, nodes: Collection[str]) -> list[Command]:
+        """M05 for those of `nodes` that the channel has set turning."""
+        stopped = [name for name in self._directions if self[name].node in nodes]
+        for name in stopped:
+            del self._directions[name]
+        self._standing_after_gear -= set(stopped)
+        return [self._command(self[name].node, "stop") for name in stopped]
+
+    @property
+    def turning(self) -> set[str]:
+        """Nodes of the spindles that the channel has set turning."""
+        return {self[name].node for name in self._directions}

@@ -1,0 +1,112 @@
+"""Commands beginning with #, alone in their block: #MAIN SPINDLE, #EXPL SYN and couplings of spindles (#AX LINK).
+
+A new command is a new row of COMMANDS. TF5200 spindle 2.2.3, 2.5, 2.8.3; the spelling is that of the vendor's
+programming manual.
+"""
+
+import re
+from collections.abc import Callable
+
+from cnc_ptp.nc import faults, spindle_faults, spindle_links
+from cnc_ptp.nc.canonical import ExplicitSynchronisation, Function, Source
+from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState
+from cnc_ptp.nc.spindles import current_main, name_of, names
+
+Run = Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]
+
+_BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*", re.ASCII)
+_ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCII)
+"""[NBR] says that spindles are given by number; that is seen anyway."""
+
+
+def hash_block(line: str, source: Source, begin: int, skip: int) -> Block | None:
+    """The block of a normalised line with a command; None if no known command stands in it (the tokens say why)."""
+    found = _COMMAND.search(line, begin)
+    if found is None:
+        return None
+    name = " ".join(found[1].split())
+    before = _BLOCK_NUMBER.match(line, begin)
+    source = source._replace(block_number=int(before[1])) if before else source
+    position = before.end() if before else begin
+    shown = "#" + name
+    words = line[position : found.start()].strip()
+    if words:
+        raise spindle_faults.COMMAND_NOT_ALONE.at(source, position + 1, command=shown, word=words)
+    rest = _ARGUMENTS.match(line, found.end())
+    assert rest is not None
+    if rest[2]:
+        raise spindle_faults.COMMAND_NOT_ALONE.at(source, rest.start(2) + 1, command=shown, word=rest[2].strip())
+    arguments = None if rest[1] is None else split_arguments(rest[1])
+    column = found.start() + 1
+    return Block(source, (), {}, skip=skip, command=HashCommand(name, arguments, column, COMMANDS[name]))
+
+
+def split_arguments(text: str) -> tuple[str, ...]:
+    """The parts between commas."""
+    return tuple(part.strip() for part in text.split(","))
+
+
+def main_spindle(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+    """#MAIN SPINDLE [name or logical axis number]; without one, that of P-CHAN-00051 is the main spindle again."""
+    if not channel.table.spindles:
+        raise faults.NO_SPINDLE.at(block.source, command.column, word="#MAIN SPINDLE")
+    if command.arguments is None:
+        key = channel.table.spindles[0].key
+    elif len(command.arguments) != 1 or not command.arguments[0]:
+        raise arguments_fault(block, command, "#MAIN SPINDLE [name or logical axis number]")
+    else:
+        key = _spindle_key(channel, state, block, command, command.arguments[0])
+    first = channel.table.spindles[0]
+    if key != first.key and first.own_name == channel.table.main_name:
+        raise spindle_faults.MAIN_WITHOUT_NAME.at(
+            block.source, command.column, spindle=first.own_name, other=name_of(channel, state, key)
+        )
+    spindle_links.check_main(channel, state, block, command, key)
+    state.spindle.main = key
+    return ()
+
+
+def _spindle_key(channel: Channel, state: ModalState, block: Block, command: HashCommand, argument: str) -> str:
+    """A spindle by its own name, the main one also by the name of the main spindle, or by number."""
+    spindles = channel.table.spindles
+    if argument.isdecimal():
+        key = next((spindle.key for spindle in spindles if spindle.number == int(argument) > 0), None)
+        if key is None:
+            known = ", ".join(str(spindle.number) for spindle in spindles if spindle.number) or "none"
+            raise spindle_faults.MAIN_SPINDLE_NUMBER.at(block.source, command.column, number=argument, known=known)
+        return key
+    if argument == channel.table.main_name:
+        return current_main(channel, state).key
+    key = next((spindle.key for spindle in spindles if spindle.own_name == argument), None)
+    if key is None:
+        known = ", ".join(names(channel, state))
+        raise faults.SPINDLE_UNKNOWN.at(block.source, command.column, word=argument, known=known)
+    return key
+
+
+def explicit_synchronisation(
+    channel: Channel, state: ModalState, block: Block, command: HashCommand
+) -> tuple[Function, ...]:
+    """#EXPL SYN."""
+    if command.arguments is not None:
+        raise arguments_fault(block, command, "without arguments")
+    return (ExplicitSynchronisation(),)
+
+
+def arguments_fault(block: Block, command: HashCommand, syntax: str) -> faults.ProgramError:
+    """The error for a command that is written otherwise."""
+    return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
+
+
+COMMANDS: dict[str, Run] = {
+    "MAIN SPINDLE": main_spindle,
+    "EXPL SYN": explicit_synchronisation,
+    "SET AX LINK": spindle_links.define,
+    "ENABLE AX LINK": spindle_links.enable,
+    "AX LINK ON": spindle_links.enable,
+    "DISABLE AX LINK": spindle_links.disable,
+    "AX LINK OFF ALL": spindle_links.disable_all,
+    "AX LINK OFF": spindle_links.disable,
+    "AX LINK": spindle_links.define,
+}
+_COMMAND = re.compile(r"#\s*(" + "|".join(name.replace(" ", r"\s+") for name in COMMANDS) + r")\b", re.ASCII)

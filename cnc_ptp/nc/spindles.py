@@ -1,0 +1,325 @@
+"""Spindle words of a block -> canonical functions: names, stored speeds and positions, gears, synchronous operation.
+
+DIN words (M3 S1000, M19 S.POS=90, M41, G74 S1, G167) are those of the main spindle, brackets name any spindle.
+Source: TF5200 spindle 2.2.3, 2.3, 2.4.1, 2.7, 2.8.2, 2.8.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from cnc_ptp.nc import faults, gears, spindle_faults
+from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
+from cnc_ptp.nc.lexer import column_of
+from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Spindle, SpindleTable, SpindleWords
+
+DIRECTIONS = {3: "cw", 4: "ccw"}
+ROTATION = (3, 4)
+FUNCTION_WORDS = frozenset("STD")
+
+
+def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
+    """A table of spindles that have nothing but names; a table stays what it is."""
+    if isinstance(spindles, SpindleTable):
+        return spindles
+    return SpindleTable(tuple(Spindle(name, name) for name in spindles), spindles[0] if spindles else "S")
+
+
+def require_spindle(channel: Channel, block: Block, word: str) -> None:
+    """Raises ProgramError 21548 in a channel without spindles: `word` needs the main spindle."""
+    if not channel.table.spindles:
+        raise faults.NO_SPINDLE.at(block.source, column_of(block.source, word), word=word)
+
+
+def current_main(channel: Channel, state: ModalState) -> Spindle:
+    """The spindle that #MAIN SPINDLE or P-CHAN-00051 has made the main one."""
+    main = state.spindle.main
+    return next((spindle for spindle in channel.table.spindles if spindle.key == main), channel.table.spindles[0])
+
+
+def names(channel: Channel, state: ModalState) -> dict[str, Spindle]:
+    """What programs call the spindles now: the main one by P-CHAN-00053, the others by P-CHAN-00007."""
+    if not channel.table.spindles:
+        return {}
+    main = current_main(channel, state)
+    others = {spindle.own_name: spindle for spindle in channel.table.spindles if spindle is not main}
+    return {channel.table.main_name: main, **others}
+
+
+def name_of(channel: Channel, state: ModalState, key: str) -> str:
+    """What programs call a spindle now."""
+    return next(name for name, spindle in names(channel, state).items() if spindle.key == key)
+
+
+def homing(channel: Channel, state: ModalState, block: Block, code: GCode) -> None:
+    """G74 moves no axis; which spindles it homes, `spindle_functions` says."""
+    for word in block.words:
+        if word not in FUNCTION_WORDS:
+            fault = spindle_faults.HOMING_OF_AXES if word in channel.axis_index else faults.WORD_NOT_USED
+            raise fault.at(block.source, column_of(block.source, word), word=word, g=code.name)
+    if "S" not in block.words and not block.spindles:
+        main, column = channel.table.main_name, column_of(block.source, code.name)
+        raise spindle_faults.HOMING_WITHOUT_SPINDLE.at(block.source, column, main=main)
+
+
+def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list[Function]:
+    """The functions of all spindles of a block, those of the main spindle first."""
+    functions: list[Function] = []
+    used: set[str] = set()
+    for words, place in _words(channel, state, block):
+        spindle = _named(channel, state, block, words, place)
+        if spindle.key in used:
+            raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, words.name), spindle=words.name)
+        used.add(spindle.key)
+        _check_coupling(channel, state, block, words, place, spindle)
+        for function in _SpindleBlock(channel, state, block, words, place, spindle).functions():
+            functions += [function, *_parallel(state, function)]
+    return functions
+
+
+def _words(channel: Channel, state: ModalState, block: Block) -> Iterator[tuple[SpindleWords, str]]:
+    """The words of each spindle with the word that errors point at; DIN words together as those of the main spindle."""
+    main_name = channel.table.main_name
+    own = [words for words in block.spindles if words.din and words.name == main_name]
+    m_code = next((code for code in block.m if code.group == "spindle"), None)
+    positioning = any(code.number == 19 for code in block.m)
+    g_codes = [code.number for code in block.codes if code.spindle]
+    gear = next((code for code in block.m if channel.table.gear_change and code.number in gears.GEAR_M), None)
+    place = "S" if "S" in block.words else m_code.name if m_code else "M19" if positioning else ""
+    place = place or (own[0].name if own else gear.name if gear else f"G{g_codes[0]}" if g_codes else "")
+    if "S" in block.words or m_code or positioning or own or gear or 167 in g_codes:
+        words = SpindleWords(main_name, m_code.number if m_code else None, None, positioning=positioning, din=True)
+        words = words._replace(homing=74 in g_codes and "S" in block.words, full_override=167 in g_codes)
+        require_spindle(channel, block, m_code.name if m_code else "M19" if positioning else place)
+        yield _with_values(block, words, own), place
+    for others in block.spindles:
+        if others not in own:
+            yield others, others.name
+
+
+def _with_values(block: Block, words: SpindleWords, own: list[SpindleWords]) -> SpindleWords:
+    """Speed and position of the main spindle: S word, `SPINDLE=1000`, `S.POS=90`."""
+    speeds = [block.words["S"]] if "S" in block.words and not words.homing else []
+    speeds += [other.speed_rpm for other in own if other.speed_rpm is not None]
+    positions = [other.position_deg for other in own if other.position_deg is not None]
+    if len(speeds) > 1 or len(positions) > 1:
+        place = own[-1].name if len(speeds) > 1 else f"{words.name}.POS"
+        raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, place), spindle=words.name)
+    if positions and not words.positioning:
+        column = column_of(block.source, f"{words.name}.POS")
+        raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
+    speed, position = next(iter(speeds), None), next(iter(positions), None)
+    return words._replace(speed_rpm=speed, position_deg=position)
+
+
+def _named(channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str) -> Spindle:
+    known = names(channel, state)
+    spindle = known.get(words.name)
+    if spindle is None:
+        column = column_of(block.source, place)
+        main = channel.table.main_name
+        if known and words.name == known[main].own_name:
+            raise spindle_faults.MAIN_BY_OWN_NAME.at(block.source, column, word=words.name, main=main)
+        raise faults.SPINDLE_UNKNOWN.at(block.source, column, word=words.name, known=", ".join(known) or "none")
+    if words.din and words.name != channel.table.main_name:
+        _require_no_position(block, words)
+    return spindle
+
+
+def _require_no_position(block: Block, words: SpindleWords) -> None:
+    if words.position_deg is not None:
+        column = column_of(block.source, f"{words.name}.POS")
+        raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
+
+
+def _check_coupling(
+    channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, spindle: Spindle
+) -> None:
+    for group in state.spindle.active:
+        for slave, master in state.spindle.links[group]:
+            if slave == spindle.key:
+                column, leader = column_of(block.source, place), name_of(channel, state, master)
+                raise spindle_faults.COUPLED.at(block.source, column, spindle=words.name, master=leader, group=group)
+
+
+def _parallel(state: ModalState, function: Function) -> list[Function]:
+    """The same function for the slaves of its spindle (2.8.3, parallel commanding); gears stay with the master."""
+    if not state.spindle.active or not isinstance(function, (SpindleFunction, SpindleCommand)):
+        return []
+    slaves = [
+        slave
+        for group in state.spindle.active
+        for slave, master in state.spindle.links[group]
+        if master == function.spindle
+    ]
+    speedless = state.spindle.speedless
+    for slave in slaves:
+        if function.spindle in speedless:
+            speedless[slave] = speedless[function.spindle]
+        else:
+            speedless.pop(slave, None)
+        _note(state, slave, function)
+    return [function._replace(spindle=slave) for slave in slaves]
+
+
+def _note(state: ModalState, key: str, function: SpindleFunction | SpindleCommand) -> None:
+    """Keeps what counts for later blocks: speed, position, rotation."""
+    if isinstance(function, SpindleCommand):
+        state.spindle.turning.pop(key, None)
+        return
+    if function.speed_rpm is not None and key not in state.spindle.speedless:
+        state.speeds[key] = function.speed_rpm
+    if function.m in (5, 19):
+        state.spindle.speedless.pop(key, None)
+    if function.position_deg is not None:
+        state.spindle.positions[key] = function.position_deg
+    if function.m in ROTATION:
+        state.spindle.turning[key] = function.m
+    elif function.m is not None:
+        state.spindle.turning.pop(key, None)
+
+
+class _SpindleBlock:
+    """The words of one spindle in one block while they become functions."""
+
+    def __init__(
+        self, channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, spindle: Spindle
+    ) -> None:
+        self.channel, self.state, self.block, self.words, self.place = channel, state, block, words, place
+        self.spindle, self.key = spindle, spindle.key
+
+    def functions(self) -> Iterator[Function]:
+        """Gear, rotation or positioning or speed, free M functions, in this order."""
+        words = self.words
+        self._check_plc_control()
+        self._take_speed()
+        stage = self._gear_stage()
+        if words.homing or words.default_dynamics:
+            self._check_homing_alone()
+            yield self._noted(SpindleCommand(self.key, "home" if words.homing else "reset_limits"))
+            return
+        function = self._positioning() if words.positioning else self._rotation(stage)
+        if stage:
+            self.state.spindle.gears[self.key] = stage
+            yield GearChange(self.key, stage)
+        if function is not None:
+            yield self._noted(function)
+        for code in words.functions:
+            yield AuxiliaryFunction("M", code, self.key)
+
+    def _noted(self, function: SpindleFunction | SpindleCommand) -> Function:
+        _note(self.state, self.key, function)
+        return function
+
+    def _fault(self, fault: faults.Fault, **values: object) -> faults.ProgramError:
+        column = column_of(self.block.source, self.place)
+        return fault.at(self.block.source, column, spindle=self.words.name, **values)
+
+    def _take_speed(self) -> None:
+        speed = self.words.speed_rpm
+        if speed is None:
+            return
+        if speed < 0.0:
+            raise self._fault(faults.SPEED_NEGATIVE, value=number(speed))
+        self.state.speeds[self.key] = speed
+        self.state.spindle.speedless.pop(self.key, None)
+
+    def _check_homing_alone(self) -> None:
+        """In DIN syntax; brackets have been looked at when they were read."""
+        rival = next((code for code in self.block.m if code.group in ("spindle", "positioning")), None)
+        if self.words.din and rival is not None:
+            column = column_of(self.block.source, rival.name)
+            raise spindle_faults.HOMING_NOT_ALONE.at(
+                self.block.source, column, word=rival.name, spindle=self.words.name
+            )
+
+    def _check_plc_control(self) -> None:
+        """P-CHAN-00069: only M3, M4, M5, M19, speed and position."""
+        words = self.words
+        if not self.spindle.plc_control:
+            return
+        word = "G74" if words.homing else "G167" if words.full_override else ""
+        word = word or ("DEFAULT_DYNAMIC_DATA" if words.default_dynamics else "")
+        word = word or (f"M{words.functions[0]:02d}" if words.functions else "")
+        word = word or (f"M{self._gear_codes()[0]}" if self._gear_codes() else "")
+        if word:
+            raise self._fault(spindle_faults.PLC_SPINDLE, word=word)
+
+    def _rotation(self, stage: int) -> SpindleFunction | None:
+        """M3, M4, M5 or a speed; after M40 to M45 alone a turning spindle turns on with the stored speed.
+
+        M3 and M4 before any speed stand still until it comes (TF5200 spindle p.30).
+        """
+        words, m = self.words, self.words.m
+        if m == 5:
+            return SpindleFunction(self.key, 5, None, full_override=words.full_override)
+        stored = self.state.speeds.get(self.key)
+        if m is None and words.speed_rpm is None:
+            turns_on = stage and self.key in self.state.spindle.turning
+            if not turns_on and not words.full_override:
+                return None
+            return SpindleFunction(self.key, None, stored if turns_on else None, full_override=words.full_override)
+        if stored is None:
+            self.state.spindle.speedless[self.key] = self._fault(faults.SPEED_MISSING, m=f"{m:02d}")
+        return SpindleFunction(self.key, m, stored or 0.0, full_override=words.full_override)
+
+    def _positioning(self) -> SpindleFunction:
+        """M19: to the programmed, else the last position, else 0."""
+        words = self.words
+        if words.m == 5:
+            raise self._fault(faults.SPINDLE_M_TWICE, first=5, second=19)
+        position = words.position_deg
+        if position is None:
+            position = self.state.spindle.positions.get(self.key, 0.0)
+        speed = self.state.speeds.get(self.key)
+        if speed == 0.0:
+            raise self._fault(spindle_faults.SPEED_ZERO, value=0)
+        direction = DIRECTIONS[words.m] if words.m else ""
+        return SpindleFunction(self.key, 19, speed, position, direction, words.full_override)
+
+    # gears
+
+    def _gear_codes(self) -> list[int]:
+        if not (self.words.din and self.channel.table.gear_change):
+            return []
+        return [code.number for code in self.block.m if code.number in gears.GEAR_M]
+
+    def _gear_stage(self) -> int:
+        """The stage that the block needs, 0 where gears are of no concern. Raises ProgramError where none fits."""
+        if not self.channel.table.gear_change:
+            return 0
+        words = self.words
+        code = next((code for code in words.functions if code in gears.GEAR_M), None)
+        if code is not None:
+            raise self._fault(spindle_faults.GEAR_IN_BRACKET, word=f"M{code}")
+        if self.spindle is not current_main(self.channel, self.state):
+            return 0
+        codes = self._gear_codes()
+        if len(codes) > 1:
+            column = column_of(self.block.source, f"M{codes[1]}")
+            raise spindle_faults.GEAR_TWICE.at(self.block.source, column, first=codes[0], second=codes[1])
+        if codes and words.homing:
+            column = column_of(self.block.source, f"M{codes[0]}")
+            raise spindle_faults.GEAR_AND_HOMING.at(self.block.source, column, stage=codes[0])
+        if not codes and not any(high > 0.0 for _, high in self.spindle.ranges):
+            return 0
+        return self._stage(codes[0] - gears.FIRST_M + 1 if codes else 0)
+
+    def _stage(self, programmed: int) -> int:
+        """M19 and M5 turn at no speed of a range: their speed is looked at with the next M3, M4 or S."""
+        words = self.words
+        active = self.state.spindle.gears.get(self.key, self.spindle.gear)
+        turning = words.m in ROTATION or (words.m is None and self.key in self.state.spindle.turning)
+        counts = not words.positioning and words.m != 5 and (turning or words.speed_rpm is not None)
+        if not counts and not programmed:
+            return 0
+        speed = self.state.speeds.get(self.key) if counts else None
+        if not words.din:
+            self._require_active_gear(active, speed)
+            return 0
+        return gears.stage_for(self.spindle, active, programmed, speed, self.block, words.name)
+
+    def _require_active_gear(self, active: int, speed: float | None) -> None:
+        """Brackets change no gear."""
+        if speed is not None and not gears.holds(self.spindle, active, speed):
+            raise self._fault(spindle_faults.GEAR_IN_BRACKET, word=f"speed {number(speed)} rpm")

@@ -1,0 +1,140 @@
+"""What no single value of a spindle shows: curves, homing, drive and feedback against each other."""
+
+from collections.abc import Callable, Iterator
+
+from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.errors import Problem
+from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.spindle_view import (
+    CURVE_TYPES,
+    EXTERNALLY_CONTROLLED,
+    OPEN_LOOP_FEEDBACK,
+    control_limit,
+    feedback,
+    is_open_loop,
+)
+
+SIMULATED_DRIVES = (4, 16)
+OPEN_LOOP_DRIVES = (4, 5, 6, 7, 8)
+STEPS = 1000
+"""Places between the limit speed and the largest speed at which a curve is looked at."""
+
+
+def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
+    """All of them, for one spindle."""
+    for check in (plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution):
+        yield from check(parameters)
+    for gear in sorted({int(parameters.number("P-AXIS-00079")) - 1, *parameters.used_indexes("getriebe")}):
+        yield from homing_speed(parameters, gear)
+        yield from curve(parameters, gear)
+
+
+def spindle_problem(
+    parameters: ParameterSet, number: str, indexes: tuple[int, ...], text: str, error_id: int = errors.CONTRADICTION
+) -> Problem:
+    declaration = parameters.catalogue.by_id[number]
+    subject = f"{declaration.list_name} list, {number} {declaration.list_style_name(indexes)} of /{parameters.node}"
+    return Problem(error_id, parameters.where(number, *indexes), f"{subject}: {text}")
+
+
+def plc_spindle(parameters: ParameterSet) -> Iterator[Problem]:
+    """A spindle that the PLC controls has no drive of the NC."""
+    drive = parameters.number("P-AXIS-00020")
+    if int(parameters.number("P-AXIS-00015")) & EXTERNALLY_CONTROLLED and drive not in SIMULATED_DRIVES:
+        text = f"value {drive} must be 4 (simulation) or 16 (virtual axis), the PLC controls the spindle (P-AXIS-00015)"
+        yield spindle_problem(parameters, "P-AXIS-00020", (), text)
+
+
+def homing_without_cam(parameters: ParameterSet) -> Iterator[Problem]:
+    if parameters.number("P-AXIS-00156") and not parameters.number("P-AXIS-00157"):
+        yield spindle_problem(parameters, "P-AXIS-00156", (), "value 1 needs P-AXIS-00157 kenngr.ref_ohne_rev = 1")
+
+
+def open_loop_drive(parameters: ParameterSet) -> Iterator[Problem]:
+    drive = int(parameters.number("P-AXIS-00020"))
+    if is_open_loop(parameters) and drive not in OPEN_LOOP_DRIVES:
+        mode, names = parameters.text("P-AXIS-00320"), parameters.catalogue.by_id["P-AXIS-00020"].choices
+        allowed = ", ".join(f"{number} {names[number]}" for number in OPEN_LOOP_DRIVES)
+        text = f"{mode} does not exist for drive type {drive} {names[drive]} (P-AXIS-00020), only for {allowed}"
+        yield spindle_problem(parameters, "P-AXIS-00320", (), text)
+
+
+def feedback_of_the_mode(parameters: ParameterSet) -> Iterator[Problem]:
+    """The telegram must have what the mode of operation needs."""
+    mode, telegram = parameters.text("P-AXIS-00320"), parameters.text("P-SIM-00050")
+    needed = OPEN_LOOP_FEEDBACK.get(mode, "" if is_open_loop(parameters) else "POSITION")
+    enough = {"POSITION": ("POSITION",), "SPEED": ("POSITION", "SPEED")}.get(needed, (telegram,))
+    if telegram not in enough:
+        text = f"value {telegram} is not enough for P-AXIS-00320 {mode}, which needs {needed}"
+        yield spindle_problem(parameters, "P-SIM-00050", (), text)
+
+
+def open_loop_resolution(parameters: ParameterSet) -> Iterator[Problem]:
+    """An actual speed that is computed from positions needs a resolution that somebody has thought of."""
+    if not is_open_loop(parameters) or feedback(parameters) != "POSITION" or uses_feed_constant(parameters):
+        return
+    gear = int(parameters.number("P-AXIS-00079")) - 1
+    if not (parameters.is_given("P-AXIS-00234", gear) or parameters.is_given("P-AXIS-00233", gear)):
+        text = "no resolution is given, but the actual speed of the open position loop comes from positions"
+        yield spindle_problem(parameters, "P-AXIS-00234", (gear,), text, errors.RESOLUTION)
+
+
+def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
+    """The zero pulse can be seen below the control limit only."""
+    speed, limit = parameters.kernel("P-AXIS-00218", gear), control_limit(parameters, gear)
+    if speed > limit and feedback(parameters) == "POSITION" and not is_open_loop(parameters):
+        text = (
+            f"value {parameters.number('P-AXIS-00218', gear)} is above the control limit "
+            f"{parameters.number('P-AXIS-00220', gear)} (0.001°/s) of P-AXIS-00220 getriebe[{gear}].vb_regelgrenze"
+        )
+        yield spindle_problem(parameters, "P-AXIS-00218", (gear,), text)
+
+
+# ---------------------------------------------------------------- acceleration curves
+
+
+def curve(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
+    """A curve must be whole and bring the spindle to its largest speed."""
+    kind = CURVE_TYPES.get(int(parameters.number("P-AXIS-00202", gear)), "")
+    if not kind:
+        return
+    own = ("P-AXIS-00240", "P-AXIS-00241") if kind == "asynchronous" else ("P-AXIS-00007", "P-AXIS-00130")
+    missing = [number for number in own if parameters.number(number, gear) == 0]
+    for number in missing:
+        yield spindle_problem(parameters, number, (gear,), f"value 0 makes no {kind} curve (P-AXIS-00202)")
+    least = parameters.number("P-AXIS-00010", gear)
+    if not missing and least > parameters.number(own[0], gear):
+        text = f"value {least} is above {parameters.number(own[0], gear):g} °/s² of {own[0]}"
+        yield spindle_problem(parameters, "P-AXIS-00010", (gear,), text)
+    elif not missing and kind != "asynchronous":
+        yield from curve_to_the_top(parameters, gear, kind)
+
+
+def curve_to_the_top(parameters: ParameterSet, gear: int, kind: str) -> Iterator[Problem]:
+    """No acceleration up to the largest speed may be zero, negative or infinite."""
+    value: Callable[[ParameterSet, int, float], float] = hyperbola if kind == "hyperbola" else polynomial
+    limit, top = parameters.kernel("P-AXIS-00130", gear), parameters.kernel("P-AXIS-00212", gear)
+    least = parameters.kernel("P-AXIS-00010", gear)
+    for step in range(STEPS + 1):
+        speed = limit + (top - limit) * step / STEPS
+        acceleration = value(parameters, gear, speed) if speed >= limit else 1.0
+        if not 0.0 < max(acceleration, least) < float("inf"):
+            text = f"the {kind} gives {acceleration:g} °/s² at {speed:g} °/s, within P-AXIS-00212 ({top:g} °/s)"
+            yield spindle_problem(parameters, "P-AXIS-00026", (gear,), text)
+            return
+
+
+def polynomial(parameters: ParameterSet, gear: int, speed: float) -> float:
+    """a(n) above the limit speed (2.8.4.1)."""
+    d = speed - parameters.kernel("P-AXIS-00130", gear)
+    b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+    return parameters.kernel("P-AXIS-00007", gear) + d * (b1 + d * (b2 + d * b3))
+
+
+def hyperbola(parameters: ParameterSet, gear: int, speed: float) -> float:
+    """a(n) above the limit speed; infinite where the denominator is not positive."""
+    x = speed / parameters.kernel("P-AXIS-00130", gear)
+    b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+    denominator = 1.0 + b2 * x * x * (1.0 + b3 * x * x)
+    return b1 / denominator if denominator > 0.0 else float("inf")

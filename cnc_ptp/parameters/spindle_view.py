@@ -1,0 +1,244 @@
+"""A spindle as the kernel uses it: what all gears share, and one record a gear stage."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cnc_ptp.parameters.encoder import encoder_increment
+from cnc_ptp.parameters.parameter_set import ParameterSet
+
+NO_AUTOMATIC_HOMING = 0x100
+EXTERNALLY_CONTROLLED = 0x40000
+CONTROL_LIMIT_DRIVES = (1, 3, 4, 5, 6)
+"""Drive types (P-AXIS-00020) for which P-AXIS-00220 exists; the others watch their measuring system themselves."""
+OPEN_LOOP_FEEDBACK = {
+    "OPEN_POSITION_LOOP_POS_FEEDBACK": "POSITION",
+    "OPEN_POSITION_LOOP_VEL_FEEDBACK": "SPEED",
+    "OPEN_POSITION_LOOP_NO_FEEDBACK": "NONE",
+}
+MONITORING_TYPES = (1, 2, 4)
+CURVE_TYPES = {1: "hyperbola", 2: "polynomial", 3: "asynchronous"}
+DIGITS_PER_DEG_S = 60.0 / 1000.0
+"""Drive output of a position-controlled spindle: P-AXIS-00129 / 00128 digits at 1000 °/min."""
+
+
+class CurveParameters(NamedTuple):
+    """An acceleration curve a(n), n in °/s, a in °/s² (TF5200 spindle 2.8.4)."""
+
+    kind: str
+    """hyperbola, polynomial or asynchronous."""
+    minimum: float
+    """Floor of the whole curve."""
+    limit_speed: float
+    """Below it hyperbola and polynomial have constant acceleration."""
+    constant: float
+    b1: float
+    b2: float
+    b3: float
+    maximum: float
+    """Acceleration of an asynchronous drive below n1."""
+    n1: float
+    n2: float
+
+
+class SpeedScaling(NamedTuple):
+    """Speed command in drive format: `increments` go out at `distance` ° a time base (P-AXIS-00205 … 00207)."""
+
+    increments: int
+    distance: float
+    time_base: int
+    """0 minute, 1 second, 2 sampling interval."""
+
+    def per_deg_s(self, cycle_time: float) -> float:
+        """Increments at 1 °/s; `cycle_time` in s is the sampling interval."""
+        seconds = (60.0, 1.0, cycle_time)[self.time_base]
+        return self.increments * seconds / self.distance
+
+
+@dataclass(frozen=True, slots=True)
+class GearParameters:
+    """What depends on the gear stage. Positions in °, speeds in °/s, accelerations in °/s²."""
+
+    stage: int
+    kv: float
+    """1/s."""
+    max_speed: float
+    positioning_speed: float
+    """Rapid traverse: M19 without a speed, and the way to the change position."""
+    max_acceleration: float
+    acceleration: float
+    deceleration: float
+    emergency_deceleration: float
+    curve: CurveParameters | None
+    """In place of acceleration and deceleration in endless rotation."""
+    zero_speed: float
+    """Below this actual speed the spindle stands."""
+    control_limit: float
+    """Above it the measuring system fails; infinite where there is no such limit."""
+    change_position: float
+    reference_position: float
+    """Of the zero pulse."""
+    homing_speed: float
+    modulo_low: float
+    modulo_high: float
+    following_error_monitoring: bool
+    following_error_limit: float
+    following_error_standstill_limit: float
+    position_window: float
+    encoder_increment: float
+    """° an increment, 0 is an ideal measuring system."""
+    reversed: bool
+    """The drive turns the other way round."""
+    output_gain: float
+    """Digits of the drive output at 1 °/s, position-controlled."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleParameters:
+    """A spindle. Speeds in °/s, times in s."""
+
+    name: str
+    number: int
+    drive_type: int
+    plc_controlled: bool
+    """The PLC controls it; the NC gets nothing but acknowledgements (P-AXIS-00015 0x40000)."""
+    automatic_homing: bool
+    """Homes by itself before M19; otherwise M19 without reference is an error (P-AXIS-00015 0x100)."""
+    open_loop: bool
+    """Never under position control (P-AXIS-00320)."""
+    feedback: str
+    """What the drive sends: POSITION, SPEED or NONE."""
+    scaling: SpeedScaling
+    speed_reached_band: float
+    """Speed reached within (1 ± band) times the commanded speed."""
+    preferred_direction: int
+    """+1 or -1 where only that direction is permitted (P-AXIS-00224), 0 otherwise."""
+    velocity_control_on: float
+    """A speed command above it switches the drive to velocity control …"""
+    velocity_control_off: float
+    """… and this is the actual speed at which it is switched back."""
+    gear: int
+    """Gear stage at start, from 1."""
+    gears: Mapping[int, GearParameters]
+    """By stage: those the machine file describes, and the one at start."""
+    stops_at_reset: bool
+    target_time: float
+    """In which the actual position must have come into the window after M19; 0 = not monitored."""
+    speed_time: float
+    """The same for the speed of endless rotation."""
+    gear_change_time: float
+    """In which the PLC must have acknowledged a gear change; 0 = for ever."""
+    drive_time_constant: float
+    zero_pulse: float
+    max_override_percent: float
+    powered_at_start: bool
+    referenced_at_start: bool
+    start_position: float
+
+    @property
+    def max_speed_deg_s(self) -> float:
+        """The largest speed of all gears."""
+        return max(gear.max_speed for gear in self.gears.values())
+
+    @property
+    def has_position(self) -> bool:
+        """False: it can be neither homed nor positioned."""
+        return self.feedback == "POSITION"
+
+
+def spindle_view(parameters: ParameterSet) -> SpindleParameters:
+    mode = int(parameters.number("P-AXIS-00015"))
+    stage = int(parameters.number("P-AXIS-00079"))
+    stages = sorted({stage, *(index + 1 for index in parameters.used_indexes("getriebe"))})
+    return SpindleParameters(
+        name=parameters.node,
+        number=int(parameters.number("P-AXIS-00016")),
+        drive_type=int(parameters.number("P-AXIS-00020")),
+        plc_controlled=bool(mode & EXTERNALLY_CONTROLLED),
+        automatic_homing=not mode & NO_AUTOMATIC_HOMING,
+        open_loop=is_open_loop(parameters),
+        feedback=feedback(parameters),
+        scaling=SpeedScaling(
+            int(parameters.number("P-AXIS-00206")),
+            parameters.kernel("P-AXIS-00205"),
+            int(parameters.number("P-AXIS-00207")),
+        ),
+        speed_reached_band=parameters.kernel("P-AXIS-00217"),
+        preferred_direction=preferred_direction(parameters),
+        velocity_control_on=parameters.kernel("P-AXIS-00265"),
+        velocity_control_off=parameters.kernel("P-AXIS-00266"),
+        gear=stage,
+        gears={stage: gear_view(parameters, stage - 1) for stage in stages},
+        stops_at_reset=not parameters.number("P-AXIS-00455"),
+        target_time=parameters.number("P-MACH-00014") / 1000.0,
+        speed_time=parameters.number("P-MACH-00050") / 1000.0,
+        gear_change_time=parameters.number("P-MACH-00051") / 1000.0,
+        drive_time_constant=parameters.kernel("P-SIM-00001"),
+        zero_pulse=parameters.kernel("P-SIM-00051"),
+        max_override_percent=parameters.percent("P-AXIS-00109"),
+        powered_at_start=bool(parameters.number("P-SIM-00004")),
+        referenced_at_start=bool(parameters.number("P-SIM-00005")) and feedback(parameters) == "POSITION",
+        start_position=parameters.kernel("P-SIM-00003"),
+    )
+
+
+def gear_view(parameters: ParameterSet, gear: int) -> GearParameters:
+    """The record getriebe[gear]."""
+    return GearParameters(
+        stage=gear + 1,
+        kv=parameters.kernel("P-AXIS-00099", gear),
+        max_speed=parameters.kernel("P-AXIS-00212", gear),
+        positioning_speed=parameters.kernel("P-AXIS-00209", gear),
+        max_acceleration=parameters.kernel("P-AXIS-00008", gear),
+        acceleration=parameters.kernel("P-AXIS-00001", gear),
+        deceleration=parameters.kernel("P-AXIS-00002", gear),
+        emergency_deceleration=parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear),
+        curve=curve_view(parameters, gear),
+        zero_speed=parameters.kernel("P-AXIS-00216", gear),
+        control_limit=control_limit(parameters, gear),
+        change_position=parameters.kernel("P-AXIS-00078", gear),
+        reference_position=parameters.kernel("P-AXIS-00152", gear),
+        homing_speed=parameters.kernel("P-AXIS-00218", gear),
+        modulo_low=parameters.kernel("P-AXIS-00127", gear),
+        modulo_high=parameters.kernel("P-AXIS-00126", gear),
+        following_error_monitoring=parameters.number("P-AXIS-00172", gear) in MONITORING_TYPES,
+        following_error_limit=parameters.kernel("P-AXIS-00168", gear),
+        following_error_standstill_limit=parameters.kernel("P-AXIS-00169", gear),
+        position_window=parameters.kernel("P-AXIS-00236", gear),
+        encoder_increment=encoder_increment(parameters, gear),
+        reversed=bool(parameters.number("P-AXIS-00159", gear)),
+        output_gain=parameters.number("P-AXIS-00129", gear)
+        / parameters.number("P-AXIS-00128", gear)
+        * DIGITS_PER_DEG_S,
+    )
+
+
+def curve_view(parameters: ParameterSet, gear: int) -> CurveParameters | None:
+    kind = int(parameters.number("P-AXIS-00202", gear))
+    if kind not in CURVE_TYPES:
+        return None
+    numbers = ("00010", "00130", "00007", "00026", "00027", "00028", "00240", "00241", "00242")
+    return CurveParameters(CURVE_TYPES[kind], *(parameters.kernel(f"P-AXIS-{number}", gear) for number in numbers))
+
+
+def control_limit(parameters: ParameterSet, gear: int) -> float:
+    """P-AXIS-00220 where the drive type has it, infinity for 0 and the other types."""
+    if parameters.number("P-AXIS-00020") not in CONTROL_LIMIT_DRIVES:
+        return math.inf
+    return parameters.kernel("P-AXIS-00220", gear) or math.inf
+
+
+def is_open_loop(parameters: ParameterSet) -> bool:
+    return parameters.text("P-AXIS-00320").startswith("OPEN_POSITION_LOOP")
+
+
+def feedback(parameters: ParameterSet) -> str:
+    """POSITION, SPEED or NONE: what the operation mode says itself, else the telegram of the drive."""
+    return OPEN_LOOP_FEEDBACK.get(parameters.text("P-AXIS-00320"), parameters.text("P-SIM-00050"))
+
+
+def preferred_direction(parameters: ParameterSet) -> int:
+    if not parameters.number("P-AXIS-00224"):
+        return 0
+    return 1 if parameters.number("P-AXIS-00031") else -1

@@ -1,0 +1,93 @@
+"""Synchronous operation of spindles: a slave carries out the commands of its master (TF5200 spindle 2.8.3).
+
+The setpoints are not coupled cycle by cycle: commands are passed on, and each spindle moves within its own limits. Only
+the PLC sees all spindles, so it says whether a coupling may be: no master is a slave, so that no circle can arise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.errors import CncError
+from cnc_ptp.spindle.faults import (
+    BAD_RATIO,
+    COUPLED_ALREADY,
+    COUPLED_TO_ITSELF,
+    COUPLING_CHAIN,
+    NOT_COUPLED,
+    UNKNOWN_MASTER,
+)
+from cnc_ptp.spindle.spindle import Spindle
+
+PASSED_ON = ("start", "set_speed", "stop", "orient", "home")
+"""Commands of a master that its slaves carry out too."""
+OPPOSITE = {"cw": "ccw", "ccw": "cw"}
+
+
+class CouplingCommands:
+    """`couple`, `decouple`, and the answer of the PLC."""
+
+    def __init__(self, spindle: Spindle, spindles: tuple[str, ...]) -> None:
+        """`spindles`: names of all spindles of the machine."""
+        self._spindle = spindle
+        self._spindles = spindles
+        self.master = ""
+        self.wanted = ""
+        self._ratio = self._wanted_ratio = 1.0
+
+    def do_couple(self, cycle: int, *, master: str, factor_num: float = 1.0, factor_den: float = 1.0) -> None:
+        """Asks for a coupling to `master` with speeds and positions times factor_num / factor_den.
+
+        Refused with 24003, 24019–24021 and 24027.
+        """
+        spindle = self._spindle
+        spindle.require_ready("couple")
+        if master == spindle.name:
+            spindle.refuse("couple", COUPLED_TO_ITSELF, "a spindle cannot be its own master")
+        if master not in self._spindles:
+            known = ", ".join(self._spindles)
+            spindle.refuse("couple", UNKNOWN_MASTER, f"'{master}' is no spindle of the machine ({known})")
+        for name, value in (("factor_num", factor_num), ("factor_den", factor_den)):
+            if value == 0.0:
+                spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0")
+        if self.master or self.wanted:
+            reason = f"the spindle is a slave of {self.master or self.wanted}; decouple it first"
+            spindle.refuse("couple", COUPLED_ALREADY, reason)
+        self.wanted, self._wanted_ratio = master, factor_num / factor_den
+
+    def do_coupling_answer(self, cycle: int, *, granted: bool, reason: str) -> None:
+        """The PLC: the coupling that was asked for begins, or not and why (24024)."""
+        master, self.wanted = self.wanted, ""
+        if granted and master:
+            self.master, self._ratio = master, self._wanted_ratio
+        elif master:
+            text = f"spindle {self._spindle.name}: not coupled to {master}: {reason}; nothing was changed"
+            self._spindle.report_warning(cycle, COUPLING_CHAIN, text)
+
+    def do_decouple(self, cycle: int) -> None:
+        """The spindle goes on as it is, on its own. Refused with 24023."""
+        if not (self.master or self.wanted):
+            self._spindle.refuse("decouple", NOT_COUPLED, "the spindle is not coupled")
+        self.master = self.wanted = ""
+
+    def of_slave(self, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+        """Arguments of the master's command, as they are for this spindle."""
+        scaled = dict(arguments)
+        for name, factor in (("speed_rpm", abs(self._ratio)), ("position_deg", self._ratio)):
+            if scaled.get(name) is not None:
+                scaled[name] *= factor
+        if self._ratio < 0.0 and scaled.get("direction") in OPPOSITE:
+            scaled["direction"] = OPPOSITE[scaled["direction"]]
+        return scaled
+
+
+def can_follow(spindle: Spindle) -> bool:
+    """False for a slave that is in error or has no power: it does nothing that its master does."""
+    return spindle.state not in (S.ERROR_STOP, S.DISABLED)
+
+
+def why_not(error: CncError) -> str:
+    """The reason in the text of a refusal."""
+    return error.message.partition("refused: ")[2].removesuffix("; nothing was changed")

@@ -1,0 +1,290 @@
+"""Jobs of a spindle that take several steps: positioning, homing, stop with homing, gear change.
+
+The steps of a job are fixed when it begins, from what is known then (is the loop open, is there a reference?); each
+cycle asks whether the step in work is done. TF5200 spindle 2.3 (state graphs), 2.7, 2.8.2.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from math import copysign
+from typing import TYPE_CHECKING
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
+from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
+from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stop_way
+from cnc_ptp.spindle.states import SpindleMode
+
+if TYPE_CHECKING:
+    from cnc_ptp.spindle.spindle import Spindle
+
+DIRECTIONS = {"cw": 1.0, "ccw": -1.0}
+
+
+class Step(Enum):
+    """Part of a job."""
+
+    APPROACH = auto()
+    """Down to a speed at which the position loop can be closed."""
+    SEARCH = auto()
+    """Turn at homing speed until the zero pulse comes."""
+    POSITION = auto()
+    HALT = auto()
+    """Exact stop."""
+    SHIFT = auto()
+    """The PLC changes the gear."""
+
+
+@dataclass(slots=True)
+class Job:
+    """`name` of the command; the rest as the steps need it."""
+
+    name: str
+    steps: deque[Step] = field(default_factory=deque)
+    goal: float = 0.0
+    speed: float = 0.0
+    direction: str = ""
+    stage: int = 0
+    resume: float = 0.0
+    """Speed of endless rotation that the gear change has interrupted, °/s."""
+
+
+class Jobs:
+    """The job in work of one spindle."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        self._spindle = spindle
+        self._zero_pulse = ZeroPulse(spindle.parameters.zero_pulse)
+        self._search_from: float | None = None
+        self._since = 0
+        self._turns = 1.0
+        """Direction in which the target is reached."""
+        self.job: Job | None = None
+        self.done = True
+        """The last job came to its end."""
+
+    @property
+    def step(self) -> Step | None:
+        return self.job.steps[0] if self.job is not None else None
+
+    @property
+    def gear_request(self) -> int:
+        """The stage that the PLC is to change to, 0 if none."""
+        return self.job.stage if self.job is not None and self.step is Step.SHIFT else 0
+
+    @property
+    def changes_gear(self) -> bool:
+        return self.job is not None and self.job.stage != 0
+
+    def cancel(self) -> None:
+        self.job = None
+        self.done = False
+
+    # begin
+
+    def start(self, cycle: int, job: Job) -> None:
+        """Begins a job; what it needs before its first own step is put in front."""
+        spindle = self._spindle
+        spindle.take_tool(cycle)
+        spindle.end_job()
+        needs_reference = job.steps[0] is Step.POSITION and not spindle.referenced
+        if needs_reference:
+            job.steps.appendleft(Step.SEARCH)
+        if self._loop_stays_open:
+            job.steps.appendleft(Step.APPROACH)
+        self.job = job
+        spindle.programmed_speed = job.speed
+        spindle.wanted_speed = 0.0
+        spindle.unsettled = True
+        self._begin_step(cycle)
+
+    @property
+    def _loop_stays_open(self) -> bool:
+        """The loop is open for another reason than the control limit, which ends by itself on the way down."""
+        parameters = self._spindle.parameters
+        return self._spindle.loop.velocity_control or (parameters.open_loop and parameters.has_position)
+
+    def _begin_step(self, cycle: int) -> None:
+        self._since = cycle
+        {
+            Step.APPROACH: self._approach,
+            Step.SEARCH: self._search,
+            Step.POSITION: self._position,
+            Step.HALT: self._halt,
+            Step.SHIFT: self._shift,
+        }[self._current().steps[0]](cycle)
+
+    def _current(self) -> Job:
+        assert self.job is not None
+        return self.job
+
+    def _approach(self, cycle: int) -> None:
+        spindle = self._spindle
+        homes = Step.POSITION not in self._current().steps
+        spindle.state, spindle.mode = self._state(homes)
+        speed = spindle.motion(cycle)[1]
+        limit = 0.0 if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
+        spindle.ramp_to(cycle, copysign(min(abs(speed), limit), speed))
+
+    @staticmethod
+    def _state(homes: bool) -> tuple[S, SpindleMode]:
+        return (S.HOMING, SpindleMode.HOMING) if homes else (S.DISCRETE_MOTION, SpindleMode.POSITION)
+
+    def _search(self, cycle: int) -> None:
+        spindle = self._spindle
+        spindle.state, spindle.mode = self._state(True)
+        self._search_from = None
+        speed = spindle.motion(cycle)[1]
+        direction = copysign(1.0, speed) if speed else float(spindle.parameters.preferred_direction or 1)
+        spindle.ramp_to(cycle, direction * spindle.gear.homing_speed)
+
+    def _position(self, cycle: int) -> None:
+        spindle, job = self._spindle, self._current()
+        spindle.state, spindle.mode = self._state(False)
+        position, speed, _ = spindle.motion(cycle)
+        limits = spindle.limits.positioning(job.speed * spindle.override)
+        turn = spindle.gear.modulo_high - spindle.gear.modulo_low
+        self._turns = self._direction(position, speed, job, turn)
+        spindle.target = next_target(position, speed, job.goal, turn, self._turns, limits)
+        table = plan_positioning(position, speed, spindle.target, self._turns, limits)
+        assert table is not None, "the target was chosen so that the spindle can stop there"
+        spindle.follow(cycle, table)
+
+    def _direction(self, position: float, speed: float, job: Job, turn: float) -> float:
+        """The given one, else the only one permitted, else the current one in rotation and the shortest from rest."""
+        if job.direction in DIRECTIONS:
+            return DIRECTIONS[job.direction]
+        if self._spindle.parameters.preferred_direction:
+            return float(self._spindle.parameters.preferred_direction)
+        if speed and job.direction != "shortest":
+            return copysign(1.0, speed)
+        limits = self._spindle.limits.positioning(0.0)
+        return shortest_direction(position + copysign(stop_way(abs(speed), limits), speed), job.goal, turn)
+
+    def _halt(self, cycle: int) -> None:
+        spindle = self._spindle
+        if spindle.state != S.HOMING:
+            spindle.state = S.STOPPING
+        spindle.mode = SpindleMode.HOMING if spindle.state == S.HOMING else SpindleMode.STOP
+        spindle.ramp_to(cycle, 0.0)
+
+    def _shift(self, cycle: int) -> None:
+        self._spindle.state = S.STANDSTILL
+
+    # on the way
+
+    def replan(self, cycle: int) -> bool:
+        """Another override in a positioning; False where the spindle brakes for its target already."""
+        spindle, job = self._spindle, self._current()
+        if job.steps[0] is not Step.POSITION or spindle.target is None:
+            return True
+        position, speed, _ = spindle.motion(cycle)
+        limits = spindle.limits.positioning(job.speed * spindle.override)
+        table = plan_positioning(position, speed, spindle.target, self._turns, limits)
+        if table is None:
+            return False
+        spindle.follow(cycle, table)
+        return True
+
+    def advance(self, cycle: int, actual_speed: float) -> None:
+        """Is the step in work done? Then the next one begins in this cycle, or the job is over."""
+        job = self._current()
+        step = job.steps[0]
+        if step is Step.APPROACH:
+            done = self._approached(cycle, actual_speed)
+        elif step is Step.SEARCH:
+            done = self._found(cycle)
+        elif step is Step.SHIFT:
+            done = self._shifted(cycle)
+        else:
+            done = self._stands(cycle, actual_speed)
+        if not done or self.job is not job:
+            return
+        job.steps.popleft()
+        if job.steps:
+            self._begin_step(cycle)
+        else:
+            self._finish()
+
+    def _approached(self, cycle: int, actual_speed: float) -> bool:
+        spindle = self._spindle
+        if not spindle.parameters.open_loop:
+            return not spindle.loop.velocity_control
+        if not spindle.finished(cycle) or abs(actual_speed) > spindle.gear.zero_speed:
+            return False
+        spindle.place(cycle, spindle.loop.position)
+        return True
+
+    def _found(self, cycle: int) -> bool:
+        spindle = self._spindle
+        position = spindle.motion(cycle)[0]
+        if self._search_from is None:
+            if spindle.finished(cycle) and spindle.loop.measures_position:
+                self._search_from = position
+                self._zero_pulse.arm()
+                self._zero_pulse.passed(spindle.loop.encoder)
+            return False
+        mark = self._zero_pulse.passed(spindle.loop.encoder)
+        if mark is not None:
+            reference = spindle.gear.reference_position
+            spindle.shift_coordinates(nearest_shift(mark + spindle.loop.offset, reference))
+            spindle.referenced, spindle.reference_lost = True, False
+            return True
+        if abs(position - self._search_from) > PATIENCE:
+            reason = f"no zero pulse came in {PATIENCE:g} deg at homing speed {spindle.gear.homing_speed:g} deg/s"
+            spindle.fault(cycle, NO_ZERO_PULSE, f"{reason} (P-AXIS-00218)")
+        return False
+
+    def _stands(self, cycle: int, actual_speed: float) -> bool:
+        """The setpoint is at its end and the actual value in the window; an error when that takes too long."""
+        spindle, step = self._spindle, self._current().steps[0]
+        position, speed, _ = spindle.motion(cycle)
+        if speed != 0.0 or not spindle.finished(cycle):
+            return False
+        if step is Step.POSITION and position != spindle.target:
+            return False  # held by override 0
+        loop = spindle.loop
+        measured = loop.measures_position and not (step is Step.HALT and not loop.closed)
+        away = abs(position - loop.position) if measured else 0.0
+        window = spindle.gear.position_window
+        if away <= window and (measured or abs(actual_speed) <= spindle.gear.zero_speed):
+            return True
+        patience = spindle.parameters.target_time / spindle.cycle_time
+        if patience and spindle.cycles_since_end(cycle) >= patience:
+            reason = (
+                f"{spindle.parameters.target_time:g} s after its end the positioning is {away:g} deg away from its "
+                f"target, more than the position window {window:g} deg (P-AXIS-00236)"
+            )
+            spindle.fault(cycle, POSITION_MISSED, reason)
+        return False
+
+    def _shifted(self, cycle: int) -> bool:
+        """Only the PLC says so; an error when it does not."""
+        spindle = self._spindle
+        patience = spindle.parameters.gear_change_time
+        if patience and (cycle - self._since) * spindle.cycle_time >= patience:
+            stage = self._current().stage
+            reason = f"the PLC has not acknowledged the change to gear {stage} within {patience:g} s (P-MACH-00051)"
+            spindle.fault(cycle, GEAR_NOT_ACKNOWLEDGED, reason)
+        return False
+
+    def _finish(self) -> None:
+        spindle, job = self._spindle, self._current()
+        self.job = None
+        self.done = True
+        spindle.programmed_speed = 0.0
+        spindle.state = S.STANDSTILL
+        if job.name in ("home", "stop"):
+            spindle.mode = SpindleMode.STOP
+
+    def gear_changed(self, cycle: int) -> Job:
+        """The PLC has acknowledged: the parameters of the new gear count; returns the job that is over."""
+        job = self._current()
+        self._spindle.use_gear(cycle, job.stage)
+        self._spindle.target = None
+        self._spindle.mode = SpindleMode.STOP
+        self._finish()
+        return job

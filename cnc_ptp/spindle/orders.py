@@ -1,0 +1,94 @@
+"""Who commands a spindle: order of arrival, work for one source at a time, acknowledgements to the PLC.
+
+A channel gives its name as `source`, the PLC's external commanding "plc"; commands of people and scenarios have none.
+Source: TF5200 spindle 2.1 (several channels), 2.2.1.1 (sequential in order of arrival, acknowledgements).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.spindle.faults import AT_WORK, SLAVE_LOCKED
+from cnc_ptp.spindle.spindle import Spindle
+
+PLC = "plc"
+MOTION = frozenset({"start", "set_speed", "stop", "orient", "home", "select_gear"})
+"""Commands that make the spindle work for somebody."""
+
+
+class Order(NamedTuple):
+    """A command that waits for its turn."""
+
+    command: str
+    arguments: Mapping[str, Any]
+    source: str
+
+
+class Orders:
+    """Commands that wait, and for whom the spindle is at work."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        self._spindle = spindle
+        self.waiting: deque[Order] = deque()
+        self.source = ""
+        """For whom the spindle is at work: until its speed, position, reference or gear is there."""
+        self.taken = 0
+        """Commands of the PLC so far."""
+
+    @property
+    def acknowledged(self) -> int:
+        """Commands of the PLC that are done, or that a stop, a reset or an error has overtaken."""
+        open_orders = sum(order.source == PLC for order in self.waiting)
+        return self.taken - open_orders - (self.source == PLC)
+
+    def check(self, command: str, source: str, master: str) -> None:
+        """Raises 24012 while the spindle is at work for another source, 24022 for a slave."""
+        if master and command != "stop":
+            reason = f"the spindle is a slave of {master}; command {master} or decouple the spindle"
+            self._spindle.refuse(command, SLAVE_LOCKED, reason)
+        if source and self.source and source != self.source:
+            reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
+            self._spindle.refuse(command, AT_WORK, reason)
+
+    def must_wait(self, command: str, source: str) -> bool:
+        """During a gear change all commands wait; those of the PLC for each other, too. A stop never waits."""
+        if command == "stop":
+            return False
+        if self._spindle.jobs.changes_gear or (self.waiting and source != PLC and self.waiting[0].source != PLC):
+            return True
+        return source == PLC and (bool(self.waiting) or self.source == PLC)
+
+    def add(self, order: Order) -> None:
+        self.waiting.append(order)
+        self._spindle.unsettled = True
+
+    def begin(self, source: str) -> None:
+        """The spindle works for `source` from now on."""
+        self.source = source
+        self._spindle.unsettled = True
+
+    def next(self) -> Order | None:
+        """The order whose turn it is."""
+        if not self.waiting or self._spindle.jobs.changes_gear:
+            return None
+        if self.waiting[0].source == PLC and self.source == PLC:
+            return None
+        return self.waiting.popleft()
+
+    def clear(self) -> None:
+        """A stop, a reset or an error: nothing that waits is carried out."""
+        self.waiting.clear()
+        self.source = ""
+
+    def watch(self) -> None:
+        """Ends the work for a source when it is done."""
+        spindle = self._spindle
+        if spindle.state == S.ERROR_STOP:
+            self.clear()
+        if not self.source or spindle.jobs.job is not None:
+            return
+        if spindle.state == S.STANDSTILL or (spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached):
+            self.source = ""

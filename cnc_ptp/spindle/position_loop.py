@@ -1,0 +1,138 @@
+"""Position loop of a spindle: closed, opened at the control limit or by velocity control, or open for good.
+
+TF5200 spindle 2.2.4 (open position loop), 2.4.2 (control limit), P-AXIS-00265 and 00266 (velocity control). In the open
+loop the speed setpoint goes to the drive. Above the control limit the actual values are simulated: the following error
+is speed / Kv. Units: °, °/s.
+"""
+
+from __future__ import annotations
+
+from cnc_ptp.control.drives import Drive
+from cnc_ptp.parameters import GearParameters, SpindleParameters
+
+
+class PositionLoop:
+    """Command to the drive and actual values, cycle by cycle."""
+
+    def __init__(self, parameters: SpindleParameters, gear: GearParameters, drive: Drive, *, cycle_time: float) -> None:
+        """`cycle_time` in s."""
+        self._parameters = parameters
+        self._cycle_time = cycle_time
+        self._increments = parameters.scaling.per_deg_s(cycle_time)
+        self.drive = drive
+        self.offset = 0.0
+        """Between the counting of the encoder and the coordinates of the spindle."""
+        self.beyond_limit = False
+        self.velocity_control = False
+        self.drive_output = 0
+        self._last_position: float | None = None
+        self.use_gear(gear)
+
+    def use_gear(self, gear: GearParameters) -> None:
+        """The parameters of a gear count from now on."""
+        self._gear = gear
+        self._sign = -1.0 if gear.reversed else 1.0
+        self._kv = gear.kv
+        self._zero = gear.zero_speed
+
+    def count_from(self, position: float) -> None:
+        """The encoder stands at `position`, whatever it shows."""
+        self.offset = position - self._sign * self.drive.position
+        self._last_position = None
+
+    def shift(self, distance: float) -> None:
+        """All coordinates grow by `distance`."""
+        self.offset += distance
+        self._last_position = None if self._last_position is None else self._last_position + distance
+
+    @property
+    def encoder(self) -> float:
+        """Position as the encoder counts it."""
+        return self._sign * self.drive.position
+
+    @property
+    def position(self) -> float:
+        """Actual position as the encoder shows it."""
+        return self._sign * self.drive.position + self.offset
+
+    @property
+    def closed(self) -> bool:
+        return not (self._parameters.open_loop or self.beyond_limit or self.velocity_control)
+
+    @property
+    def measures_position(self) -> bool:
+        """The actual position is a measured one."""
+        return self._parameters.has_position and not self.beyond_limit
+
+    @property
+    def measures_speed(self) -> bool:
+        """False: the speed is acknowledged by the setpoint."""
+        return self._parameters.feedback != "NONE" and not self.beyond_limit
+
+    def lag(self, speed: float) -> float:
+        """Following error of a closed loop at a constant speed."""
+        return speed / self._kv
+
+    def passes_limit(self, set_speed: float) -> bool:
+        """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
+        if self.beyond_limit or self._parameters.open_loop or abs(set_speed) <= self._gear.control_limit:
+            return False
+        self.beyond_limit = True
+        return True
+
+    def comes_back(self, set_speed: float) -> bool:
+        """True when the speed has come below the control limit: the measuring system counts again."""
+        if not self.beyond_limit or abs(set_speed) > self._gear.control_limit:
+            return False
+        self.beyond_limit = False
+        self._last_position = None
+        return True
+
+    def waits_to_close(self, set_speed: float, wanted_speed: float) -> bool:
+        """Under velocity control that is needed no more; only the drive must slow down yet."""
+        return (
+            self.velocity_control
+            and abs(wanted_speed) <= self._parameters.velocity_control_on
+            and abs(set_speed) <= self._parameters.velocity_control_off
+        )
+
+    def leaves_velocity_control(self, set_speed: float, wanted_speed: float) -> bool:
+        """True when no speed above P-AXIS-00265 is wanted and the spindle is down to P-AXIS-00266."""
+        if not self.waits_to_close(set_speed, wanted_speed):
+            return False
+        limit = self._parameters.velocity_control_off
+        if abs(self.drive.velocity) > limit + max(self._zero, self._parameters.speed_reached_band * limit):
+            return False
+        self.velocity_control = False
+        return True
+
+    def actual_position(self, set_position: float, set_speed: float) -> float:
+        """Measured, or simulated where there is no measurement."""
+        if self.measures_position:
+            return self._sign * self.drive.position + self.offset
+        return set_position - set_speed / self._kv if self.beyond_limit else set_position
+
+    def actual_speed(self, set_speed: float) -> float:
+        """By what the drive sends; asked once a cycle, because an open loop takes it from two positions."""
+        if not self.measures_speed:
+            return set_speed
+        if self._parameters.open_loop and self._parameters.has_position:
+            last, self._last_position = self._last_position, self.position
+            return 0.0 if last is None else (self._last_position - last) / self._cycle_time
+        return self._sign * self.drive.velocity
+
+    def command(self, following_error: float, set_speed: float, *, on: bool) -> float:
+        """Moves the drive for one cycle; returns the commanded speed. `on` is False without power."""
+        if not on:
+            command = 0.0
+        elif self.closed:
+            command = self._kv * following_error
+        else:
+            command = set_speed
+        if self._parameters.open_loop and self._increments:
+            self.drive_output = round(command * self._increments * self._sign)
+            self.drive.step(self.drive_output / self._increments)
+        else:
+            self.drive_output = round(command * self._gear.output_gain * self._sign)
+            self.drive.step(self._sign * command)
+        return command

@@ -1,0 +1,57 @@
+"""Enable and reset of a spindle."""
+
+from __future__ import annotations
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.spindle.faults import ENABLE_REMOVED, IN_GEAR_CHANGE, STILL_TURNING
+from cnc_ptp.spindle.spindle import Spindle
+
+
+class PowerCommands:
+    """`power` and `reset`."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        self._spindle = spindle
+
+    def do_power(self, cycle: int, *, on: bool) -> str | None:
+        """Enables or disables the spindle; one that moves stops on its ramp with an error first (24011).
+
+        Refused while the PLC changes the gear (24017). The enable itself moves nothing.
+        """
+        spindle = self._spindle
+        if on == spindle.powered:
+            return f"spindle {spindle.name}: power is {'on' if on else 'off'} already"
+        if spindle.jobs.gear_request:
+            spindle.refuse("power", IN_GEAR_CHANGE, "the PLC changes the gear")
+        spindle.powered = on
+        spindle.unsettled = True
+        if on:
+            self._switch_on(cycle)
+        elif spindle.state == S.STANDSTILL:
+            spindle.state = S.DISABLED
+        elif spindle.state != S.ERROR_STOP:
+            spindle.fault(cycle, ENABLE_REMOVED, "the enable was removed in motion")
+        return None
+
+    def _switch_on(self, cycle: int) -> None:
+        spindle = self._spindle
+        if spindle.state == S.DISABLED:
+            spindle.state = S.STANDSTILL
+            if spindle.loop.measures_position:
+                spindle.place(cycle, spindle.loop.position)
+
+    def do_reset(self, cycle: int) -> None:
+        """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle, whatever it does."""
+        spindle = self._spindle
+        if spindle.state == S.DISABLED:
+            return
+        if spindle.state != S.ERROR_STOP:
+            spindle.stop(cycle)
+            return
+        if spindle.motion(cycle)[1] != 0.0:
+            reason = "the spindle still turns on its error ramp; wait for standstill"
+            spindle.refuse("reset", STILL_TURNING, reason)
+        spindle.error_id = 0
+        spindle.job_error = False
+        spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
+        spindle.unsettled = True

@@ -1,0 +1,150 @@
+"""Endless rotation of a spindle: M03, M04, S, M05, override. Source: TF5200 spindle 2.3.1, 2.4."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import state_name
+from cnc_ptp.spindle.faults import (
+    AGAINST_PREFERRED_DIRECTION,
+    BAD_OVERRIDE,
+    BAD_SPEED,
+    BAD_TOOL_LIMITS,
+    SPEED_TOO_HIGH,
+)
+from cnc_ptp.spindle.jobs import DIRECTIONS, Job, Step
+from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
+from cnc_ptp.spindle.states import SpindleMode
+from cnc_ptp.spindle.tool_limits import ToolLimits
+
+
+class RotationCommands:
+    """`start`, `set_speed`, `stop`, override, limits of the tool, and what happens at the program's end."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        self._spindle = spindle
+        self.stops_at_program_end = False
+
+    def do_start(self, cycle: int, *, direction: str, speed_rpm: float) -> str | None:
+        """M03 (cw) or M04 (ccw) at `speed_rpm`. Refusals 24001–24003; 60254 puts the spindle into ErrorStop."""
+        spindle = self._spindle
+        spindle.require_ready("start")
+        check_speed(spindle, "start", speed_rpm)
+        check_direction(spindle, "start", cycle, direction)
+        spindle.rotate(cycle, DIRECTIONS[direction] * speed_rpm * DEG_S_PER_RPM)
+        return self._limited(speed_rpm)
+
+    def do_set_speed(self, cycle: int, *, speed_rpm: float) -> str | None:
+        """An S word alone: a new speed in the same direction; without effect while the spindle does not rotate."""
+        spindle = self._spindle
+        check_speed(spindle, "set_speed", speed_rpm)
+        if spindle.state != S.CONTINUOUS_MOTION:
+            return f"spindle {spindle.name}: set_speed without effect in {state_name(spindle.state)}"
+        sign = 1.0 if spindle.mode == SpindleMode.CW else -1.0
+        spindle.rotate(cycle, sign * speed_rpm * DEG_S_PER_RPM)
+        return self._limited(speed_rpm)
+
+    def _limited(self, speed_rpm: float) -> str | None:
+        """What people hear of a speed that the tool does not take."""
+        limits, speed = self._spindle.limits, speed_rpm * DEG_S_PER_RPM
+        used = abs(limits.endless(speed))
+        if used == speed:
+            return None
+        bound = "above the maximum" if used < speed else "below the minimum"
+        used_rpm = used / DEG_S_PER_RPM
+        return f"spindle {self._spindle.name}: speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
+
+    def do_stop(self, cycle: int) -> None:
+        """M05: down to speed 0; after the control limit was exceeded the spindle homes before it stops."""
+        spindle = self._spindle
+        if spindle.state in (S.ERROR_STOP, S.DISABLED) or spindle.jobs.gear_request:
+            return
+        if spindle.reference_lost and spindle.parameters.automatic_homing and spindle.state == S.CONTINUOUS_MOTION:
+            spindle.jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
+        else:
+            spindle.stop(cycle)
+
+    def do_set_override(self, cycle: int, *, percent: float) -> str | None:
+        """Override of endless rotation and positioning, 0 … P-AXIS-00109 %; the speed stays within the limits."""
+        spindle = self._spindle
+        limit = spindle.parameters.max_override_percent
+        if not 0.0 <= percent <= limit:
+            reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
+            spindle.refuse("set_override", BAD_OVERRIDE, reason)
+        spindle.override_percent = float(percent)
+        return self._override_changed(cycle, f"override {percent} %")
+
+    def do_suppress_override(self, cycle: int, *, on: bool) -> str | None:
+        """G167: the override does not act (100 %) until it is switched off again."""
+        self._spindle.override_suppressed = on
+        return self._override_changed(cycle, f"override suppression {'on' if on else 'off'}")
+
+    def _override_changed(self, cycle: int, what: str) -> str | None:
+        spindle = self._spindle
+        if spindle.state == S.CONTINUOUS_MOTION:
+            spindle.apply_speed(cycle)
+        elif spindle.state == S.DISCRETE_MOTION and not spindle.jobs.replan(cycle):
+            return f"spindle {spindle.name}: {what} does not change the positioning in work (brake phase)"
+        return None
+
+    def do_set_limits(
+        self,
+        cycle: int,
+        *,
+        max_speed_rpm: float | None = None,
+        min_speed_rpm: float | None = None,
+        max_acceleration: float | None = None,
+    ) -> None:
+        """Limits of a tool (P-TOOL-00013 … 00015), from standstill on; what is left out is free. Refused: 24018."""
+        spindle = self._spindle
+        given = {"max_speed_rpm": max_speed_rpm, "max_acceleration": max_acceleration}
+        for name, value in given.items():
+            if value is not None and not value > 0.0:
+                spindle.refuse("set_limits", BAD_TOOL_LIMITS, f"{name} = {value} must be greater than 0")
+        if min_speed_rpm is not None and min_speed_rpm < 0.0:
+            spindle.refuse("set_limits", BAD_TOOL_LIMITS, f"min_speed_rpm = {min_speed_rpm} must not be negative")
+        if None not in (min_speed_rpm, max_speed_rpm) and float(min_speed_rpm or 0) > float(max_speed_rpm or 0):
+            reason = f"min_speed_rpm = {min_speed_rpm} is above max_speed_rpm = {max_speed_rpm}"
+            spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)
+        none = ToolLimits()
+        self._take(
+            cycle,
+            ToolLimits(
+                none.max_speed if max_speed_rpm is None else max_speed_rpm * DEG_S_PER_RPM,
+                none.min_speed if min_speed_rpm is None else min_speed_rpm * DEG_S_PER_RPM,
+                none.max_acceleration if max_acceleration is None else float(max_acceleration),
+            ),
+        )
+
+    def do_reset_limits(self, cycle: int) -> None:
+        """The limits of the gear alone, from standstill on."""
+        self._take(cycle, ToolLimits())
+
+    def _take(self, cycle: int, limits: ToolLimits) -> None:
+        self._spindle.next_tool = limits
+        self._spindle.take_tool(cycle)
+
+    def do_stop_at_program_end(self, cycle: int, *, on: bool) -> None:
+        """HLI: the channel is to stop the spindle at the end of its program (2.4.3)."""
+        self.stops_at_program_end = on
+
+
+def check_speed(spindle: Spindle, command: str, speed_rpm: float) -> None:
+    """Raises 24001 and 24002."""
+    if speed_rpm < 0.0:
+        spindle.refuse(command, BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
+    limit_rpm = spindle.gear.max_speed / DEG_S_PER_RPM
+    if speed_rpm > limit_rpm:
+        gear = f" of gear {spindle.gear.stage}" if len(spindle.parameters.gears) > 1 else ""
+        reason = f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm{gear} (P-AXIS-00212)"
+        spindle.refuse(command, SPEED_TOO_HIGH, reason)
+
+
+def check_direction(spindle: Spindle, command: str, cycle: int, direction: str) -> None:
+    """60254 for a direction against the preferred one: refused, and the spindle goes into ErrorStop."""
+    preferred = spindle.parameters.preferred_direction
+    if preferred and DIRECTIONS.get(direction, preferred) != preferred:
+        word = "positive" if preferred > 0 else "negative"
+        reason = f"{direction} contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: {word})"
+        spindle.fail(command, cycle, AGAINST_PREFERRED_DIRECTION, reason)

@@ -1,0 +1,82 @@
+"""The runtime table of a spindle: segments in which the speed is a polynomial of the time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from cnc_ptp.spindle.acceleration_curves import Leg
+from cnc_ptp.spindle.polynomials import value
+
+Motion = tuple[float, float, float]
+"""Position in °, speed in °/s, acceleration in °/s²."""
+
+
+class Segment(NamedTuple):
+    """From `start` s on, with d = t - start:
+
+    v(d) = speed[0] + speed[1]·d + …,  p(d) = way[0] + way[1]·d + …,  a(d) = rate[0] + rate[1]·d + …
+    """
+
+    start: float
+    way: tuple[float, ...]
+    speed: tuple[float, ...]
+    rate: tuple[float, ...]
+
+
+class SpeedTable:
+    """An immutable table: segments, and after its end the end speed for ever.
+
+    duration   seconds from the begin to the end
+    end        (p, v, a) at the end, a = 0
+    """
+
+    __slots__ = ("_starts", "duration", "end", "segments")
+
+    def __init__(self, segments: Sequence[Segment]) -> None:
+        last = segments[-1]
+        self.segments = tuple(segments)
+        self._starts = tuple(segment.start for segment in segments)
+        self.duration = last.start
+        self.end: Motion = (last.way[0], last.speed[0], 0.0)
+
+    def state_at(self, t: float) -> Motion:
+        """(p, v, a) at t seconds after the begin; before it as at 0."""
+        if t < 0.0:
+            t = 0.0
+        start, way, speed, rate = self.segments[bisect_right(self._starts, t) - 1]
+        d = t - start
+        if len(speed) == 1:
+            return way[0] + d * way[1], speed[0], 0.0
+        if len(speed) == 2:
+            return way[0] + d * (way[1] + d * way[2]), speed[0] + d * speed[1], rate[0]
+        return value(way, d), value(speed, d), value(rate, d)
+
+
+def segment(start: float, position: float, powers: Sequence[float]) -> Segment:
+    """One segment of the speed `powers`; way and acceleration are its integral and derivative."""
+    way = (position, *(power / (k + 1) for k, power in enumerate(powers)))
+    rate = tuple(k * power for k, power in enumerate(powers))[1:] or (0.0,)
+    return Segment(start, way, tuple(powers), rate)
+
+
+def table(position: float, legs: Iterable[Leg], end_speed: float, *, end_position: float | None = None) -> SpeedTable:
+    """Legs strung together from `position`; then `end_speed`. Legs without duration leave no segment.
+
+    `end_position`: where the last leg ends exactly; rounding falls between it and the leg.
+    """
+    segments: list[Segment] = []
+    t = 0.0
+    for duration, powers in legs:
+        if duration > 0.0:
+            segments.append(segment(t, position, powers))
+            position = value(segments[-1].way, duration)
+            t += duration
+    segments.append(segment(t, position if end_position is None else end_position, (end_speed,)))
+    return SpeedTable(segments)
+
+
+def way_of(legs: Iterable[Leg]) -> float:
+    """Way in ° of legs."""
+    return sum(value((0.0, *(power / (k + 1) for k, power in enumerate(powers))), d) for d, powers in legs)

@@ -1,0 +1,205 @@
+"""What all functions of a spindle share: its state, its setpoints, its limits, refusals and faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import copysign
+from typing import NoReturn
+
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.control.drives import Drive
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.spindle.faults import NOT_READY
+from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.position_loop import PositionLoop
+from cnc_ptp.spindle.speed_ramp import plan_speed
+from cnc_ptp.spindle.speed_table import Motion, SpeedTable
+from cnc_ptp.spindle.states import SpindleMode
+from cnc_ptp.spindle.tool_limits import SpindleLimits, ToolLimits
+
+DEG_S_PER_RPM = 6.0
+Report = Callable[[int, int, str], None]
+"""Takes an event: cycle, number, text."""
+
+
+class Spindle:
+    """The setpoint side of a spindle. Commands (one class a group) change it, the unit around it computes cycles.
+
+    Speeds are in °/s, + = M03. Every fault ends in ErrorStop on the ramp of endless rotation.
+    """
+
+    def __init__(
+        self,
+        parameters: SpindleParameters,
+        *,
+        drive: Drive,
+        make_drive: Callable[[GearParameters, float], Drive],
+        cycle_time: float,
+        report_error: Report,
+        report_warning: Report,
+    ) -> None:
+        """`make_drive(gear, position)`: the drive with the measuring system of a gear; `cycle_time` in s."""
+        self.parameters = parameters
+        self.name = parameters.name
+        self.cycle_time = cycle_time
+        self.gear = parameters.gears[parameters.gear]
+        self.tool = ToolLimits()
+        self.next_tool: ToolLimits | None = None
+        """Counts when the spindle next leaves standstill."""
+        self.limits = SpindleLimits(self.gear, self.tool)
+        self.loop = PositionLoop(parameters, self.gear, drive, cycle_time=cycle_time)
+        self._make_drive = make_drive
+        self._table = plan_speed(parameters.start_position, 0.0, 0.0, self.limits.ramp)
+        self._origin = 0
+        self._shift = 0.0
+        self.powered = parameters.powered_at_start
+        self.state = S.STANDSTILL if self.powered else S.DISABLED
+        self.mode = SpindleMode.STOP
+        self.error_id = 0
+        self.job_error = False
+        self.referenced = parameters.referenced_at_start
+        self.reference_lost = False
+        """The control limit was exceeded since the last homing: M05 homes before it stops."""
+        self.override_percent = min(100.0, parameters.max_override_percent)
+        self.override_suppressed = False
+        self.programmed_speed = 0.0
+        """As commanded, °/s: with sign in endless rotation, without in positioning."""
+        self.wanted_speed = 0.0
+        """What the actual speed is compared with: the programmed one under override and limits."""
+        self.target: float | None = None
+        """Where positioning is to end, or has ended."""
+        self.speed_was_reached = True
+        self.unsettled = True
+        """Something may happen in the next cycles besides following the setpoint."""
+        self.jobs = Jobs(self)
+        self.report_error = report_error
+        self.report_warning = report_warning
+
+    # setpoints
+
+    def motion(self, cycle: int) -> Motion:
+        """Set position, speed and acceleration at `cycle`, as they stand before a command that acts there."""
+        position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
+        return position + self._shift, speed, acceleration
+
+    def finished(self, cycle: int) -> bool:
+        """The table has come to its end speed."""
+        return (cycle - self._origin) * self.cycle_time >= self._table.duration
+
+    def cycles_since_end(self, cycle: int) -> float:
+        """Cycles since the table has come to its end speed."""
+        return cycle - self._origin - self._table.duration / self.cycle_time
+
+    def follow(self, cycle: int, table: SpeedTable) -> None:
+        """The setpoints come from `table` from `cycle` on."""
+        self._table, self._origin, self._shift = table, cycle, 0.0
+        self.unsettled = True
+
+    def ramp_to(self, cycle: int, speed: float) -> None:
+        """A speed ramp from the state at `cycle`."""
+        position, before, _ = self.motion(cycle)
+        self.follow(cycle, plan_speed(position, before, speed, self.limits.ramp))
+
+    def shift_coordinates(self, distance: float) -> None:
+        """Set and actual position are counted from elsewhere; nothing moves."""
+        self._shift += distance
+        self.loop.shift(distance)
+        if self.target is not None:
+            self.target += distance
+
+    def place(self, cycle: int, position: float) -> None:
+        """The set position at `cycle` is `position`; the speed stays."""
+        self._shift += position - self.motion(cycle)[0]
+
+    @property
+    def override(self) -> float:
+        return 1.0 if self.override_suppressed else self.override_percent / 100.0
+
+    # endless rotation
+
+    def rotate(self, cycle: int, speed: float) -> None:
+        """Endless rotation at a signed speed, under override and limits."""
+        self.take_tool(cycle)
+        self.end_job()
+        self.mode = SpindleMode.CW if copysign(1.0, speed) > 0.0 else SpindleMode.CCW
+        self.state = S.CONTINUOUS_MOTION
+        self.programmed_speed = speed
+        self.apply_speed(cycle)
+
+    def apply_speed(self, cycle: int) -> None:
+        """The ramp of endless rotation to the programmed speed under the override of now."""
+        self.wanted_speed = self.limits.endless(self.programmed_speed * self.override)
+        if abs(self.wanted_speed) > self.parameters.velocity_control_on and not self.parameters.open_loop:
+            self.loop.velocity_control = True
+        self.speed_was_reached = False
+        self.ramp_to(cycle, self.wanted_speed)
+
+    def stop(self, cycle: int) -> None:
+        """Down to speed 0 at once; a job in work is given up."""
+        self.end_job()
+        self.mode = SpindleMode.STOP
+        self.programmed_speed = self.wanted_speed = 0.0
+        self.state = S.STOPPING
+        self.ramp_to(cycle, 0.0)
+
+    def end_job(self) -> None:
+        self.jobs.cancel()
+        self.target = None
+        self.job_error = False
+
+    def take_tool(self, cycle: int) -> None:
+        """New limits of a tool count from standstill on."""
+        if self.next_tool is not None and self.state == S.STANDSTILL and self.motion(cycle)[1] == 0.0:
+            self.tool, self.next_tool = self.next_tool, None
+            self.limits = SpindleLimits(self.gear, self.tool)
+
+    def use_gear(self, cycle: int, stage: int) -> None:
+        """Parameters of another gear; the spindle stands where the encoder shows it."""
+        actual = self.loop.position
+        self.gear = self.parameters.gears[stage]
+        self.loop.use_gear(self.gear)
+        self.loop.drive = self._make_drive(self.gear, self.loop.drive.position)
+        self.loop.count_from(actual)
+        self.limits = SpindleLimits(self.gear, self.tool)
+        if self.parameters.has_position:
+            self.place(cycle, actual)
+
+    # position loop
+
+    def watch_loop(self, cycle: int, speed: float) -> None:
+        """Opens and closes the position loop where the speed asks for it; the closed loop goes on without a jump."""
+        if self.loop.passes_limit(speed):
+            self.referenced = False
+            self.reference_lost = True
+        elif self.loop.comes_back(speed):
+            self.loop.count_from(self.motion(cycle)[0] - self.loop.lag(speed))
+        if self.loop.leaves_velocity_control(speed, self.wanted_speed):
+            self.place(cycle, self.loop.position + self.loop.lag(speed))
+
+    # refusals and faults
+
+    def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
+        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; nothing was changed")
+
+    def require_ready(self, command: str) -> None:
+        """Raises 24003 in ErrorStop and without power."""
+        if self.state == S.ERROR_STOP:
+            self.refuse(command, NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self.error_id}); reset it first")
+        if self.state == S.DISABLED:
+            self.refuse(command, NOT_READY, "the spindle is in Disabled; give it power first")
+
+    def fault(self, cycle: int, error_id: int, reason: str) -> None:
+        """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
+        had_job = self.jobs.job is not None
+        self.stop(cycle)
+        self.error_id = error_id
+        self.job_error = had_job
+        self.state = S.ERROR_STOP
+        text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
+        self.report_error(cycle, error_id, text)
+
+    def fail(self, command: str, cycle: int, error_id: int, reason: str) -> NoReturn:
+        """A command that is refused and puts the spindle into ErrorStop."""
+        self.fault(cycle, error_id, reason)
+        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; the spindle is in ErrorStop")

@@ -1,0 +1,144 @@
+"""Synchronous operation of spindles from a program: slaves do what their masters are told, the path waits for all."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from channel_spindle_support import (
+    MVS_SVS,
+    PLC_INFO,
+    machine_of,
+    moves,
+    reported,
+    requests,
+    run,
+    three,
+    told,
+    told_at,
+    two_channels,
+)
+from machine_support import MILL, MachineBench
+
+from cnc_ptp.parameters import MachineParameters
+
+ENABLE = "#SET AX LINK[1, S2=S, S3=S]\n#ENABLE AX LINK[1]\n"
+SLOW = replace(MILL.spindles["s"], name="t", gears={1: replace(MILL.spindles["s"].gears[1], acceleration=6000.0)})
+"""A spindle that needs six times as long as the others."""
+
+
+def linked(**main: object) -> MachineParameters:
+    return machine_of(*three(**main), units={"t": SLOW})
+
+
+def test_slaves_start_with_their_master_and_the_path_waits_for_the_slowest() -> None:
+    bench = run(ENABLE + "M3 S3000\nG01 X1 F3000\nM5", linked())
+    assert bench.errors() == []
+    assert [command for command, _ in told(bench)][:1] == ["start"]
+    assert [command for command, _ in told(bench, "t")] == ["couple", "coupling_answer", "decouple"]
+    for unit in "stu":
+        assert max(bench.column(unit, "set_speed_rpm")) > 2700.0  # M5 comes when all are within 10 %
+        assert bench.last(unit).set_speed_rpm[-1] == 0.0
+    start = told_at(bench, "start")
+    for unit in "stu":
+        speed = bench.column(unit, "set_speed_rpm")
+        assert speed[start] == 0.0 and speed[start + 1] > 0.0
+    assert moves(bench)[0][0] == reported(bench, "t", "speed_reached", start) + 1
+
+
+def test_the_program_goes_on_when_the_coupling_stands() -> None:
+    bench = run(ENABLE + "G01 X1 F3000", linked())
+    coupled = [block.first_cycle for block in bench.blocks["t"] if block.master == "s"]
+    assert told_at(bench, "couple", "t") == 10 and moves(bench)[0][0] == coupled[0] + 11
+    assert coupled[-1] < told_at(bench, "decouple", "t") <= moves(bench)[0][1] + 20
+
+
+def test_positioning_and_homing_are_done_by_the_slaves_too() -> None:
+    bench = run(ENABLE + "M19 S100 S.POS=90\nG01 X1 F3000\nS[G74]", linked())
+    assert bench.errors() == []
+    for unit in "stu":
+        assert bench.column(unit, "actual_position_deg")[moves(bench)[0][0]] == pytest.approx(90.0, abs=0.2)
+    assert bench.last("t").referenced[-1]
+
+
+def test_the_plc_hears_of_the_master_only() -> None:
+    bench = run(ENABLE + "M3 S300", machine_of(*three(MVS_SVS | PLC_INFO)))
+    assert [(request.number, request.spindle) for request in requests(bench)] == [(3, "s")]
+
+
+def test_after_the_coupling_a_slave_has_a_life_of_its_own() -> None:
+    bench = run(ENABLE + "M3 S3000\n#DISABLE AX LINK\nM5\nS2[M4]\nG04 1", linked())
+    assert bench.errors() == [] and told(bench, "t")[-2:] == [
+        ("start", {"direction": "ccw", "speed_rpm": 3000.0}),
+        ("stop", {}),
+    ]
+    assert max(bench.column("u", "set_speed_rpm")[-1000:]) == pytest.approx(3000.0)
+
+
+def test_default_coupling_pairs() -> None:
+    """Coupling group 0 of P-CHAN-00037, 00038 is there without a definition."""
+    bench = run("#ENABLE AX LINK[0]\nM3 S600", machine_of(*three(), coupled=(("S3", "S"),)))
+    assert max(bench.column("u", "set_speed_rpm")) == pytest.approx(600.0)
+    assert max(bench.column("t", "set_speed_rpm")) == 0.0
+
+
+def test_the_speed_has_to_suit_the_slaves() -> None:
+    bench = MachineBench(f"%P\n{ENABLE}M3 S12500\nM30", machine=linked(), end_when_idle=False).run(0.1)
+    assert bench.refusals() == [
+        "P-ERR-22010 test.nc line 4 column 1 'M3 S12500': spindle S: 12500 rpm is above the maximum 12000 rpm "
+        "(P-AXIS-00212)"
+    ]
+    weak = replace(SLOW, gears={1: replace(SLOW.gears[1], max_speed=6000.0)})
+    machine = machine_of(*three(), units={"t": weak})
+    bench = MachineBench(f"%P\n{ENABLE}M3 S1500\nM30", machine=machine, end_when_idle=False).run(0.1)
+    assert bench.refusals() == [
+        "P-ERR-22010 test.nc line 4 column 1 'M3 S1500': spindle S2: 1500 rpm is above the maximum 1000 rpm "
+        "(P-AXIS-00212)"
+    ]
+
+
+@pytest.mark.parametrize("how", ["reset", "error"])
+def test_an_aborted_program_ends_its_couplings_and_stops_all(how: str) -> None:
+    bench = MachineBench(f"%P\n{ENABLE}M3 S3000\nG04 9\nM30", machine=linked(), end_when_idle=False).run(2.0)
+    if how == "reset":
+        bench.give("channel", "reset")
+    else:
+        bench.give("channel", "upstream_lost", source="x")
+    bench.run(4.0)
+    assert [bench.last(unit).master for unit in "stu"] == ["", "", ""]
+    assert [bench.last(unit).set_speed_rpm[-1] for unit in "stu"] == [0.0, 0.0, 0.0]
+
+
+def test_manual_blocks_keep_a_coupling_until_a_program_begins() -> None:
+    bench = MachineBench("%P\nM3 S600\nM30", machine=linked(), start=False, end_when_idle=False).run(0.05)
+    bench.give("channel", "mdi", text=ENABLE)
+    bench.run(0.1)
+    bench.give("channel", "mdi", text="M3 S300")
+    bench.run(1.0)
+    assert [bench.last(unit).set_speed_rpm[-1] for unit in "tu"] == [pytest.approx(300.0)] * 2
+    assert bench.give("channel", "start").accepted
+    bench.run(1.0)
+    assert bench.errors() == [] and [bench.last(unit).master for unit in "tu"] == ["", ""]
+    assert bench.last("s").set_speed_rpm[-1] == pytest.approx(600.0)
+
+
+def test_definitions_stay_for_the_next_program() -> None:
+    bench = MachineBench(f"%P\n{ENABLE}M30", machine=linked(), end_when_idle=False).run(0.5)
+    bench.give("channel", "load", program="b.nc", text="%B\n#ENABLE AX LINK[1]\nM3 S300\nM30")
+    assert bench.give("channel", "start").accepted
+    bench.run(1.0)
+    assert bench.last("u").set_speed_rpm[-1] == pytest.approx(300.0)
+
+
+def test_a_coupling_that_the_plc_does_not_grant_is_an_error() -> None:
+    """The second channel wants a slave of the first one as its master."""
+    bench = MachineBench(None, machine=two_channels(), end_when_idle=False).run(0.01)
+    bench.give("channel", "mdi", text="#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]")
+    bench.run(0.1)
+    bench.give("second", "mdi", text="#MAIN SPINDLE[S2]\n#SET AX LINK[1, S1=S]\n#ENABLE AX LINK[1]")
+    bench.run(0.2)
+    assert bench.errors() == [
+        "P-ERR-22019 channel second: spindle s was not coupled to t in line 3 '#ENABLE AX LINK[1]'; "
+        "the path stops on its ramp and the program is aborted"
+    ]
+    assert bench.last("t").master == "s" and bench.last("s").master == ""

@@ -1,0 +1,134 @@
+"""Several who command one spindle: channels at once, the PLC in order of arrival with acknowledgements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from machine_support import UnitBench, spindle_bench
+from spindle_support import first_cycle
+
+from cnc_ptp.machine.blocks import AxisStateCode as S
+
+
+def at_work(command: str, owner: str, other: str) -> str:
+    return (
+        f"P-ERR-24012 spindle s: {command} refused: the spindle is at work for '{owner}', '{other}' must wait until that is "
+        "done; nothing was changed"
+    )
+
+
+def acknowledged(bench: UnitBench) -> list[tuple[int, int]]:
+    """Taken and acknowledged commands of the PLC, each change once."""
+    pairs = [(block.plc_commands, block.plc_acknowledged) for block in bench.blocks]
+    return [pair for pair, before in zip(pairs, [None, *pairs], strict=False) if pair != before]
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        ("start", {"direction": "cw", "speed_rpm": 2000.0}),
+        ("set_speed", {"speed_rpm": 2000.0}),
+        ("stop", {}),
+        ("orient", {"position_deg": 0.0}),
+        ("home", {}),
+        ("select_gear", {"stage": 1}),
+    ],
+)
+def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
+    """The first one has the spindle until its speed is reached; then anybody may have it."""
+    bench, undisturbed = spindle_bench(), spindle_bench()
+    for each in (bench, undisturbed):
+        each.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    text = at_work(command, "one", "two")
+    assert bench.refused(command, **arguments, source="two") == text
+    for each in (bench, undisturbed):
+        each.run(100)
+    assert bench.columns() == undisturbed.columns()
+    assert bench.blocks[0].refused == [f"two: {text}"] and bench.blocks[1].refused == []
+    assert bench.last.source == "one"
+    bench.run(200)
+    assert bench.column("speed_reached")[-1] and bench.last.source == ""
+    bench.accepted(command, **arguments, source="two")
+
+
+def test_the_same_channel_and_people_may_change_what_is_in_work() -> None:
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    bench.accepted("start", direction="cw", speed_rpm=1500.0, source="one")
+    bench.run(50)
+    bench.accepted("stop")
+    bench.run(100)
+    assert bench.state == S.STANDSTILL and bench.last.source == ""
+
+
+def test_a_channel_has_the_spindle_until_m19_is_done() -> None:
+    bench = spindle_bench()
+    bench.accepted("orient", position_deg=90.0, source="one")
+    bench.run(100)
+    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    bench.run(200)
+    assert bench.column("in_position")[-1]
+    bench.accepted("start", direction="cw", speed_rpm=5.0, source="two")
+
+
+def test_an_error_frees_the_spindle() -> None:
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    bench.run(50)
+    bench.accepted("upstream_lost", source="clock")
+    bench.run(100)
+    assert bench.last.source == ""
+    bench.accepted("reset")
+    bench.accepted("start", direction="cw", speed_rpm=100.0, source="two")
+
+
+def test_the_plc_is_served_in_order_of_arrival() -> None:
+    """Page 11: sequentially, and acknowledged when speed and position are there."""
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="plc")
+    waits = "waits until what is in work is done"
+    assert bench.accepted("orient", position_deg=90.0, source="plc") == f"spindle s: orient {waits}"
+    assert bench.accepted("start", direction="ccw", speed_rpm=500.0, source="plc") == f"spindle s: start {waits}"
+    bench.run(1200)
+    assert acknowledged(bench) == [(3, 0), (3, 1), (3, 2), (3, 3)]
+    states = bench.column("state")
+    reached = first_cycle(bench, "speed_reached", bool, 5)
+    positioned = first_cycle(bench, "in_position", bool)
+    assert states.index(S.DISCRETE_MOTION) == 10 * (reached // 10 + 1)  # with the next block
+    assert states.index(S.CONTINUOUS_MOTION, positioned) == 10 * (positioned // 10 + 1)
+    assert bench.column("set_speed_rpm")[-1] == -500.0
+
+
+def test_a_stop_of_the_plc_does_not_wait_and_acknowledges_all() -> None:
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="plc")
+    bench.accepted("orient", position_deg=90.0, source="plc")
+    bench.run(50)
+    bench.accepted("stop", source="plc")
+    bench.run(200)
+    assert bench.state == S.STANDSTILL and acknowledged(bench)[-1] == (3, 3)
+
+
+def test_a_reset_forgets_what_waits() -> None:
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="plc")
+    bench.accepted("orient", position_deg=90.0, source="plc")
+    bench.run(50)
+    bench.accepted("reset")
+    bench.run(200)
+    assert bench.state == S.STANDSTILL and acknowledged(bench)[-1] == (2, 2)
+
+
+def test_a_command_of_the_plc_that_is_refused_in_its_turn() -> None:
+    bench = spindle_bench(feedback="SPEED", open_loop=True, referenced_at_start=False)
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="plc")
+    bench.accepted("orient", position_deg=90.0, source="plc")
+    bench.run(400)
+    text = (
+        "the spindle has no actual position (P-AXIS-00320, P-SIM-00050) and cannot be positioned; nothing was changed"
+    )
+    assert bench.event_texts() == [f"P-ERR-70252 spindle s: orient refused: {text}"]
+    assert acknowledged(bench)[-1] == (2, 2) and bench.column("set_speed_rpm")[-1] == 1000.0
+    refused = [entry for block in bench.blocks for entry in block.refused]
+    assert refused == [f"plc: P-ERR-70252 spindle s: orient refused: {text}"]

@@ -1,3 +1,0 @@
-; P-ERR-21038 bracket_word_unknown.nc line 2 column 7 'N10 S[POS90]': 'POS90' is not available in the brackets of spindle S; known are: M3, M4, M5, REV, G135, G136, G137
-N10 S[POS90]
-M30

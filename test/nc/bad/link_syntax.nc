@@ -1,0 +1,4 @@
+; P-ERR-21076 link_syntax.nc line 3 column 5 'N10 #SET AX LINK[1]': #SET AX LINK is written #SET AX LINK [group, slave=master, ...]
+; machine X / three
+N10 #SET AX LINK[1]
+M30
