@@ -81,6 +81,10 @@ class ControlLoop:
         position = self.drive.position
         return position + self._modulo.correction(position) if self._modulo.on else position
 
+    def select_feedforward(self, on: bool, weight_percent: float) -> None:
+        """G135 or G137 with the weight of G136."""
+        self.feedforward.select(on, weight_percent)
+
     def monitored(self, setpoint: State) -> tuple[float, float]:
         """Following error and set velocity that the position controller has at `setpoint`, behind the delay line."""
         behind, history = self.delay_cycles, self._history

@@ -136,6 +136,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER},
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {},
+        "set_feedforward": FEEDFORWARD,
+        "reset_feedforward": {},
         "reset": {},
         "upstream_lost": SOURCE,
     },

@@ -23,7 +23,8 @@ def control_commands(channel: ChannelParameters, function: ControlFunction) -> l
 
 def reset_commands(channel: ChannelParameters) -> list[Command]:
     """Program start: feedforward off and weights 100 % (TF5200 feedforward 3)."""
-    return [Command(axis.node, "reset_feedforward", {}) for axis in channel.axes]
+    nodes = [axis.node for axis in channel.axes] + [spindle.node for spindle in channel.spindles if spindle.node]
+    return [Command(node, "reset_feedforward", {}) for node in nodes]
 
 
 def _axis_feedforward(channel: ChannelParameters, function: AxisFeedforward) -> list[Command]:

@@ -60,7 +60,7 @@ class SpindleCycles:
         reached = self._speed_reached(actual_speed)
         self._watch_speed(cycle, reached)
         target = position if spindle.target is None else spindle.target
-        loop.command(following_error, speed, on=spindle.state != S.DISABLED)
+        loop.command(following_error, speed, acceleration, on=spindle.state != S.DISABLED)
         self._orders.watch()
         self._note_settled(cycle)
         return (
@@ -183,7 +183,7 @@ class SpindleCycles:
             positions.append(position)
             actuals.append(actual)
             errors.append(error)
-            loop.command(error, speed, on=on)
+            loop.command(error, speed, 0.0, on=on)
             outputs.append(loop.drive_output)
         n = len(positions)
         target = spindle.target

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.control.commands import FeedforwardCommands
 from cnc_ptp.control.drives import Drive, FirstOrderDrive
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
@@ -64,6 +65,7 @@ class SpindleUnit(Unit):
             PositionCommands(self.spindle),
             self._power,
             self._coupling,
+            FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
         self._cycles = SpindleCycles(self.spindle, self._orders, self._rotation)
         self._passed_on: list[Command] = []

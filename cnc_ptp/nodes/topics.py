@@ -14,7 +14,7 @@ BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 REMEMBERED_BLOCKS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
 )
-"""Blocks of axes and spindles: one that is coupled to another finds the blocks of the tick in which that was commanded."""
+"""Blocks of axes and spindles: one that is coupled to another finds those of the tick in which that was commanded."""
 
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
@@ -85,6 +85,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "couple": srv.CoupleSpindle,
         "decouple": srv.Execute,
         "reset": srv.Execute,
+        "set_feedforward": srv.SetFeedforward,
     },
     "channel": {
         "load": srv.LoadProgram,

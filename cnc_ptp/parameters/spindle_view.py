@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cnc_ptp.parameters.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
@@ -92,6 +93,8 @@ class GearParameters:
     """The drive turns the other way round."""
     output_gain: float
     """Digits of the drive output at 1 °/s, position-controlled."""
+    control: ControlParameters
+    """Feedforward and simulated drive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +150,8 @@ class SpindleParameters:
         return self.feedback == "POSITION"
 
 
-def spindle_view(parameters: ParameterSet) -> SpindleParameters:
+def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParameters:
+    """`cycle_time` in s."""
     mode = int(parameters.number("P-AXIS-00015"))
     stage = int(parameters.number("P-AXIS-00079"))
     stages = sorted({stage, *(index + 1 for index in parameters.used_indexes("getriebe"))})
@@ -169,7 +173,7 @@ def spindle_view(parameters: ParameterSet) -> SpindleParameters:
         velocity_control_on=parameters.kernel("P-AXIS-00265"),
         velocity_control_off=parameters.kernel("P-AXIS-00266"),
         gear=stage,
-        gears={stage: gear_view(parameters, stage - 1) for stage in stages},
+        gears={stage: gear_view(parameters, stage - 1, cycle_time) for stage in stages},
         stops_at_reset=not parameters.number("P-AXIS-00455"),
         target_time=parameters.number("P-MACH-00014") / 1000.0,
         speed_time=parameters.number("P-MACH-00050") / 1000.0,
@@ -183,8 +187,8 @@ def spindle_view(parameters: ParameterSet) -> SpindleParameters:
     )
 
 
-def gear_view(parameters: ParameterSet, gear: int) -> GearParameters:
-    """The record getriebe[gear]."""
+def gear_view(parameters: ParameterSet, gear: int, cycle_time: float) -> GearParameters:
+    """The record getriebe[gear]; `cycle_time` in s."""
     return GearParameters(
         stage=gear + 1,
         kv=parameters.kernel("P-AXIS-00099", gear),
@@ -211,6 +215,7 @@ def gear_view(parameters: ParameterSet, gear: int) -> GearParameters:
         output_gain=parameters.number("P-AXIS-00129", gear)
         / parameters.number("P-AXIS-00128", gear)
         * DIGITS_PER_DEG_S,
+        control=control_view(parameters, gear, cycle_time),
     )
 
 

@@ -102,7 +102,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         handshake_timeout_ms=int(machine.number("P-MACH-00060")),
         channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
         axes={unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]},
-        spindles={unit.node: spindle_view(unit) for unit in of_kind["spindle"]},
+        spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
         warnings=tuple(notices.machine_warnings(sets, cycle_time)),
         sets={"machine": machine, **sets},
     )

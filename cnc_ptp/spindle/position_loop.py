@@ -7,8 +7,15 @@ is speed / Kv. Units: °, °/s.
 
 from __future__ import annotations
 
+from collections import deque
+from math import inf
+
 from cnc_ptp.control.drives import Drive
+from cnc_ptp.control.feedforward import CouplingLimits, Feedforward, State
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+
+HISTORY = 16
+"""Setpoints that feedforward may look back at."""
 
 
 class PositionLoop:
@@ -26,6 +33,8 @@ class PositionLoop:
         self.velocity_control = False
         self.drive_output = 0
         self._last_position: float | None = None
+        self._feedforward_on, self._weight_percent = False, 100.0
+        self._history: deque[State] = deque(maxlen=HISTORY)
         self.use_gear(gear)
 
     def use_gear(self, gear: GearParameters) -> None:
@@ -34,6 +43,26 @@ class PositionLoop:
         self._sign = -1.0 if gear.reversed else 1.0
         self._kv = gear.kv
         self._zero = gear.zero_speed
+        self.feedforward = self._make_feedforward(gear)
+
+    def _make_feedforward(self, gear: GearParameters) -> Feedforward:
+        """That of a gear, with what was selected; there is no delay line, so no lead either (P-AXIS-00165)."""
+        parameters = gear.control.feedforward
+        feedforward = Feedforward(
+            parameters,
+            cycle_time=self._cycle_time,
+            kv=gear.kv,
+            torque_per_acceleration=gear.control.scaling.torque_per_acceleration,
+            limits=CouplingLimits(gear.max_speed, gear.max_acceleration, inf),
+            delay_cycles=parameters.lead_cycles,
+        )
+        feedforward.select(self._feedforward_on, self._weight_percent)
+        return feedforward
+
+    def select_feedforward(self, on: bool, weight_percent: float) -> None:
+        """G135 or G137 with the weight of G136; it holds in all gears."""
+        self._feedforward_on, self._weight_percent = on, weight_percent
+        self.feedforward.select(on, weight_percent)
 
     def count_from(self, position: float) -> None:
         """The encoder stands at `position`, whatever it shows."""
@@ -121,18 +150,37 @@ class PositionLoop:
             return 0.0 if last is None else (self._last_position - last) / self._cycle_time
         return self._sign * self.drive.velocity
 
-    def command(self, following_error: float, set_speed: float, *, on: bool) -> float:
+    def command(self, following_error: float, set_speed: float, acceleration: float, *, on: bool) -> float:
         """Moves the drive for one cycle; returns the commanded speed. `on` is False without power."""
+        feedforward = self.feedforward
         if not on:
             command = 0.0
         elif self.closed:
             command = self._kv * following_error
+            if feedforward.active:
+                self._feed_forward(command, set_speed, acceleration)
+                command += feedforward.velocity
         else:
             command = set_speed
+        if not (on and self.closed):
+            self._history.clear()
+            feedforward.forget()
         if self._parameters.open_loop and self._increments:
             self.drive_output = round(command * self._increments * self._sign)
             self.drive.step(self.drive_output / self._increments)
         else:
             self.drive_output = round(command * self._gear.output_gain * self._sign)
-            self.drive.step(self._sign * command)
+            self._step(command)
         return command
+
+    def _step(self, command: float) -> None:
+        sign, feedforward = self._sign, self.feedforward
+        self.drive.step(sign * command, sign * feedforward.additive_velocity, sign * feedforward.additive_torque)
+
+    def _feed_forward(self, feedback: float, speed: float, acceleration: float) -> None:
+        setpoint = (0.0, speed, acceleration, 0.0)
+        if self._history:
+            self._history.appendleft(setpoint)
+        else:
+            self._history.extend([setpoint] * HISTORY)
+        self.feedforward.update(self._history, feedback)

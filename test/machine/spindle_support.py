@@ -58,6 +58,6 @@ class StuckDrive(FirstOrderDrive):
         self.limit = limit
         super().__init__(cycle_time=CYCLE_TIME, time_constant=0.0, encoder_increment=0.0)
 
-    def step(self, command_velocity: float) -> None:
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         bounded = max(-self.limit, min(self.limit, command_velocity))
         super().step(0.0 if self.stuck else bounded)

@@ -237,7 +237,7 @@ def test_reset_between_m05_and_its_output_still_stops_the_spindle() -> None:
     probe = running(program, 2.0)
     stop = next(r.cycle for r in probe.records if r.target == "s" and r.command == "stop")
     bench = running(program, stop / 1000.0)
-    assert [r.command for r in bench.records if r.target == "s"] == ["start"]
+    assert [r.command for r in bench.records if r.target == "s"] == ["reset_feedforward", "start"]
     bench.give("channel", "reset")
     bench.run(0.5)
     assert bench.last("s").set_speed_rpm[-1] == 0.0

@@ -12,7 +12,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.parameters import ChannelSpindle, MachineParameters, Synchronisation
 
-RESETS = [("x", "reset_feedforward", {}), ("y", "reset_feedforward", {}), ("z", "reset_feedforward", {})]
+RESETS = [(unit, "reset_feedforward", {}) for unit in ("x", "y", "z", "s")]
 Sent = tuple[str, str, dict[str, object]]
 
 

@@ -50,8 +50,12 @@ def last_motion(bench: MachineBench) -> int:
 
 
 def commands(bench: MachineBench, unit: str = "s") -> list[tuple[int, str, str]]:
-    """Cycle, command and arguments of what the unit was told; motion commands come from the channel."""
-    told = [(r.cycle, r.command, json.loads(r.arguments_json)) for r in bench.records if r.target == unit]
+    """Cycle, command and arguments of what the unit was told; motion commands come from the channel.
+
+    Without the reset of feedforward at the program start.
+    """
+    of_unit = [r for r in bench.records if r.target == unit and r.command != "reset_feedforward"]
+    told = [(r.cycle, r.command, json.loads(r.arguments_json)) for r in of_unit]
     assert all(arguments.pop("source", "channel") == "channel" for _, _, arguments in told)
     return [(cycle, command, json.dumps(arguments, sort_keys=True)) for cycle, command, arguments in told]
 

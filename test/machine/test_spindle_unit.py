@@ -279,7 +279,8 @@ def test_a_speed_alone_keeps_the_direction_and_starts_nothing() -> None:
 def test_unknown_command() -> None:
     assert spindle_bench().refused("turn") == (
         "P-ERR-22002 spindle s: unknown command 'turn'; nothing was changed. Known: couple, decouple, gear_changed, home, "
-        "orient, power, reset, reset_limits, select_gear, set_limits, set_override, set_speed, start, stop, "
+        "orient, power, reset, reset_feedforward, reset_limits, select_gear, set_feedforward, set_limits, "
+        "set_override, set_speed, start, stop, "
         "stop_at_program_end, suppress_override"
     )
 

@@ -1,0 +1,75 @@
+"""Feedforward of spindles: what it leaves of the following error, in all gears, and its commands."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from machine_support import CYCLE_TIME, UnitBench
+
+from cnc_ptp.machine.spindle_unit import SpindleUnit
+from cnc_ptp.parameters import load_machine
+
+KV, TIME_CONSTANT, ACCELERATION = 50.0, 0.003, 18_000.0
+
+
+def bench(vorsteuer: str = "vorsteuerung: VEL | ACC, vs_a_faktor: 3000") -> UnitBench:
+    """A spindle with a first-order drive of 3 ms and an ideal encoder that is under control at all speeds."""
+    gear = (
+        "{kv: 5000, vb_regelgrenze: 0, dynamik: {vb_max: 36000000, a_max: 36000}, "
+        "slope_profil: {a_beschl: 18000, a_brems: 18000}}"
+    )
+    machine = load_machine(
+        "/machine: {ros__parameters: {spindles: [s]}}\n"
+        f"/s: {{ros__parameters: {{vorsteuer: {{{vorsteuer}}}, getriebe: {{'0': {gear}}}, "
+        "simulation: {drive_time_constant: 3000, encoder: 0}}}\n",
+        "m.yaml",
+    )
+    return UnitBench(SpindleUnit(machine.spindles["s"], cycle_time=CYCLE_TIME))
+
+
+def turn(bench: UnitBench) -> list[Any]:
+    """600 rpm in 0.2 s, then 0.8 s of constant speed; the following error of each cycle, deg."""
+    bench.accepted("start", direction="cw", speed_rpm=600.0)
+    bench.run(1000)
+    return bench.column("following_error_deg")
+
+
+def test_lags_are_the_closed_forms_without_it() -> None:
+    errors = turn(bench())
+    assert errors[-1] == pytest.approx(3600.0 / KV, abs=1e-9)
+
+
+def test_velocity_feedforward_leaves_the_lag_of_the_acceleration() -> None:
+    spindle = bench("vorsteuerung: VEL")
+    assert spindle.accepted("set_feedforward", on=True) == ""
+    errors = turn(spindle)
+    assert errors[190] == pytest.approx(ACCELERATION * TIME_CONSTANT / KV, rel=1e-3)
+    assert errors[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_velocity_and_acceleration_feedforward_leave_nothing_while_the_acceleration_is_constant() -> None:
+    spindle = bench()
+    spindle.accepted("set_feedforward", on=True)
+    errors = turn(spindle)
+    assert abs(errors[190]) < 1e-4 and abs(errors[-1]) < 1e-9
+    assert max(map(abs, errors)) < 0.3
+
+
+def test_weight_and_reset() -> None:
+    spindle = bench("vorsteuerung: VEL")
+    spindle.accepted("set_feedforward", on=True, weight_percent=75.0)
+    assert turn(spindle)[-1] == pytest.approx(0.25 * 3600.0 / KV, abs=1e-9)
+    spindle.accepted("reset_feedforward")
+    spindle.run(1000)
+    assert spindle.column("following_error_deg")[-1] == pytest.approx(3600.0 / KV, abs=1e-9)
+
+
+def test_refusal_and_warning() -> None:
+    assert bench().refused("set_feedforward", weight_percent=101.0) == (
+        "P-ERR-23060 spindle s: set_feedforward refused: weight_percent = 101.0 is not within 0 ... 100 (G136); "
+        "nothing was changed"
+    )
+    assert bench("vorsteuerung: NONE").accepted("set_feedforward", on=True) == (
+        "spindle s: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
+    )
