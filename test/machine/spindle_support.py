@@ -59,5 +59,5 @@ class StuckDrive(FirstOrderDrive):
         super().__init__(cycle_time=CYCLE_TIME, time_constant=0.0, encoder_increment=0.0)
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
-        bounded = max(-self.limit, min(self.limit, command_velocity))
+        bounded = max(-self.limit, min(self.limit, command))
         super().step(0.0 if self.stuck else bounded)
