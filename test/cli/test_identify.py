@@ -70,9 +70,13 @@ def test_what_is_printed_says_what_was_measured(friction_run):
     ]
     assert [float(line.split()[0]) for line in lines[1:6]] == [0.2, 1.5, 4.0, 50.0, 400.0]
     for line in lines[1:6]:
-        _, forth, back, friction, scatter, load, seconds = map(float, line.split())
+        speed, forth, back, friction, scatter, load, seconds = map(float, line.split())
         assert friction == pytest.approx((forth - back) / 2, abs=1e-4)
-        assert abs(load) < 0.01 and scatter < 0.01 and seconds == 1.0
+        assert (
+            abs(load) < 0.01
+            and scatter < 0.01
+            and seconds == pytest.approx(2 * min(0.5, max(0.1, 50 / speed)), abs=0.01)
+        )
     assert lines[-1] == f"{table}: to be pasted into the machine file"
     assert table.read_text().startswith(f"# Friction of axis x, from 5 speeds forth and back in a run of {MILL}.\n")
 
@@ -273,7 +277,6 @@ def test_a_run_that_fails_is_status_1_and_tells_why(tmp_path):
         result = call("identify", kind, "x", "--machine", weak)
         assert result.exit_code == 1
         assert "error: P-ERR-17744 axis x: following error" in result.stderr
-        assert "refused: P-ERR-23005 axis x: move_relative refused" in result.stderr
         assert result.stdout == ""
 
 
