@@ -260,11 +260,12 @@ class Coupling:
         if self._last_command is None:
             return
         missing, t = self.target - self.factor, self._cycle_time
-        rate = self._smooth_rate(missing, self._limits.jerk * t / size)
+        quantum = self._limits.jerk * t / size
+        rate = self._smooth_rate(missing, quantum)
         drift = (feedback + self.factor * velocity - self._last_command) / t
         most = self._room(rate * velocity, rate * torque_velocity, drift, setpoint) / size
         rate = max(-most, min(most, rate))
-        if rate * t / missing >= 1.0 - ROUNDING:
+        if rate * t / missing >= 1.0 - ROUNDING and abs(rate) <= 2.0 * quantum:
             self.settle()
             return
         self._rate = rate
@@ -285,7 +286,7 @@ class Coupling:
         A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
         the axis' limit in room/J, by when e^(-Kv·room/J) is left of the change.
         """
-        limit, velocity = self._limits.acceleration, setpoint[1]
+        limit, velocity, command = self._limits.acceleration, setpoint[1], self._last_command or 0.0
         room = max(0.0, limit - abs(setpoint[2]))
         decays = room * self._reserve
         if self._reserve > 0.0 and decays < DECAYED:
@@ -295,5 +296,5 @@ class Coupling:
         if by_velocity < 0.0 or by_torque < 0.0:
             room = min(room, limit + drift)
         if by_velocity * velocity > 0.0 or by_torque * velocity > 0.0:
-            room = min(room, self._kv * (self._limits.velocity - abs(velocity)))
+            room = min(room, self._kv * (self._limits.velocity - max(abs(velocity), abs(command))))
         return max(0.0, room)
