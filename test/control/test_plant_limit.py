@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 import pytest
-from plant_support import T, Point, friction_torque, frictionless, plant
+from plant_support import Point, T, friction_torque, frictionless, plant
 
 from cnc_ptp.control.drives import CascadedDrive
 from cnc_ptp.parameters.control_view import PlantParameters

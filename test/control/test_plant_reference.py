@@ -6,7 +6,7 @@ import math
 import random
 
 import pytest
-from plant_support import T, Point, Reference, frictionless, plant
+from plant_support import Point, Reference, T, frictionless, plant
 
 from cnc_ptp.control.drives import CascadedDrive
 from cnc_ptp.parameters.control_view import PlantParameters

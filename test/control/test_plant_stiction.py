@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 from dataclasses import replace
@@ -44,7 +45,7 @@ def test_creeping_is_stick_slip_with_the_commanded_speed_in_the_mean() -> None:
     for _ in range(20_000):
         drive.step(0.05)
         speeds.append(drive.velocity)
-    starts = sum(1 for before, now in zip(speeds, speeds[1:], strict=False) if before == 0.0 < now)
+    starts = sum(1 for before, now in itertools.pairwise(speeds) if before == 0.0 < now)
     assert speeds.count(0.0) > 2000
     assert starts > 5
     assert min(speeds) >= 0.0
