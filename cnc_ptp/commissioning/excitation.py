@@ -36,6 +36,8 @@ class Room:
     deceleration: float
     jerk: float
     encoder_increment: float = 0.0
+    limited_by: str = "P-AXIS-00212"
+    """What the highest velocity comes from."""
 
     @property
     def travel(self) -> float:
@@ -122,7 +124,7 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: Seconds) -> list[f
                 BAD_VELOCITIES,
                 room.axis,
                 f"the velocity {speed:g} {room.unit}/s is not above 0 and up to {room.max_velocity:g} {room.unit}/s "
-                "(P-AXIS-00212); nothing was started",
+                f"({room.limited_by}); nothing was started",
             )
         needed, usable = way(room, speed, steady(speed)), room.travel * (1.0 - 2.0 * EDGE)
         if needed > usable:

@@ -180,11 +180,11 @@ def test_a_gain_near_the_limit_is_warned_about(tmp_path):
     [
         (
             ["q", "--machine", MILL],
-            f"P-ERR-27001 axis q is not in the machine {MILL}; nothing was started. Axes: x, y, z",
+            f"P-ERR-27001 q is no axis of the machine {MILL}; nothing was started. Axes: x, y, z",
         ),
         (
             ["s", "--machine", MILL],
-            f"P-ERR-27001 axis s is a spindle, not an axis {MILL}; nothing was started. Axes: x, y, z",
+            f"P-ERR-27001 s is a spindle of the machine {MILL}; nothing was started. Axes: x, y, z",
         ),
         (
             ["x", "--machine", "nowhere.yaml"],
@@ -267,6 +267,16 @@ def test_axes_without_friction_have_no_table():
 def test_speeds_that_cannot_be_driven():
     result = call("identify", "friction", "x", "--machine", MILL, "--velocity", 501)
     text = "P-ERR-27011 axis x: the velocity 501 mm/s is not above 0 and up to 500 mm/s (P-AXIS-00212); nothing was started\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+
+
+def test_a_trial_is_no_faster_than_the_following_error_allows(tmp_path):
+    strict = changed_mill(tmp_path / "strict.yaml", "x", getriebe={"0": {"slep_max": 20000}})
+    result = call("identify", "friction", "x", "--machine", strict, "--velocity", 80)
+    text = (
+        "P-ERR-27011 axis x: the velocity 80 mm/s is not above 0 and up to 75 mm/s (there the lag is 75 % of P-AXIS-00168); "
+        "nothing was started\n"
+    )
     assert (result.exit_code, result.stderr) == (2, text)
 
 
