@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cnc_ptp.commissioning.friction import FrictionPoint, friction_curve
+from cnc_ptp.commissioning.timing import always
 from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters.control_view import PlantParameters
@@ -59,7 +60,7 @@ def measured(figure: FigureScenario, run: FigureRun, axis: str) -> tuple[Frictio
     """What the analysis of commissioning finds in the run."""
     rows = {**run.columns[axis], "cycle": np.arange(run.cycles)}
     try:
-        return friction_curve(AxisTrace.of_rows(axis, run.cycle_time, rows), settling=SETTLING).points
+        return friction_curve(AxisTrace.of_rows(axis, run.cycle_time, rows), settling=always(SETTLING)).points
     except CncError as error:
         raise FigureError(figure.path, error) from None
 

@@ -71,9 +71,12 @@ class AxisData:
     def room(self) -> Room:
         """Where and how fast the axis may be moved for a trial: the lag v/Kv stays well below what is monitored."""
         axis, monitoring = self.axis, self.axis.control.monitoring
-        velocity = min(axis.max_velocity, axis.reference_velocity)
-        if monitoring.kind in MONITORED:
-            velocity = min(velocity, LARGEST_LAG * monitoring.moving_limit * self.kv)
+        velocity, limited_by = axis.max_velocity, "P-AXIS-00212"
+        if axis.reference_velocity < velocity:
+            velocity, limited_by = axis.reference_velocity, "P-MACH-00008"
+        bearable = LARGEST_LAG * monitoring.moving_limit * self.kv
+        if monitoring.kind in MONITORED and bearable < velocity:
+            velocity, limited_by = bearable, f"there the lag is {100.0 * LARGEST_LAG:g} % of P-AXIS-00168"
         return Room(
             axis.name,
             self.unit,
@@ -85,6 +88,7 @@ class AxisData:
             axis.deceleration,
             axis.jerk,
             axis.control.plant.encoder_increment,
+            limited_by,
         )
 
 
@@ -102,9 +106,9 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
         raise CncError(NO_MACHINE, f"recording {recording} holds no machine file; nothing was made, give --machine")
     parameters = load_machine(text, file)
     if axis not in parameters.axes:
-        kind = "is a spindle, not an axis" if axis in parameters.spindles else "is not in the machine"
+        kind = "a spindle" if axis in parameters.spindles else "no axis"
         known = ", ".join(parameters.axes)
-        raise CncError(UNKNOWN_AXIS, f"axis {axis} {kind} {file}; nothing was started. Axes: {known}")
+        raise CncError(UNKNOWN_AXIS, f"{axis} is {kind} of the machine {file}; nothing was started. Axes: {known}")
     return AxisData(parameters, text, parameters.axes[axis], recorded)
 
 

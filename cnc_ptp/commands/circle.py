@@ -75,17 +75,26 @@ def circle(
         )
         for variant in chosen
     ]
-    for program in programs:
-        check_program(parameters, program.text, FILE)
-    results = []
-    for variant, program in zip(chosen, programs, strict=True):
-        result = run_variant(parameters, place, program, variant, feed)
-        if result is None:
-            return RUN_FAILED
-        results.append(result)
-    test = CircleTest(found.axes, place.centre, radius, feed, tuple(results))
-    show(test, outputs, magnification)
+    results = run_variants(parameters, place, list(zip(chosen, programs, strict=True)), feed)
+    if results is None:
+        return RUN_FAILED
+    show(CircleTest(found.axes, place.centre, radius, feed, results), outputs, magnification)
     return 0
+
+
+def run_variants(
+    machine: MachineParameters, place: Place, runs: Sequence[tuple[Variant, CircleProgram]], feed: float
+) -> tuple[VariantResult, ...] | None:
+    """The results of all runs, None when one failed. Raises ProgramError before the first of them."""
+    for _, program in runs:
+        check_program(machine, program.text, FILE)
+    results = []
+    for variant, program in runs:
+        result = run_variant(machine, place, program, variant, feed)
+        if result is None:
+            return None
+        results.append(result)
+    return tuple(results)
 
 
 def check_numbers(*, radius: float, feed: float, magnification: float | None) -> None:

@@ -30,8 +30,9 @@ def curve_lines(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
     heads = (f"v {way}/s", *efforts, "time s")
     yield "".join(f"{head:>13}" for head in heads)
     for point in curve.points:
-        values = (point.positive, point.negative, point.friction, point.scatter, point.load)
-        yield f"{point.speed:13.4g}" + "".join(f"{value:13.4f}" for value in values) + f"{point.seconds:13.2f}"
+        torques = "".join(f"{value:13.4f}" for value in (point.positive, point.negative, point.friction))
+        load = round(point.load, 4) + 0.0  # no -0.0000
+        yield f"{point.speed:13.4g}{torques}{point.scatter:13.1e}{load:13.4f}{point.seconds:13.2f}"
     yield from _remarks(data, curve)
 
 

@@ -19,17 +19,14 @@ from cnc_ptp.commissioning.friction import friction_curve
 from cnc_ptp.commissioning.friction_table import friction_table
 from cnc_ptp.commissioning.gain import propose_gain
 from cnc_ptp.commissioning.inertia import fit_inertia
+from cnc_ptp.commissioning.timing import Timing, always
 from cnc_ptp.commissioning.trace import AxisTrace
 
-SETTLING_LAGS = 10.0
-"""Time constants 1/Kv of the position loop that a motion settles …"""
-SETTLING_LEAST = 0.2
-"""… and seconds more, in which the drive overcomes the friction."""
-MEASURED = 0.5
-"""Seconds at constant velocity that are measured."""
+REST = 0.4
+"""Seconds of rest before each motion."""
 DYNAMIC_SPEEDS = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Parts of the highest velocity: ramps of different length."""
-DYNAMIC_STEADY = 0.05
+DYNAMIC_STEADY = always(0.05)
 OWN_POSITION_LOOP = {
     "none": "is virtual, there is no drive to identify (P-AXIS-00020)",
     "position": "its drive closes the position loop itself and is commanded positions (P-AXIS-00020)",
@@ -48,24 +45,24 @@ def identify_friction(
     """Writes the friction table. Status 1 when the run failed."""
     data = open_axis(axis, machine, recording)
     check_files(output, record, machine, recording)
-    settling = SETTLING_LAGS / data.kv + SETTLING_LEAST
-    steady = settling + MEASURED
+    timing = Timing(data.kv)
     if data.recorded is not None:
         trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
     else:
-        speeds = check_speeds(data.room, velocities, steady) if velocities else speed_ladder(data.room, steady)
-        motions = forth_and_back(data.room, speeds, steady=steady, settling=settling)
+        room, steady = data.room, timing.steady
+        speeds = check_speeds(room, velocities, steady) if velocities else speed_ladder(room, steady)
+        motions = forth_and_back(room, speeds, steady=steady, rest=REST)
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
         trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
-    curve = friction_curve(trace, settling=settling)
+    curve = friction_curve(trace, settling=timing.settling)
     table = friction_table(curve, scaling_of(data), max_points=max_points(data))
     console = Console(highlight=False, soft_wrap=True)
     for line in curve_lines(data, curve):
         console.print(line, markup=False)
     if data.recorded is not None:
-        for line in coverage_lines(data, [point.speed for point in curve.points], steady, settling):
+        for line in coverage_lines(data, [point.speed for point in curve.points], timing):
             console.print(line, markup=False)
     if table.dropped:
         kept = f"{len(table.entries)} of {len(curve.points)} points"
@@ -88,7 +85,7 @@ def identify_dynamics(
         speed_ladder(room, DYNAMIC_STEADY)  # there must be room to move
         highest = highest_velocity(room, DYNAMIC_STEADY)
         speeds = [part * highest for part in DYNAMIC_SPEEDS]
-        motions = forth_and_back(room, speeds, steady=DYNAMIC_STEADY, settling=SETTLING_LEAST)
+        motions = forth_and_back(room, speeds, steady=DYNAMIC_STEADY, rest=0.5 * REST)
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
@@ -124,15 +121,15 @@ def driven_trace(data: AxisData, motions: Sequence[Motion], record: str | None) 
     return trace
 
 
-def coverage_lines(data: AxisData, found: Sequence[float], steady: float, settling: float) -> Iterator[str]:
+def coverage_lines(data: AxisData, found: Sequence[float], timing: Timing) -> Iterator[str]:
     """Which speeds a recording lacks, with a scenario that drives them."""
-    missing = missing_speeds(speed_ladder(data.room, steady), found)
+    missing = missing_speeds(speed_ladder(data.room, timing.steady), found)
     if not missing:
         yield "the speeds of the recording cover the axis"
         return
     shown = ", ".join(f"{speed:g}" for speed in missing)
     yield f"missing speeds: {shown} {data.unit}/s; this scenario drives them:"
-    yield from scenario_lines(data.room, forth_and_back(data.room, missing, steady=steady, settling=settling))
+    yield from scenario_lines(data.room, forth_and_back(data.room, missing, steady=timing.steady, rest=REST))
 
 
 def deliver(console: Console, output: str | None, text: str) -> None:

@@ -60,7 +60,7 @@ def run_trial(
     record: str | None = None,
     machine_text: str = "",
 ) -> Trial:
-    """Runs `job` offline until all is done; keeps the `fields` of each unit.
+    """Runs `job` offline until all is done, or until something has gone wrong; keeps the `fields` of each unit.
 
     `seconds` the run is expected to last and `label` are for the progress bar; `record` is an MCAP file to write, for
     which `machine_text` is needed. Raises CncError 26007 to 26009 where it cannot be written.
@@ -78,7 +78,8 @@ def run_trial(
             progress.show(outputs)
             if recording is not None:
                 write(recording, outputs)
-            if end.given and interrupted(offline, outputs, trial.result, end):
+            stopped = end.given and interrupted(offline, outputs, trial.result, end)
+            if stopped or trial.result.errors or trial.refusals:
                 break
     trial.columns = {
         unit: {name: np.array(values, dtype=np.float64) for name, values in columns.items()}

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cnc_ptp.commissioning.faults import BAD_VELOCITIES, NO_ROOM, refusal
+from cnc_ptp.commissioning.timing import Seconds
 
 EDGE = 0.01
 """Part of the travel that stays free at either end."""
@@ -35,6 +36,8 @@ class Room:
     deceleration: float
     jerk: float
     encoder_increment: float = 0.0
+    limited_by: str = "P-AXIS-00212"
+    """What the highest velocity comes from."""
 
     @property
     def travel(self) -> float:
@@ -83,19 +86,19 @@ def way(room: Room, velocity: float, steady: float) -> float:
     return velocity * (0.5 * sum(ramp_times(room, velocity)) + steady_time(room, velocity, steady))
 
 
-def highest_velocity(room: Room, steady: float) -> float:
-    """The highest velocity at which the axis has room for `steady` seconds; mm/s (deg/s)."""
+def highest_velocity(room: Room, steady: Seconds) -> float:
+    """The highest velocity at which the axis has room for its `steady` seconds; mm/s (deg/s)."""
     usable = room.travel * (1.0 - 2.0 * EDGE)
-    if way(room, room.max_velocity, steady) <= usable:
+    if way(room, room.max_velocity, steady(room.max_velocity)) <= usable:
         return room.max_velocity
     low, high = 0.0, room.max_velocity
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if way(room, middle, steady) <= usable else (low, middle)
+        low, high = (middle, high) if way(room, middle, steady(middle)) <= usable else (low, middle)
     return low
 
 
-def speed_ladder(room: Room, steady: float) -> list[float]:
+def speed_ladder(room: Room, steady: Seconds) -> list[float]:
     """Speeds from slow to as fast as there is room for, evenly spaced in their logarithm, with three digits.
 
     Raises CncError 27010 where there is no room to move.
@@ -107,13 +110,13 @@ def speed_ladder(room: Room, steady: float) -> list[float]:
             NO_ROOM,
             room.axis,
             f"the soft limits leave {room.travel:g} {room.unit} (P-AXIS-00177, P-AXIS-00178), too little to drive "
-            f"{steady:g} s with constant velocity; nothing was started",
+            f"{steady(low):g} s with constant velocity; nothing was started",
         )
     ratio = (high / low) ** (1.0 / (SPEEDS - 1))
     return [min(high, float(f"{low * ratio**index:.3g}")) for index in range(SPEEDS)]
 
 
-def check_speeds(room: Room, speeds: Sequence[float], steady: float) -> list[float]:
+def check_speeds(room: Room, speeds: Sequence[float], steady: Seconds) -> list[float]:
     """Speeds that somebody asks for, in ascending order. Raises CncError 27011 for one that cannot be driven."""
     for speed in speeds:
         if not 0.0 < speed <= room.max_velocity:
@@ -121,9 +124,9 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: float) -> list[flo
                 BAD_VELOCITIES,
                 room.axis,
                 f"the velocity {speed:g} {room.unit}/s is not above 0 and up to {room.max_velocity:g} {room.unit}/s "
-                "(P-AXIS-00212); nothing was started",
+                f"({room.limited_by}); nothing was started",
             )
-        needed, usable = way(room, speed, steady), room.travel * (1.0 - 2.0 * EDGE)
+        needed, usable = way(room, speed, steady(speed)), room.travel * (1.0 - 2.0 * EDGE)
         if needed > usable:
             raise refusal(
                 BAD_VELOCITIES,
@@ -134,24 +137,24 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: float) -> list[flo
     return sorted(set(speeds))
 
 
-def forth_and_back(room: Room, speeds: Sequence[float], *, steady: float, settling: float) -> list[Motion]:
-    """A motion to where there is room, then each speed forth and back; `settling` s of rest before each motion."""
-    longest = max(way(room, speed, steady) for speed in speeds)
+def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest: float) -> list[Motion]:
+    """A motion to where there is room, then each speed forth and back; `rest` s before each motion."""
+    longest = max(way(room, speed, steady(speed)) for speed in speeds)
     start, side = _start(room, longest)
     motions: list[Motion] = []
-    time = settling
+    time = rest
     if start != room.position:
         distance = start - room.position
         velocity = room.max_velocity
         # At most the whole way at velocity and both ramps, even if the velocity is not reached.
         duration = abs(distance) / velocity + motion_time(room, velocity, 0.0)
         motions.append(Motion(time, distance, velocity, duration))
-        time += duration + PAUSE + settling
+        time += duration + PAUSE + rest
     for speed in speeds:
         for direction in (side, -side):
-            duration = motion_time(room, speed, steady)
-            motions.append(Motion(time, direction * way(room, speed, steady), speed, duration))
-            time += duration + PAUSE + settling
+            duration = motion_time(room, speed, steady(speed))
+            motions.append(Motion(time, direction * way(room, speed, steady(speed)), speed, duration))
+            time += duration + PAUSE + rest
     return motions
 
 

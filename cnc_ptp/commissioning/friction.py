@@ -12,7 +12,9 @@ import numpy as np
 
 from cnc_ptp.commissioning.faults import NO_MOTION, NO_TORQUE, NOT_STEADY, ONE_DIRECTION, TOO_SHORT, refusal
 from cnc_ptp.commissioning.steady_motion import SteadyPhase, longest_steady, steady_phases
+from cnc_ptp.commissioning.timing import Seconds
 from cnc_ptp.commissioning.trace import Array, AxisTrace
+from cnc_ptp.errors import CncError
 
 SHORTEST = 0.05
 """Seconds of settled motion that a phase must have."""
@@ -70,8 +72,8 @@ class _Sample:
     seconds: float
 
 
-def friction_curve(trace: AxisTrace, *, settling: float) -> FrictionCurve:
-    """The friction curve of a recording; `settling`: seconds thrown away at the beginning of each phase.
+def friction_curve(trace: AxisTrace, *, settling: Seconds) -> FrictionCurve:
+    """The friction curve of a recording; `settling`: seconds thrown away at the beginning of each phase, by speed.
 
     Raises CncError 27003 too short, 27004 no motion, 27005 no torque, 27006 nothing steady, 27007 one direction only.
     """
@@ -127,12 +129,16 @@ def _torque(trace: AxisTrace) -> Array:
     return trace.actual_torque
 
 
-def _nothing_steady(trace: AxisTrace, settling: float) -> Exception:
+def _nothing_steady(trace: AxisTrace, settling: Seconds) -> CncError:
+    seconds, velocity = longest_steady(trace)
+    if not velocity:
+        return refusal(NOT_STEADY, trace.axis, "never moves with constant velocity in the recording; nothing was made")
+    needed = settling(abs(velocity)) + SHORTEST
     return refusal(
         NOT_STEADY,
         trace.axis,
-        f"no motion with constant velocity lasts {settling:g} s to settle and {SHORTEST:g} s more (the longest lasts "
-        f"{longest_steady(trace):g} s); nothing was made",
+        "no motion with constant velocity lasts long enough to settle and to be measured: the longest, at "
+        f"{velocity:g}, lasts {seconds:g} s of the {needed:g} s that it needs; nothing was made",
     )
 
 

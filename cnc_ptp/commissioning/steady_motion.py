@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from cnc_ptp.commissioning.timing import Seconds
 from cnc_ptp.commissioning.trace import Array, AxisTrace, Span
 
+LEAST_CYCLES = 3
 SAME = 1e-7
 """Relative change of a setpoint from cycle to cycle that is still a constant velocity."""
 LARGEST_DRIFT = 1e-3
@@ -27,26 +30,31 @@ class SteadyPhase:
         return self.end - self.first
 
 
-def steady_phases(trace: AxisTrace, *, settling: float, shortest: float) -> list[SteadyPhase]:
-    """Phases in which the set velocity is constant and not zero, without their first `settling` seconds.
+def steady_phases(trace: AxisTrace, *, settling: Seconds, shortest: float) -> list[SteadyPhase]:
+    """Phases in which the set velocity is constant and not zero, without their first `settling(speed)` seconds.
 
     What then lasts less than `shortest` seconds is left out.
     """
-    skipped, least = round(settling / trace.cycle_time), max(1, round(shortest / trace.cycle_time))
+    least = max(1, round(shortest / trace.cycle_time))
     phases = []
-    for span in trace.unbroken():
-        for first, end in _constant(trace.set_velocity, span):
-            velocity = float(trace.set_velocity[first])
-            if velocity and end - first - skipped >= least:
-                phases.append(SteadyPhase(velocity, first + skipped, end))
+    for first, end in _moving(trace):
+        velocity = float(trace.set_velocity[first])
+        skipped = round(settling(abs(velocity)) / trace.cycle_time)
+        if end - first - skipped >= least:
+            phases.append(SteadyPhase(velocity, first + skipped, end))
     return phases
 
 
-def longest_steady(trace: AxisTrace) -> float:
-    """Seconds of the longest motion with constant velocity, settling included."""
+def longest_steady(trace: AxisTrace) -> tuple[float, float]:
+    """Seconds and velocity of the longest motion with constant velocity, settling included; (0, 0) if there is none."""
+    first, end = max(_moving(trace), key=lambda span: span[1] - span[0], default=(0, 0))
+    return (end - first) * trace.cycle_time, float(trace.set_velocity[first]) if end else 0.0
+
+
+def _moving(trace: AxisTrace) -> Iterator[Span]:
+    """Stretches with a constant set velocity that is not zero."""
     spans = (span for whole in trace.unbroken() for span in _constant(trace.set_velocity, whole))
-    lengths = [end - first for first, end in spans if trace.set_velocity[first]]
-    return max(lengths, default=0) * trace.cycle_time
+    return (span for span in spans if span[1] - span[0] >= LEAST_CYCLES and trace.set_velocity[span[0]])
 
 
 def _constant(values: Array, span: Span) -> list[Span]:

@@ -37,8 +37,10 @@ class FeedforwardCommands:
     ) -> str | None:
         """G135/G137 (`on`) and G136 (`weight_percent`, 0 … 100); what is left out stays. Refusal 23060.
 
-        A warning when the axis has no feedforward (P-AXIS-00223).
+        A warning when nothing is asked for, or when the axis has no feedforward (P-AXIS-00223).
         """
+        if on is None and weight_percent is None:
+            return f"{self._subject}: set_feedforward without effect, neither on nor weight_percent is given"
         if weight_percent is not None and not 0.0 <= weight_percent <= FULL_WEIGHT:
             reason = f"weight_percent = {weight_percent} is not within 0 ... 100 (G136)"
             self._refuse("set_feedforward", BAD_WEIGHT, reason)

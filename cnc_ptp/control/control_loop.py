@@ -60,6 +60,7 @@ class ControlLoop:
             torque_per_acceleration=parameters.scaling.torque_per_acceleration,
             limits=limits,
             delay_cycles=self.delay_cycles,
+            samples_velocity=parameters.drive.interface == "torque",
         )
         self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles)
         self._torque_per_digit = 1.0 / parameters.scaling.torque if parameters.scaling.torque else 0.0
@@ -172,10 +173,9 @@ class ControlLoop:
         self.monitor.forget()
         self.feedforward.forget()
         self.friction.forget()
-        self._velocity_controller.forget()
         drive = self.drive
         if self._interface == "torque":
-            drive.step(self._velocity_controller.torque(-drive.velocity))
+            drive.step(self._velocity_controller.brake(drive.velocity))
         else:
             drive.step(drive.position if self._interface == "position" else 0.0)
 

@@ -1,7 +1,8 @@
 """Feedforward: what velocity, acceleration and jerk of the setpoint ask of the drive before a following error arises.
 
 The command is held for a cycle, so each value is the mean over the cycle that it is held: v + aT/2 + jT²/6 and
-a + jT/2. Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
+a + jT/2 (of a drive under torque command v itself, which the NC's velocity controller compares).
+Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
 """
 
 from __future__ import annotations
@@ -55,17 +56,20 @@ class Feedforward:
         torque_per_acceleration: float,
         limits: CouplingLimits,
         delay_cycles: int,
+        samples_velocity: bool = False,
     ) -> None:
         """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint.
 
-        `torque_per_acceleration` in Nm (N) for 1 mm/s² (deg/s²), `kv` in 1/s, `cycle_time` in s.
+        `torque_per_acceleration` in Nm (N) for 1 mm/s² (deg/s²), `kv` in 1/s, `cycle_time` in s. `samples_velocity`:
+        the velocity is not held by a drive, but compared by the NC with the actual velocity at the begin of the cycle.
         """
         self.mode = parameters.mode
         behind = float(delay_cycles - parameters.lead_cycles)
         mode = parameters.mode
         velocity_delay = parameters.velocity_delay / cycle_time if mode & ADD_VEL else 0.0
         torque_delay = parameters.acceleration_delay / cycle_time
-        self._velocity_at = MeanValue(behind + velocity_delay, cycle_time)
+        velocity_value = MomentaryVelocity if samples_velocity else MeanValue
+        self._velocity_at = velocity_value(behind + velocity_delay, cycle_time)
         self._acceleration_at = MeanValue(behind + (torque_delay if mode & ADD_ACC else 0.0), cycle_time)
         self._jerk_at = MeanValue(behind + (torque_delay if mode & ADD_JERK else 0.0), cycle_time)
         self._parts = _parts(parameters, kv, torque_per_acceleration)
@@ -154,6 +158,13 @@ def _parts(parameters: FeedforwardParameters, kv: float, torque_per_acceleration
     )
 
 
+def _split(behind: float) -> tuple[int, float]:
+    """Whole cycles and fraction of a cycle; what is a whole number but for rounding has none."""
+    whole = floor(behind + 1e-9)
+    fraction = behind - whole
+    return whole, fraction if fraction > 1e-9 else 0.0
+
+
 class MeanValue:
     """Mean of velocity, acceleration or jerk over the cycle that began `behind` cycles before the newest setpoint.
 
@@ -165,19 +176,12 @@ class MeanValue:
 
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
-        whole = floor(behind + 1e-9)
-        fraction = max(0.0, behind - whole)
-        fraction = 0.0 if fraction < 1e-9 else fraction
+        whole, fraction = _split(behind)
         self._index = whole
         self._split = fraction > 0.0
         t, s = cycle_time, (1.0 - fraction) * cycle_time
         self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
         self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
-
-    @property
-    def depth(self) -> int:
-        """How many setpoints of the past it looks at."""
-        return self._index + 1 + self._split
 
     def velocity(self, history: deque[State]) -> float:
         _, v, a, j = history[self._index]
@@ -200,6 +204,23 @@ class MeanValue:
     def jerk(self, history: deque[State]) -> float:
         mean = self._second[0] * history[self._index][3]
         return mean + self._first[0] * history[self._index + 1][3] if self._split else mean
+
+
+class MomentaryVelocity:
+    """Velocity `behind` cycles before the newest setpoint."""
+
+    __slots__ = ("_index", "_time")
+
+    def __init__(self, behind: float, cycle_time: float) -> None:
+        """`behind` >= 0 in cycles, `cycle_time` in s."""
+        whole, fraction = _split(behind)
+        self._index = whole + 1 if fraction else whole
+        self._time = (1.0 - fraction) * cycle_time if fraction else 0.0
+
+    def velocity(self, history: deque[State]) -> float:
+        _, v, a, j = history[self._index]
+        t = self._time
+        return v + t * (a + 0.5 * t * j)
 
 
 class CouplingLimits(NamedTuple):
@@ -260,11 +281,12 @@ class Coupling:
         if self._last_command is None:
             return
         missing, t = self.target - self.factor, self._cycle_time
-        rate = self._smooth_rate(missing, self._limits.jerk * t / size)
+        quantum = self._limits.jerk * t / size
+        rate = self._smooth_rate(missing, quantum)
         drift = (feedback + self.factor * velocity - self._last_command) / t
         most = self._room(rate * velocity, rate * torque_velocity, drift, setpoint) / size
         rate = max(-most, min(most, rate))
-        if rate * t / missing >= 1.0 - ROUNDING:
+        if rate * t / missing >= 1.0 - ROUNDING and abs(rate) <= 2.0 * quantum:
             self.settle()
             return
         self._rate = rate
@@ -285,7 +307,7 @@ class Coupling:
         A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
         the axis' limit in room/J, by when e^(-Kv·room/J) is left of the change.
         """
-        limit, velocity = self._limits.acceleration, setpoint[1]
+        limit, velocity, command = self._limits.acceleration, setpoint[1], self._last_command or 0.0
         room = max(0.0, limit - abs(setpoint[2]))
         decays = room * self._reserve
         if self._reserve > 0.0 and decays < DECAYED:
@@ -295,5 +317,5 @@ class Coupling:
         if by_velocity < 0.0 or by_torque < 0.0:
             room = min(room, limit + drift)
         if by_velocity * velocity > 0.0 or by_torque * velocity > 0.0:
-            room = min(room, self._kv * (self._limits.velocity - abs(velocity)))
+            room = min(room, self._kv * (self._limits.velocity - max(abs(velocity), abs(command))))
         return max(0.0, room)

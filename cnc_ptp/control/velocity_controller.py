@@ -19,6 +19,7 @@ class VelocityController:
         self._integral += velocity_error * self._cycle_share
         return self._gain * (velocity_error + self._integral)
 
-    def forget(self) -> None:
-        """The loop is open."""
+    def brake(self, velocity: float) -> float:
+        """Torque that brakes the actual `velocity` (mm/s, deg/s) while the loop is open; nothing is remembered."""
         self._integral = 0.0
+        return -self._gain * velocity

@@ -26,7 +26,15 @@ DENOMINATORS = ("P-AXIS-00226", "P-AXIS-00229", "P-AXIS-00515")
 
 def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
     """All checks of one axis or spindle."""
-    for check in (gear_denominators, zero_denominators, known_objects, operation_mode, additive_objects, friction):
+    for check in (
+        gear_denominators,
+        zero_denominators,
+        inertia,
+        known_objects,
+        operation_mode,
+        additive_objects,
+        friction,
+    ):
         yield from check(parameters)
 
 
@@ -41,6 +49,18 @@ def zero_denominators(parameters: ParameterSet) -> Iterator[Problem]:
     for number in DENOMINATORS:
         if parameters.number(number) == 0:
             yield problem(parameters, errors.DENOMINATOR, number, (), "value 0 is no denominator")
+
+
+def inertia(parameters: ParameterSet) -> Iterator[Problem]:
+    """What has mechanics has an inertia."""
+    torque = telegram.interface(parameters) == "torque"
+    if parameters.number("P-SIM-00007") or not (torque or parameters.text("P-SIM-00006") == "CASCADED"):
+        return
+    for gear in sorted({0, *parameters.used_indexes("getriebe")}):
+        if parameters.number("P-AXIS-00391", gear) == 0:
+            reason = "a torque command" if torque else "P-SIM-00006 simulation.model CASCADED"
+            text = f"value 0 is no inertia for {reason}, P-SIM-00007 simulation.inertia is 0 too"
+            yield problem(parameters, errors.CONTRADICTION, "P-AXIS-00391", (gear,), text)
 
 
 def known_objects(parameters: ParameterSet) -> Iterator[Problem]:
@@ -68,13 +88,17 @@ def operation_mode(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def additive_objects(parameters: ParameterSet) -> Iterator[Problem]:
+    """ADD_… of P-AXIS-00223; a torque command can hold all of them, as the NC has the velocity controller."""
     mode, available = flag_bits(parameters, "P-AXIS-00223"), telegram.commands(parameters)
+    if telegram.interface(parameters) == "torque":
+        return
     if mode & ADD_VEL and "additive_velocity" not in available:
         text = f"ADD_VEL needs an additive velocity command (S-0-0037, 60B1, NSOLL_B), {carried(parameters)}"
         yield problem(parameters, NO_ADDITIVE_VELOCITY, "P-AXIS-00223", (), text)
     if mode & (ADD_ACC | ADD_JERK) and "additive_torque" not in available:
         names = " and ".join(name for name, bit in (("ADD_ACC", ADD_ACC), ("ADD_JERK", ADD_JERK)) if mode & bit)
-        text = f"{names} needs an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
+        needs = "need" if " and " in names else "needs"
+        text = f"{names} {needs} an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
         yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00223", (), text)
 
 
@@ -100,7 +124,8 @@ def friction(parameters: ParameterSet) -> Iterator[Problem]:
         yield problem(parameters, TABLE_MISSING, "P-COMP-00041", (), text)
     yield from ascending(parameters, int(entries))
     permitted = parameters.axis_type != "S" and parameters.number("P-AXIS-00522")
-    if permitted and mode and "additive_torque" not in telegram.commands(parameters):
+    takes_torque = {"additive_torque"} & telegram.commands(parameters) or telegram.interface(parameters) == "torque"
+    if permitted and mode and not takes_torque:
         text = f"friction compensation needs an additive torque command (S-0-0081, 60B2), {carried(parameters)}"
         yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00522", (), text)
 

@@ -26,6 +26,8 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str
     yield from weight(parameters)
     yield from position_delay(parameters)
     yield from following_error(parameters)
+    yield from velocity_range(parameters, cycle_time)
+    yield from velocity_controller(parameters)
     yield from gain(parameters, cycle_time)
 
 
@@ -73,20 +75,55 @@ def following_error(parameters: ParameterSet) -> Iterator[str]:
         yield line(parameters, "P-AXIS-00168", gear, text)
 
 
-def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
-    """An unstable position loop of the simulated drive."""
+def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """A velocity command that is too short for the largest velocity of the axis."""
     gear = int(parameters.number("P-AXIS-00079")) - 1
     control = control_view(parameters, gear, cycle_time)
-    well_damped = 2.0 * control.kv * small_times(control.plant, cycle_time) <= 1.0
-    if control.drive.interface in ("none", "torque") or well_damped:
+    drive, scaling = control.drive, control.scaling
+    if drive.ideal or drive.interface != "velocity":
         return
-    from cnc_ptp.parameters.stability import is_stable, stability_limit  # here, as numpy takes its time
+    scale, number = (scaling.analogue, "P-AXIS-00129") if drive.analogue else (scaling.velocity, "P-AXIS-00206")
+    bits = drive.command_bits["velocity"]
+    limit = (2 ** (bits - 1) - 1) / scale if scale else 0.0
+    largest = parameters.kernel("P-AXIS-00212", gear)
+    if largest > limit:
+        unit = "mm/s" if parameters.axis_type == "T" else "°/s"
+        text = (
+            f"the {bits} bits of the command carry {limit:g} {unit}, less than the {largest:g} {unit} of P-AXIS-00212"
+        )
+        yield line(parameters, number, (gear,) if drive.analogue else (), text)
 
-    if is_stable(control.plant, control.kv, cycle_time):
+
+def velocity_controller(parameters: ParameterSet) -> Iterator[str]:
+    """An unstable velocity loop of a cascaded plant: s³ Ti + s² + Kp s + Kp/Tn is stable for Ti < Tn (Routh)."""
+    lag, integral = parameters.kernel("P-SIM-00010"), parameters.kernel("P-SIM-00009")
+    if parameters.text("P-SIM-00006") == "CASCADED" and integral and lag >= integral:
+        shown = f"{lag * 1e6:g} µs of the current loop"
+        text = f"integral time {integral * 1e6:g} µs must be above the {shown} (P-SIM-00010), the drive is unstable"
+        yield line(parameters, "P-SIM-00009", (), text)
+
+
+def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """An unstable position loop, of the NC or of the drive (P-SIM-00019)."""
+    gear = int(parameters.number("P-AXIS-00079")) - 1
+    control = control_view(parameters, gear, cycle_time)
+    interface = control.drive.interface
+    in_drive = interface in ("position", "lag")
+    kv = control.plant.kv if in_drive else control.kv
+    well_damped = interface != "torque" and 2.0 * kv * small_times(control.plant, cycle_time) <= 1.0
+    if interface == "none" or well_damped:
         return
-    limit = stability_limit(control.plant, cycle_time)
-    text = f"gain {control.kv:g} 1/s makes the position loop unstable, with this drive the limit is {limit:.4g} 1/s"
-    yield line(parameters, "P-AXIS-00099", (gear,), text)
+    from cnc_ptp.parameters.stability import position_loop  # here, as numpy takes its time
+
+    loop = position_loop(control, cycle_time)
+    if loop.is_stable(kv):
+        return
+    limit = loop.limit(cycle_time)
+    text = f"gain {kv:g} 1/s makes the position loop unstable, with this drive the limit is {limit:.4g} 1/s"
+    if in_drive and parameters.number("P-SIM-00019"):
+        yield line(parameters, "P-SIM-00019", (), text)
+    else:
+        yield line(parameters, "P-AXIS-00099", (gear,), text)
 
 
 def small_times(plant: PlantParameters, cycle_time: float) -> float:

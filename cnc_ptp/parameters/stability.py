@@ -1,63 +1,107 @@
-"""The gain at which a position loop becomes unstable, from the parameters of its drive."""
+"""The gain at which a position loop becomes unstable, from the parameters of its drive.
+
+A sampled loop is z[k+1] = A z[k] + B u[k] with the actual position as z[0] and u[k] = -Kv z[0], held over a cycle.
+It is stable while all poles, the eigenvalues of A - Kv B (1 0 … 0), lie inside the unit circle. For a first-order drive
+A and B are its exact solution over a cycle, for a cascaded one that of plant_model.py without friction; each cycle on
+the bus is one more state. With T the cycle time and n cycles on the bus, a drive without lag has the limit
+Kv T = 2 sin(π / (4 n + 2)); the others are found by bisection.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import expm
 
-from cnc_ptp.parameters.control_view import PlantParameters
-from cnc_ptp.parameters.plant_model import U, V, X, velocity_controlled
+from cnc_ptp.parameters.control_view import ControlParameters, PlantParameters
+from cnc_ptp.parameters.plant_model import I, M, Matrix, U, V, W, X, velocity_controlled
 
-SPEED_STATES = 5
 BISECTIONS = 40
 
 
-def is_stable(plant: PlantParameters, kv: float, cycle_time: float) -> bool:
-    """All poles of the sampled loop lie inside the unit circle; `kv` in 1/s, `cycle_time` in s."""
-    step, held = sampled_drive(plant, cycle_time)
-    return spectral_radius(step, held, kv, plant.bus_delay_cycles) < 1.0
+class Loop(NamedTuple):
+    """A and B."""
+
+    step: Matrix
+    held: Matrix
+
+    def is_stable(self, kv: float) -> bool:
+        """All poles inside the unit circle with the gain `kv`, 1/s."""
+        closed = self.step.copy()
+        closed[:, 0] -= kv * self.held
+        return float(np.max(np.abs(np.linalg.eigvals(closed)))) < 1.0
+
+    def limit(self, cycle_time: float) -> float:
+        """The Kv in 1/s at which a pole reaches the unit circle."""
+        low, high = 0.0, 4.0 / cycle_time
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.is_stable(middle) else (low, middle)
+        return low
 
 
 def stability_limit(plant: PlantParameters, cycle_time: float) -> float:
-    """The Kv in 1/s at which the sampled loop u[k] = -Kv·x[k], held over a cycle and delayed by the bus, oscillates.
+    """The limit of Kv in 1/s where the NC commands the velocity of `plant`; `cycle_time` in s."""
+    return delayed(velocity_loop(plant, cycle_time), plant.bus_delay_cycles).limit(cycle_time)
 
-    For a first-order drive z[k+1] = A z[k] + B u[k] is the exact solution over a cycle with z = (x, v); for a cascaded
-    one it is that of plant_model.py without friction. The limit is where a pole reaches the unit circle, by bisection.
+
+def position_loop(control: ControlParameters, cycle_time: float) -> Loop:
+    """The loop that the gain of the position controller closes, in the NC or in the drive."""
+    plant = control.plant
+    if control.drive.interface == "position":
+        return velocity_loop(plant, cycle_time)
+    if control.drive.interface == "torque":
+        return torque_loop(control, cycle_time)
+    return delayed(velocity_loop(plant, cycle_time), plant.bus_delay_cycles)
+
+
+def velocity_loop(plant: PlantParameters, cycle_time: float) -> Loop:
+    """The drive that takes velocities."""
+    if plant.cascaded:
+        return part(velocity_controlled(plant, gain=plant.velocity_gain) * cycle_time, (X, W, I, M, V), U)
+    decay = math.exp(-cycle_time / plant.time_constant) if plant.time_constant > 0.0 else 0.0
+    way = plant.time_constant * (1.0 - decay)
+    return Loop(np.array([[1.0, way], [0.0, decay]]), np.array([cycle_time - way, 1.0 - decay]))
+
+
+def torque_loop(control: ControlParameters, cycle_time: float) -> Loop:
+    """Mechanics that take torques, with the velocity controller of the NC around them.
+
+    In accelerations: a = Kp (e + z'), z' = z + e T/Tn once a cycle, e = u - v.
     """
-    step, held = sampled_drive(plant, cycle_time)
-    low, high = 0.0, 4.0 / cycle_time
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        stable = spectral_radius(step, held, middle, plant.bus_delay_cycles) < 1.0
-        low, high = (middle, high) if stable else (low, middle)
-    return low
+    plant, drive = control.plant, control.drive
+    mechanics = part(velocity_controlled(plant, gain=0.0) * cycle_time, (X, V, M), I)
+    gain = drive.velocity_gain * control.scaling.torque_per_acceleration / plant.torque_per_acceleration
+    share = cycle_time / drive.velocity_integral_time if drive.velocity_integral_time else 0.0
+    inner = delayed(mechanics, plant.bus_delay_cycles)
+    states = len(inner.held)
+    step, held = np.zeros((states + 1, states + 1)), np.zeros(states + 1)
+    step[:states, :states] = inner.step
+    step[:states, 1] -= gain * (1.0 + share) * inner.held
+    step[:states, states] = gain * inner.held
+    step[states, 1], step[states, states] = -share, 1.0
+    held[:states], held[states] = gain * (1.0 + share) * inner.held, share
+    return Loop(step, held)
 
 
-def sampled_drive(plant: PlantParameters, cycle_time: float) -> tuple[Any, Any]:
-    """(A, B) with the position as state 0."""
-    if not plant.cascaded:
-        decay = math.exp(-cycle_time / plant.time_constant) if plant.time_constant > 0.0 else 0.0
-        way = plant.time_constant * (1.0 - decay)
-        return np.array([[1.0, way], [0.0, decay]]), np.array([cycle_time - way, 1.0 - decay])
-    order = [X, *(state for state in range(SPEED_STATES) if state != X)]
-    step = expm(velocity_controlled(plant, gain=plant.velocity_gain) * cycle_time)
-    assert V in order
-    return step[np.ix_(order, order)], step[order, U]
+def part(matrix: Matrix, states: tuple[int, ...], command: int) -> Loop:
+    """The rows and columns of some states of a model over a cycle; a state that never changes is none."""
+    step = expm(matrix)
+    changing = [state for state in states if matrix[state].any()]
+    return Loop(step[np.ix_(changing, changing)], step[changing, command])
 
 
-def spectral_radius(step: Any, held: Any, kv: float, delay: int) -> float:
-    """Largest magnitude of the poles with `delay` cycles between command and drive."""
-    states = len(held)
-    loop = np.zeros((states + delay, states + delay))
-    loop[:states, :states] = step
-    if delay == 0:
-        loop[:, 0] -= kv * held
-    else:
-        loop[:states, states] = held
-        loop[-1, 0] = -kv
-        for index in range(states, states + delay - 1):
-            loop[index, index + 1] = 1.0
-    return float(np.max(np.abs(np.linalg.eigvals(loop))))
+def delayed(loop: Loop, cycles: int) -> Loop:
+    """The same behind a bus of so many cycles."""
+    if cycles == 0:
+        return loop
+    states = len(loop.held)
+    step, held = np.zeros((states + cycles, states + cycles)), np.zeros(states + cycles)
+    step[:states, :states] = loop.step
+    step[:states, states] = loop.held
+    for index in range(states, states + cycles - 1):
+        step[index, index + 1] = 1.0
+    held[-1] = 1.0
+    return Loop(step, held)

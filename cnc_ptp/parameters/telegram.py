@@ -112,28 +112,38 @@ def _lengths(parameters: ParameterSet, array: str, elements: tuple[str, str, str
 
 
 def commands(parameters: ParameterSet) -> frozenset[str]:
-    """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity."""
-    objects = command_objects(parameters)
+    """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity.
+
+    A telegram that names additive values alone (TF5200 feedforward 4) has them beside the drive type's own command.
+    """
+    objects, preset = command_objects(parameters), PRESETS[int(parameters.number("P-AXIS-00020"))][0]
     if not objects:
-        return PRESETS[int(parameters.number("P-AXIS-00020"))][0]
+        return preset
     quantities = {COMMAND_OBJECTS[name] for name in objects if name in COMMAND_OBJECTS}
     if "XERR" in objects and "NSOLL_B" in objects:
         quantities = quantities - {"velocity"} | {"additive_velocity"}
+    if quantities.isdisjoint(INTERFACES):
+        quantities.update(main_command(preset))
     return frozenset(quantities)
 
 
+def main_command(available: frozenset[str]) -> tuple[str, ...]:
+    """The first of velocity, lag, position and torque that there is."""
+    return tuple(quantity for quantity in INTERFACES if quantity in available)[:1]
+
+
 def feedback(parameters: ParameterSet) -> frozenset[str]:
+    """Actual values that come back; the position always does."""
     objects = feedback_objects(parameters)
     if not objects:
         return PRESETS[int(parameters.number("P-AXIS-00020"))][1]
-    return frozenset(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)
+    return frozenset({"position", *(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)})
 
 
 def interface(parameters: ParameterSet) -> str:
     """What the NC commands: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
-    available = commands(parameters)
     mode = OPERATION_MODES.get(parameters.text("P-AXIS-00320"))
-    return mode or next((quantity for quantity in INTERFACES if quantity in available), "none")
+    return mode or next(iter(main_command(commands(parameters))), "none")
 
 
 def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from cnc_ptp.commissioning.excitation import (
     speed_ladder,
     way,
 )
+from cnc_ptp.commissioning.timing import always
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_rest_to_rest
 
@@ -56,14 +57,14 @@ def test_way_and_time_are_those_of_the_planner(seed):
 def test_motions_stay_within_soft_limits_and_follow_each_other(seed):
     draw = random.Random(seed)
     room = random_room(draw)
-    steady, settling = draw.uniform(0.05, 1.0), draw.uniform(0.05, 0.5)
+    steady, rest = draw.uniform(0.05, 1.0), draw.uniform(0.05, 0.5)
     try:
-        speeds = speed_ladder(room, steady)
+        speeds = speed_ladder(room, always(steady))
     except CncError as refusal:
         assert refusal.error_id == 27010 and room.travel < 1000.0
         return
-    place, free = room.position, settling
-    motions = forth_and_back(room, speeds, steady=steady, settling=settling)
+    place, free = room.position, rest
+    motions = forth_and_back(room, speeds, steady=always(steady), rest=rest)
     for motion in motions:
         assert motion.at >= free - 1e-9
         limits = Limits(motion.velocity, room.acceleration, room.deceleration, room.jerk)
@@ -76,7 +77,7 @@ def test_motions_stay_within_soft_limits_and_follow_each_other(seed):
 
 
 def test_speeds_of_the_mill():
-    speeds = speed_ladder(MILL, 0.7)
+    speeds = speed_ladder(MILL, always(0.7))
     assert len(speeds) == 30
     assert speeds[0] == 0.1 and speeds[-1] == pytest.approx(500.0)
     assert all(1.2 < later / speed < 1.45 for speed, later in itertools.pairwise(speeds))
@@ -84,9 +85,9 @@ def test_speeds_of_the_mill():
 
 def test_the_highest_velocity_is_what_the_travel_allows():
     short = Room("z", "mm", 0.0, -10.0, 10.0, 500.0, 2000.0, 2400.0, 50000.0)
-    velocity = highest_velocity(short, 0.5)
+    velocity = highest_velocity(short, always(0.5))
     assert way(short, velocity, 0.5) == pytest.approx(0.98 * 20.0)
-    assert highest_velocity(MILL, 0.5) == 500.0
+    assert highest_velocity(MILL, always(0.5)) == 500.0
 
 
 def test_ramp_time_without_and_with_full_acceleration():
@@ -112,7 +113,7 @@ def test_ramp_time_without_and_with_full_acceleration():
 )
 def test_no_room(room, text):
     with pytest.raises(CncError) as refusal:
-        speed_ladder(room, 0.7)
+        speed_ladder(room, always(0.7))
     assert str(refusal.value) == text
 
 
@@ -140,12 +141,12 @@ def test_no_room(room, text):
 )
 def test_speeds_that_cannot_be_driven(speeds, text):
     with pytest.raises(CncError) as refusal:
-        check_speeds(MILL, speeds, 2.0)
+        check_speeds(MILL, speeds, always(2.0))
     assert str(refusal.value) == text
 
 
 def test_speeds_are_sorted_and_single():
-    assert check_speeds(MILL, [5.0, 1.0, 5.0], 0.5) == [1.0, 5.0]
+    assert check_speeds(MILL, [5.0, 1.0, 5.0], always(0.5)) == [1.0, 5.0]
 
 
 def test_missing_speeds_and_the_scenario_that_drives_them():

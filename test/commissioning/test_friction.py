@@ -6,6 +6,7 @@ from commissioning_support import T, friction_run, phases, stribeck, trace_of
 
 from cnc_ptp.commissioning.friction import friction_curve
 from cnc_ptp.commissioning.steady_motion import steady_phases
+from cnc_ptp.commissioning.timing import Timing, always
 from cnc_ptp.errors import CncError
 
 SPEEDS = (0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0, 200.0)
@@ -13,12 +14,12 @@ SPEEDS = (0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 20.0, 60.0, 200.0)
 
 def refused(trace, **options):
     with pytest.raises(CncError) as refusal:
-        friction_curve(trace, **{"settling": 0.1, **options})
+        friction_curve(trace, **{"settling": always(0.1), **options})
     return str(refusal.value)
 
 
 def test_the_stribeck_curve_comes_back():
-    curve = friction_curve(friction_run(SPEEDS), settling=0.1)
+    curve = friction_curve(friction_run(SPEEDS), settling=always(0.1))
     assert [point.speed for point in curve.points] == pytest.approx(SPEEDS)
     for point in curve.points:
         assert point.friction == pytest.approx(stribeck(point.speed), rel=1e-12)
@@ -29,7 +30,7 @@ def test_the_stribeck_curve_comes_back():
 
 def test_weight_is_told_apart_and_noise_averages_out():
     noise, load = 20.0, -75.0
-    curve = friction_curve(friction_run(SPEEDS, load=load, noise=noise), settling=0.1)
+    curve = friction_curve(friction_run(SPEEDS, load=load, noise=noise), settling=always(0.1))
     # 400 cycles a direction: standard deviation of the mean of both 20 / sqrt(800) N, of a batch of 80 cycles 20 / sqrt(80).
     for point in curve.points:
         assert abs(point.friction - stribeck(point.speed)) < 5 * noise / np.sqrt(800)
@@ -39,15 +40,17 @@ def test_weight_is_told_apart_and_noise_averages_out():
 
 def test_settling_is_thrown_away():
     run = friction_run(SPEEDS, transient=500.0)
-    for point in friction_curve(run, settling=0.1).points:
+    for point in friction_curve(run, settling=always(0.1)).points:
         assert point.friction == pytest.approx(stribeck(point.speed))
-    for point in friction_curve(run, settling=0.05).points:
+    for point in friction_curve(run, settling=always(0.05)).points:
         assert point.friction == pytest.approx(stribeck(point.speed) + 500.0 / 9.0)
 
 
 def test_several_phases_of_one_speed_are_one_point():
     velocity = phases([5.0, 5.004, 4.996, 50.0])
-    curve = friction_curve(trace_of(set_velocity=velocity, actual_torque=10.0 * np.sign(velocity)), settling=0.1)
+    curve = friction_curve(
+        trace_of(set_velocity=velocity, actual_torque=10.0 * np.sign(velocity)), settling=always(0.1)
+    )
     assert [point.speed for point in curve.points] == pytest.approx([5.0, 50.0])
     assert [point.seconds for point in curve.points] == pytest.approx([2.4, 0.8])
 
@@ -58,7 +61,7 @@ def test_speeds_of_one_direction_and_uneven_ones_are_named():
     sticks = np.abs(velocity) == 3.0
     slipping = np.where(np.arange(len(velocity)) % 40 < 20, 2.0, 0.0)
     run.actual_velocity[sticks] = (velocity * slipping)[sticks]
-    curve = friction_curve(run, settling=0.1)
+    curve = friction_curve(run, settling=always(0.1))
     assert [point.speed for point in curve.points] == pytest.approx([30.0])
     assert curve.one_way == (7.0, 70.0)
     assert curve.uneven == (-3.0, 3.0)
@@ -70,7 +73,7 @@ def test_phases_stop_at_gaps_and_ramps():
         [np.full(900, 10.0), np.linspace(10.0, 11.0, 1000), 10.0 * np.sin(np.arange(5000) * 1e-3)]
     )
     cycle = np.arange(len(velocity)) + np.where(np.arange(len(velocity)) < 400, 0, 100)
-    found = steady_phases(trace_of(set_velocity=velocity, cycle=cycle), settling=0.1, shortest=0.05)
+    found = steady_phases(trace_of(set_velocity=velocity, cycle=cycle), settling=always(0.1), shortest=0.05)
     assert [(phase.first, phase.end) for phase in found] == [(100, 400), (500, 901)]
     assert {phase.velocity for phase in found} == {10.0}
 
@@ -113,8 +116,12 @@ def test_repeated_and_unordered_cycles_count_once():
         ),
         (
             friction_run([5.0], seconds=0.14),
-            "P-ERR-27006 axis x: no motion with constant velocity lasts 0.1 s to settle and 0.05 s more (the longest lasts "
-            "0.14 s); nothing was made",
+            "P-ERR-27006 axis x: no motion with constant velocity lasts long enough to settle and to be measured: the "
+            "longest, at 5, lasts 0.14 s of the 0.15 s that it needs; nothing was made",
+        ),
+        (
+            trace_of(set_velocity=np.sin(np.arange(500) * 0.01), actual_torque=np.ones(500)),
+            "P-ERR-27006 axis x: never moves with constant velocity in the recording; nothing was made",
         ),
         (
             friction_run([5.0, 8.0], both=False),
@@ -140,4 +147,10 @@ def test_recordings_that_say_nothing_are_refused(trace, text):
 def test_cycle_time_is_that_of_the_recording():
     velocity = phases([5.0], cycle_time=4 * T)
     run = trace_of(cycle_time=4 * T, set_velocity=velocity, actual_torque=np.sign(velocity))
-    assert friction_curve(run, settling=0.1).points[0].seconds == pytest.approx(0.8)
+    assert friction_curve(run, settling=always(0.1)).points[0].seconds == pytest.approx(0.8)
+
+
+def test_timing_gives_slow_motions_time_and_fast_ones_a_short_way():
+    timing = Timing(kv=50.0)
+    assert [timing.settling(speed) for speed in (0.1, 5.0, 10.0, 500.0)] == pytest.approx([0.4, 0.4, 0.3, 0.202])
+    assert [timing.steady(speed) for speed in (0.1, 100.0, 200.0, 500.0)] == pytest.approx([0.9, 0.71, 0.455, 0.302])

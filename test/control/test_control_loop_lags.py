@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from loop_support import (
     ADD_ACC,
     ADD_VEL,
     KV,
+    PLANT,
     TA,
     VEL,
     T,
@@ -26,6 +28,7 @@ from loop_support import (
 )
 
 from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.drives import CascadedDrive
 
 A = 2000.0
 J = 25_000.0
@@ -104,6 +107,29 @@ def test_a_motion_of_seven_phases_stays_within_a_tenth_of_a_micrometre_with_feed
     without, with_it = (np.abs(lags(run(loop_with(mode), states))).max() for mode in (0, VEL | ACC))
     assert without == pytest.approx(400.0 / KV, rel=0.02)
     assert with_it < 1e-4 and without > 50_000 * with_it
+
+
+@pytest.mark.parametrize("gain", [200.0, 500.0])
+@pytest.mark.parametrize("current_time_constant", [0.0, 0.0003])
+@pytest.mark.parametrize("v_integral_time", [0.0, 0.004])
+def test_additive_torque_with_the_exact_inertia_on_a_cascaded_drive(
+    gain: float, current_time_constant: float, v_integral_time: float
+) -> None:
+    """A P controller in the drive leaves a/(Kp·Kv) to the position controller; the torque takes that away."""
+    plant = replace(
+        PLANT,
+        cascaded=True,
+        velocity_gain=gain,
+        velocity_integral_time=v_integral_time,
+        current_time_constant=current_time_constant,
+    )
+    left = A / gain / KV if v_integral_time == 0.0 else 0.0
+    for mode, expected in ((ADD_VEL, left), (ADD_VEL | ADD_ACC, 0.0)):
+        parameters = control(plant=plant, of_feedforward=feedforward(mode, always_active=True))
+        loop = make_loop(parameters, CascadedDrive(plant, cycle_time=T))
+        error = lags(run(loop, motion([(80, J), (600, 0.0), (80, -J), (600, 0.0)])))
+        assert error[679] == pytest.approx(expected, abs=1e-9)
+        assert error[-1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_nothing_is_left_at_standstill() -> None:

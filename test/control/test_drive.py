@@ -102,3 +102,68 @@ def test_following_error_limit_on_both_sides(error: float, monitoring: bool, exc
     controller = PositionController(kv=10.0, following_error_limit=0.5, monitoring=monitoring)
     assert controller.exceeds_limit(error) is exceeds
     assert controller.command_velocity(error) == 10.0 * error
+
+
+@pytest.mark.parametrize("time_constant", [0.0005, 0.003, 0.1])
+def test_additive_velocity_and_torque_follow_the_matrix_exponential(time_constant: float) -> None:
+    """x' = v, v' = (u + a - v)/Ta + M/k as one linear system of (x, v, u, a, M)."""
+    lag, k = 1.0 / time_constant, 6.0e-4
+    system = np.zeros((5, 5))
+    system[0, 1] = 1.0
+    system[1] = [0.0, -lag, lag, lag, 1.0 / k]
+    transition = matrix_exponential(system * T)
+    draw = random.Random(8)
+    simulated = FirstOrderDrive(
+        cycle_time=T, time_constant=time_constant, encoder_increment=0.0, torque_per_acceleration=k
+    )
+    state = np.zeros(5)
+    for _ in range(300):
+        state[2:] = draw.uniform(-300.0, 300.0), draw.uniform(-20.0, 20.0), draw.uniform(-1.0, 1.0)
+        before = state[1]
+        state = transition @ state
+        simulated.step(*state[2:])
+        assert simulated.position == pytest.approx(state[0], abs=1e-9)
+        assert simulated.velocity == pytest.approx(state[1], abs=1e-9)
+        assert simulated.torque == pytest.approx(k * (state[1] - before) / T, abs=1e-9)
+
+
+def test_the_torque_over_time_is_the_momentum() -> None:
+    simulated = FirstOrderDrive(cycle_time=T, time_constant=0.003, encoder_increment=0.0, torque_per_acceleration=2e-3)
+    impulse = 0.0
+    for cycle in range(200):
+        simulated.step(80.0 * math.sin(0.07 * cycle))
+        impulse += simulated.torque * T
+    assert impulse == pytest.approx(2e-3 * simulated.velocity, rel=1e-12)
+    assert simulated.has_torque
+
+
+def test_velocity_and_torque_in_time_take_the_lag_of_a_ramp_away() -> None:
+    """With M = k a a drive follows v(t) = a t but for the stairs of the command; without it lags by a Ta = 3 mm/s."""
+    simulated = FirstOrderDrive(cycle_time=T, time_constant=0.003, encoder_increment=0.0, torque_per_acceleration=6e-4)
+    a, torque = 1000.0, 6e-4 * 1000.0
+    for cycle in range(50):
+        simulated.step(a * (cycle + 0.5) * T, 0.0, torque)
+    assert a * 50 * T - simulated.velocity == pytest.approx(0.0, abs=a * T * T / (8 * 0.003))
+
+
+def test_an_ideal_drive_cannot_be_moved_by_a_torque() -> None:
+    simulated = FirstOrderDrive(cycle_time=T, time_constant=0.0, encoder_increment=0.0, torque_per_acceleration=6e-4)
+    simulated.step(10.0, 5.0, 100.0)
+    assert (simulated.velocity, simulated.position) == (15.0, 0.015)
+    assert simulated.torque == pytest.approx(6e-4 * 15.0 / T)
+
+
+def test_a_drive_without_inertia_shows_no_torque() -> None:
+    simulated = drive(0.003)
+    simulated.step(10.0, 0.0, 100.0)
+    reference = drive(0.003)
+    reference.step(10.0)
+    assert (simulated.torque, simulated.has_torque) == (0.0, False)
+    assert (simulated.velocity, simulated.position) == (reference.velocity, reference.position)
+
+
+def test_a_drive_comes_to_rest_exactly() -> None:
+    simulated = drive(0.003)
+    for command in [250.0] * 20 + [0.0] * 200:
+        simulated.step(command)
+    assert simulated.velocity == 0.0

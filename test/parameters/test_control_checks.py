@@ -40,7 +40,7 @@ PROBLEMS = {
         f"(S-0-0081, 60B2, M_ADD1), {CARRIES}"
     ),
     f"{SERCOS}, vorsteuer: {{vorsteuerung: ADD_ACC | ADD_JERK}}": (
-        "P-ERR-70351 axis list, P-AXIS-00223 vorsteuer.vorsteuerung of /x: ADD_ACC and ADD_JERK needs an additive "
+        "P-ERR-70351 axis list, P-AXIS-00223 vorsteuer.vorsteuerung of /x: ADD_ACC and ADD_JERK need an additive "
         f"torque command (S-0-0081, 60B2, M_ADD1), {CARRIES}"
     ),
     'antr: {feed_const_num: 50000}, getriebe: {"0": {gear_fact_denom: 0}}': (
@@ -96,6 +96,18 @@ PROBLEMS = {
         "P-ERR-70351 axis list, P-AXIS-00522 lr_param.frict_comp of /x: friction compensation needs an additive torque "
         f"command (S-0-0081, 60B2), {CARRIES}"
     ),
+    'simulation: {model: CASCADED}, getriebe: {"0": {load: 0}}': (
+        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for P-SIM-00006 "
+        "simulation.model CASCADED, P-SIM-00007 simulation.inertia is 0 too"
+    ),
+    'antr: {telegram: {commands: [S-0-0080]}}, getriebe: {"0": {load: 0}}': (
+        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for a torque command, "
+        "P-SIM-00007 simulation.inertia is 0 too"
+    ),
+    'kenngr: {antr_typ: 2}, antr: {sercos: {at: {"0": {ident_nr: 37}}}}': (
+        "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object S-0-0037 cannot be exchanged with "
+        "drive type 2 (P-AXIS-00020), known are S-0-0051, S-0-0040, S-0-0084"
+    ),
 }
 
 
@@ -110,6 +122,28 @@ def test_objects_by_number_and_by_name_make_additive_commands_possible() -> None
     drive = machine.axes["x"].control.drive
     assert drive.commands == {"velocity", "additive_velocity", "additive_torque"}
     assert drive.interface == "velocity"
+
+
+def test_an_additive_object_alone_comes_beside_the_command_of_the_drive_type() -> None:
+    """As TF5200 feedforward 4.1 has it; a torque feedback comes beside the position."""
+    objects = 'sercos: {mdt: {"0": {nc_ref: S_0_0037, ident_len: 4}}, at: {"0": {nc_ref: S_0_0084}}}'
+    drive = load(f"{SERCOS}, vorsteuer: {{vorsteuerung: 0x101}}, antr: {{{objects}}}").axes["x"].control.drive
+    assert (drive.interface, drive.commands) == ("velocity", {"velocity", "additive_velocity"})
+    assert drive.feedback == {"position", "torque"}
+
+
+def test_profidrive_with_an_additive_torque() -> None:
+    telegram = "antr: {telegram: {commands: [XERR, NSOLL_B, M_ADD1], feedback: [G1_XIST1, MIST_GLATT]}}"
+    drive = load(f"kenngr: {{antr_typ: 3}}, {telegram}").axes["x"].control.drive
+    assert (drive.interface, drive.commands) == ("lag", {"lag", "additive_velocity", "additive_torque"})
+    assert drive.feedback == {"position", "torque"}
+
+
+def test_a_torque_command_can_hold_feedforward_and_friction() -> None:
+    table = 'frict_comp: {mode: 3, table_entries: 1, table: {"0": {out: 5}}}'
+    torque = "vorsteuer: {vorsteuerung: ADD_VEL | ADD_ACC}, antr: {telegram: {commands: [S-0-0080]}}"
+    drive = load(f"{SERCOS}, {torque}, lr_param: {{frict_comp: 1}}, {table}").axes["x"].control.drive
+    assert (drive.interface, drive.commands) == ("torque", {"torque"})
 
 
 @pytest.mark.parametrize(
@@ -153,6 +187,30 @@ NOTICES = {
     'getriebe: {"0": {kv: 300000}}': (
         "P-AXIS-00099 getriebe[0].kv of /x: gain 3000 1/s makes the position loop unstable, with this drive the limit "
         "is 2000 1/s"
+    ),
+    'kenngr: {antr_typ: 1}, getriebe: {"0": {dynamik: {vb_max: 300000}}}': (
+        "P-AXIS-00129 getriebe[0].multi_gain_z of /x: the 16 bits of the command carry 273.058 mm/s, less than the 300 "
+        "mm/s of P-AXIS-00212"
+    ),
+    "kenngr: {antr_typ: 8}, antr: {v_reso_num: 0}": (
+        "P-AXIS-00206 antr.v_reso_num of /x: the 32 bits of the command carry 0 mm/s, less than the 200 mm/s of "
+        "P-AXIS-00212"
+    ),
+    'kenngr: {antr_typ: 6, achs_typ: ACHSTYP_ROTATOR}, getriebe: {"0": {dynamik: {vb_max: 300000}}}': (
+        "P-AXIS-00129 getriebe[0].multi_gain_z of /x: the 16 bits of the command carry 273.058 °/s, less than the 300 "
+        "°/s of P-AXIS-00212"
+    ),
+    "simulation: {model: CASCADED, current_time_constant: 5000, velocity_integral_time: 5000}": (
+        "P-SIM-00009 simulation.velocity_integral_time of /x: integral time 5000 µs must be above the 5000 µs of the "
+        "current loop (P-SIM-00010), the drive is unstable"
+    ),
+    "kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}": (
+        "P-SIM-00019 simulation.drive_kv of /x: gain 3000 1/s makes the position loop unstable, with this drive the "
+        "limit is 2000 1/s"
+    ),
+    'antr: {telegram: {commands: [S-0-0080]}}, getriebe: {"0": {kv: 5000}}, lr_param: {velocity_gain: 5000}': (
+        "P-AXIS-00099 getriebe[0].kv of /x: gain 50 1/s makes the position loop unstable, with this drive the limit is "
+        "0 1/s"
     ),
 }
 

@@ -39,6 +39,7 @@ class CascadedDrive:
         "_direction",
         "_dry",
         "_edge",
+        "_encoder_at_load",
         "_encoder_increment",
         "_far",
         "_filtered",
@@ -48,13 +49,11 @@ class CascadedDrive:
         "_integral_rate",
         "_lagging",
         "_limit",
-        "_load_position",
         "_motor",
         "_motor_position",
         "_per_acceleration",
         "_per_stribeck_velocity",
         "_setpoint",
-        "_shows_load",
         "_static",
         "_stribeck",
         "_transitions",
@@ -62,6 +61,7 @@ class CascadedDrive:
         "_viscous",
         "_wanted",
         "has_torque",
+        "load_position",
         "position",
         "torque",
         "velocity",
@@ -78,7 +78,8 @@ class CascadedDrive:
         self._setpoint = self._wanted = self._integral = self._motor = 0.0
         self._direction = 0.0 if self._dry else 1.0
         """+1, -1: the motor slides, 0: friction holds it."""
-        self._motor_position = self._load_position = plant.start_position
+        self._motor_position = self.load_position = plant.start_position
+        """Where motor and load are, mm (deg), behind whatever the encoder shows."""
         self.position = 0.0
         self._show()
 
@@ -104,7 +105,7 @@ class CascadedDrive:
         self._far = FAR * plant.stribeck_velocity if self._dry else -inf
         self._viscous = plant.viscous / k
         self._half_play = plant.backlash / 2.0
-        self._shows_load = plant.encoder_at_load and plant.backlash > 0.0
+        self._encoder_at_load = plant.encoder_at_load
         self._encoder_increment = plant.encoder_increment
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
@@ -130,21 +131,21 @@ class CascadedDrive:
             self.velocity = self._setpoint = self._integral = self._motor = 0.0
 
     def _show(self) -> None:
-        if self._shows_load:
+        if self._half_play:
             self._take_load()
-            position = self._load_position
+            position = self.load_position if self._encoder_at_load else self._motor_position
         else:
-            position = self._motor_position
+            position = self.load_position = self._motor_position
         increment = self._encoder_increment
         self.position = round(position / increment) * increment if increment else position
 
     def _take_load(self) -> None:
         """The motor takes the load along where the play is used up."""
         motor, play = self._motor_position, self._half_play
-        if self._load_position < motor - play:
-            self._load_position = motor - play
-        elif self._load_position > motor + play:
-            self._load_position = motor + play
+        if self.load_position < motor - play:
+            self.load_position = motor - play
+        elif self.load_position > motor + play:
+            self.load_position = motor + play
 
     def _advance(self, level: int) -> None:
         """A step of 1/2^level cycle, in halves where it must be."""
@@ -239,6 +240,10 @@ class CascadedDrive:
         asked = gain * w + integral
         side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
         pushed = side * limit if side else integral
+        start = motor if self._lagging else side * limit if side else asked
+        if not -self._static <= start <= self._static:
+            self._direction = copysign(1.0, start)
+            return self._slide(level)
         iw, iu, ii = stand[side]
         new_integral = integral + iw * w + iu * u + ii * pushed
         if self._lagging:
@@ -272,7 +277,7 @@ class CascadedDrive:
             if level < FINEST:
                 return None
             begin, end = gain * p + before, gain * new_p + free
-            return before + (copysign(limit, end) - begin) / (end - begin) * (free - before)
+            return before + min(1.0, (copysign(limit, end) - begin) / (end - begin)) * (free - before)
         missing = limit - side * (gain * new_p + before)
         if missing <= 0.0:
             return before

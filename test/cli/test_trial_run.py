@@ -1,0 +1,93 @@
+"""Runs that are made to be evaluated: what is kept, how they end, what a terminal sees."""
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+
+import pytest
+from commands_support import MILL, changed_mill
+
+from cnc_ptp.commands.trial_run import run_trial
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.parameters import read_machine
+
+
+@pytest.fixture(scope="module")
+def mill():
+    return read_machine(str(MILL))
+
+
+def trial(machine, *entries, fields=("set_position",)):
+    job = [Entry(at, Command(to, do, arguments)) for at, to, do, arguments in entries]
+    return run_trial(machine, job, fields={"z": fields}, seconds=1.0, label="test")
+
+
+def test_fields_and_cycles_are_kept(mill):
+    run = trial(mill, (0.1, "z", "move_relative", {"distance": 10.0}), fields=("set_position", "set_velocity"))
+    assert not run.failed
+    columns = run.columns["z"]
+    assert set(columns) == {"cycle", "set_position", "set_velocity"}
+    assert columns["cycle"].tolist() == list(range(len(columns["cycle"])))
+    assert columns["set_position"][0] == 0.0 and columns["set_position"][-1] == 10.0
+
+
+def test_a_refused_command_ends_the_run(mill, capsys):
+    after = (2.0, "z", "move_relative", {"distance": 10.0})
+    run = trial(mill, (0.1, "z", "move_absolute", {"target": 1000.0}), after)
+    assert run.failed and len(run.columns["z"]["cycle"]) < 500
+    run.print_faults()
+    assert capsys.readouterr().err == (
+        "refused: P-ERR-120002 axis z: move_absolute refused: target 1000.0 mm lies beyond the positive soft limit "
+        "150.0 mm (P-AXIS-00178); nothing was changed\n"
+    )
+
+
+def test_a_fault_ends_the_run(tmp_path):
+    strict = read_machine(str(changed_mill(tmp_path / "strict.yaml", "z", getriebe={"0": {"slep_max": 100}})))
+    later = (60.0, "z", "reset", {})
+    run = trial(strict, (0.1, "z", "move_absolute", {"target": 140.0}), later)
+    assert run.failed and run.result.errors[0].startswith("P-ERR-17744 axis z: following error")
+    assert len(run.columns["z"]["cycle"]) < 1000
+
+
+def slow_circle(*options):
+    """A circle test that takes minutes of machine time."""
+    words = ["circle", MILL, "--radius", 100, "--feed", 200, "--direction", "ccw", *options]
+    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, words)]
+
+
+def test_interrupted_runs_stop_on_their_ramps_and_are_status_1():
+    with subprocess.Popen(slow_circle(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            running.wait(5)  # until it runs for certain
+        except subprocess.TimeoutExpired:
+            running.send_signal(signal.SIGINT)
+        output, errors = running.communicate(timeout=100)
+    assert running.returncode == 1
+    assert "failed: P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in errors
+    assert output == "" and "Traceback" not in errors
+
+
+def test_a_terminal_sees_a_bar():
+    terminal, other_end = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
+    words = ["circle", MILL, "--radius", 5, "--feed", 3000, "--direction", "ccw"]
+    job = [sys.executable, "-m", "cnc_ptp.cli", *map(str, words)]
+    running = subprocess.Popen(job, stdout=subprocess.DEVNULL, stderr=other_end, env=environment)
+    os.close(other_end)
+    shown = b""
+    while True:
+        try:
+            part = os.read(terminal, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not part:
+            break
+        shown += part
+    os.close(terminal)
+    assert running.wait(60) == 0
+    text = shown.decode()
+    assert "without feedforward" in text and " %" in text

@@ -1,0 +1,53 @@
+"""The gain at which a loop becomes unstable, against loops that are run: just below it they die away, above they grow."""
+
+from __future__ import annotations
+
+import pytest
+from format_support import control_of
+from loop_support import LIMITS, T
+
+from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.drives import make_drive
+from cnc_ptp.parameters.stability import position_loop
+
+CASCADE = ("simulation.model: CASCADED", "getriebe.0.load: 0.6")
+LOOPS = {
+    "no lag": (),
+    "first order": ("simulation.drive_time_constant: 3000",),
+    "bus": ("simulation.drive_time_constant: 3000", "simulation.bus_delay_cycles: 2"),
+    "cascaded": (*CASCADE, "simulation.drive_time_constant: 2000", "simulation.current_time_constant: 500"),
+    "cascaded, bus": (*CASCADE, "simulation.bus_delay_cycles: 3"),
+    "position": (
+        "antr.operation_mode: DRIVE_POSITION_CONTROL",
+        "simulation.drive_time_constant: 3000",
+        "simulation.bus_delay_cycles: 2",
+    ),
+    "lag": ("antr.operation_mode: DSC_POSITION_CONTROL", "simulation.bus_delay_cycles: 1"),
+    "torque": ("antr.telegram.commands: [S-0-0080]", "getriebe.0.load: 0.6", "simulation.current_time_constant: 300"),
+    "torque, bus": (
+        "antr.telegram.commands: [S-0-0080]",
+        "getriebe.0.load: 0.6",
+        "simulation.inertia: 0.5",
+        "simulation.bus_delay_cycles: 1",
+        "lr_param.velocity_gain: 150",
+    ),
+}
+
+
+def size_after(lines: tuple[str, ...], kv: float, cycles: int) -> float:
+    """Following error of a loop some time after a step of 1 µm, mm; the largest of its last 100 cycles."""
+    control = control_of(*lines, f"getriebe.0.kv: {round(100 * kv)}")
+    loop = ControlLoop(control, cycle_time=T, limits=LIMITS, drive=make_drive(control, T))
+    errors = [abs(loop.step((0.001, 0.0, 0.0, 0.0), closed=True).following_error) for _ in range(cycles)]
+    return max(errors[-100:])
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_the_limit_is_where_loops_begin_to_grow(name: str) -> None:
+    lines = (*LOOPS[name], "simulation.encoder: 0")
+    loop = position_loop(control_of(*lines), T)
+    limit = loop.limit(T)
+    assert loop.is_stable(0.98 * limit)
+    assert not loop.is_stable(1.02 * limit)
+    assert size_after(lines, 0.97 * limit, 4000) < 1e-4
+    assert size_after(lines, 1.03 * limit, 4000) > 1e-2
