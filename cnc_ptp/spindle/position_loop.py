@@ -7,8 +7,13 @@ is speed / Kv. Units: °, °/s.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cnc_ptp.control.drive import Drive
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+
+Cycles = tuple[list[float], list[float], list[float], list[int]]
+"""Actual positions, actual speeds, following errors, drive outputs."""
 
 
 class PositionLoop:
@@ -120,6 +125,50 @@ class PositionLoop:
             last, self._last_position = self._last_position, self.position
             return 0.0 if last is None else (self._last_position - last) / self._cycle_time
         return self._sign * self.drive.velocity
+
+    def undisturbed(self, first_speed: float, last_speed: float) -> bool:
+        """True when nothing opens or closes the loop while the speed goes steadily from one value to the other."""
+        if self.velocity_control or self.beyond_limit:
+            return False
+        limit = self._gear.control_limit
+        return self._parameters.open_loop or (abs(first_speed) <= limit and abs(last_speed) <= limit)
+
+    def closed_cycles(self, positions: Sequence[float], limit: float) -> Cycles:
+        """Cycles of the closed loop for the set `positions`, up to a following error above `limit`.
+
+        The same as actual_position, actual_speed and command, cycle by cycle.
+        """
+        drive, sign, offset, kv, gain = self.drive, self._sign, self.offset, self._kv, self._gear.output_gain
+        step = drive.step
+        cycles: Cycles = [], [], [], []
+        actuals, speeds, errors, outputs = cycles
+        for position in positions:
+            actual = sign * drive.position + offset
+            error = position - actual
+            if not -limit <= error <= limit:
+                break
+            actuals.append(actual)
+            speeds.append(sign * drive.velocity)
+            errors.append(error)
+            command = kv * error
+            outputs.append(round(command * gain * sign))
+            step(sign * command)
+        if outputs:
+            self.drive_output = outputs[-1]
+        return cycles
+
+    def cycles(self, positions: Sequence[float], speeds: Sequence[float], *, on: bool) -> Cycles:
+        """The same where the loop is open, or without power."""
+        cycles: Cycles = [], [], [], []
+        actuals, actual_speeds, errors, outputs = cycles
+        for position, speed in zip(positions, speeds, strict=True):
+            actual = self.actual_position(position, speed)
+            actuals.append(actual)
+            actual_speeds.append(self.actual_speed(speed))
+            errors.append(position - actual)
+            self.command(position - actual, speed, on=on)
+            outputs.append(self.drive_output)
+        return cycles
 
     def command(self, following_error: float, set_speed: float, *, on: bool) -> float:
         """Moves the drive for one cycle; returns the commanded speed. `on` is False without power."""
