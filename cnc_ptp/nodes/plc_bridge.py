@@ -32,10 +32,10 @@ class PlcBridgeNode(UnitNode):
     """UnitNode of the PLC.
 
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
-    /<axis|spindle>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of overrides and
-    switches a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
-    hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms sets feed hold on
-    all channels.
+    /<axis|spindle>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of
+    overrides and switches a value counts when it changes; the last one holds when messages stop; `valid` = false means
+    100 %, no feed hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms
+    sets feed hold on all channels.
     """
 
     def __init__(

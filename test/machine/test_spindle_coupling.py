@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from machine_support import MILL, MachineBench, spindle_bench, spindle_parameters
+from spindle_support import two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import Command, CycleTick, SpindleBlock
@@ -140,6 +141,30 @@ def test_without_its_master_a_slave_stops() -> None:
     run.run(0.3)
     assert run.errors()[0].startswith("P-ERR-26101 spindle t: no block of 's' came within the watchdog time")
     assert run.column("t", "set_speed_rpm")[-1] == 0.0
+
+
+def test_a_reset_of_the_master_stops_its_slaves_too() -> None:
+    run = coupled("- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}\n- {at: 0.5, to: s, do: reset}").run(
+        1.0
+    )
+    assert run.column("t", "set_speed_rpm") == run.column("s", "set_speed_rpm") and run.states("t")[-1] == S.STANDSTILL
+
+
+def test_a_slave_in_its_gear_change_follows_afterwards() -> None:
+    """The slave changes its gear first and is coupled then; what its master does waits for the PLC."""
+    gears = two_gears(change_position=20.0)
+    machine_of_two = replace(machine(), spindles={**machine().spindles, "t": replace(gears, name="t", number=11)})
+    scenario = """
+- {at: 0.0, to: plc, do: auto_acknowledge, on: false}
+- {at: 0.0, to: t, do: select_gear, stage: 2}
+- {at: 0.0, to: t, do: couple, master: s}
+- {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 1000.0}
+- {at: 0.6, to: t, do: gear_changed}
+"""
+    run = MachineBench(scenario=scenario, machine=machine_of_two, end_when_idle=False).run(1.2)
+    speeds = run.column("t", "set_speed_rpm")
+    assert speeds[599] == 0.0 and speeds[-1] == 1000.0 and run.column("s", "set_speed_rpm")[599] == 1000.0
+    assert run.column("t", "gear")[-1] == 2
 
 
 # ---------------------------------------------------------------- what may not be coupled
