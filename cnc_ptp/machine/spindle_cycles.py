@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from cnc_ptp.axis.states import AxisStateCode as S
@@ -13,6 +14,17 @@ from cnc_ptp.spindle.states import SpindleBit
 
 SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
 """States that do not end by themselves."""
+(
+    POSITION_CONTROL,
+    VELOCITY_CONTROL,
+    MONITORING_ACTIVE,
+    MONITORING_INVALID,
+    OVERRIDE_SUPPRESSED,
+    STOP_AT_PROGRAM_END,
+    TOOL_LIMITS,
+    JOB_ERROR,
+) = map(int, SpindleBit)
+"""As plain numbers: operations on members of an IntEnum take microseconds."""
 FIELDS = 21
 Columns = list[Any]
 """The fields of SpindleBlock with a value per cycle, in their order."""
@@ -28,17 +40,15 @@ class SpindleCycles:
 
     def block(self, first_cycle: int, count: int) -> Columns:
         """All columns of a block."""
-        spindle = self._spindle
-        if not spindle.unsettled:
-            columns = self._steady_cycles(first_cycle, count)
+        columns: Columns = [[] for _ in range(FIELDS)]
+        done = 0
+        if self._undisturbed(first_cycle, first_cycle + count - 1):
+            columns = self._undisturbed_cycles(first_cycle, count)
             done = len(columns[0])
-            if done == count:
-                return columns
-        else:
-            columns, done = [[] for _ in range(FIELDS)], 0
-        rows = [self._cycle(cycle) for cycle in range(first_cycle + done, first_cycle + count)]
-        for column, values in zip(columns, zip(*rows, strict=True), strict=True):
-            column += values
+        if done < count:
+            rows = [self._cycle(cycle) for cycle in range(first_cycle + done, first_cycle + count)]
+            for column, values in zip(columns, zip(*rows, strict=True), strict=True):
+                column += values
         return columns
 
     # any cycle
@@ -134,20 +144,22 @@ class SpindleCycles:
     def _bits(self) -> int:
         spindle = self._spindle
         loop = spindle.loop
-        bits = SpindleBit.POSITION_CONTROL if loop.closed and spindle.state != S.DISABLED else 0
+        bits = POSITION_CONTROL if loop.closed and spindle.state != S.DISABLED else 0
         if spindle.state == S.CONTINUOUS_MOTION:
-            bits |= SpindleBit.MONITORING_ACTIVE
-        for on, bit in (
-            (loop.velocity_control, SpindleBit.VELOCITY_CONTROL),
-            (not loop.measures_speed, SpindleBit.MONITORING_INVALID),
-            (spindle.override_suppressed, SpindleBit.OVERRIDE_SUPPRESSED),
-            (self._rotation.stops_at_program_end, SpindleBit.STOP_AT_PROGRAM_END),
-            (not spindle.tool.none, SpindleBit.TOOL_LIMITS),
-            (spindle.job_error, SpindleBit.JOB_ERROR),
-        ):
-            if on:
-                bits |= bit
-        return int(bits)
+            bits |= MONITORING_ACTIVE
+        if loop.velocity_control:
+            bits |= VELOCITY_CONTROL
+        if not loop.measures_speed:
+            bits |= MONITORING_INVALID
+        if spindle.override_suppressed:
+            bits |= OVERRIDE_SUPPRESSED
+        if self._rotation.stops_at_program_end:
+            bits |= STOP_AT_PROGRAM_END
+        if spindle.has_tool_limits:
+            bits |= TOOL_LIMITS
+        if spindle.job_error:
+            bits |= JOB_ERROR
+        return bits
 
     def _note_settled(self, cycle: int) -> None:
         """Whether only commands and the following error can change anything from the next cycle on."""
@@ -164,36 +176,42 @@ class SpindleCycles:
 
     # cycles in which the spindle does nothing but go on
 
-    def _steady_cycles(self, first_cycle: int, count: int) -> Columns:
-        """The same as `_cycle` for settled cycles; up to a following error too large."""
+    def _undisturbed(self, first_cycle: int, last_cycle: int) -> bool:
+        """True when only the following error can change state, mode or loop in these cycles."""
+        spindle = self._spindle
+        if not spindle.unsettled:
+            return True
+        if spindle.jobs.job is not None or self._orders.waiting:
+            return False
+        if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
+            return False
+        if spindle.parameters.speed_time and not spindle.speed_was_reached:
+            return False
+        return spindle.loop.undisturbed(spindle.motion(first_cycle)[1], spindle.motion(last_cycle)[1])
+
+    def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
+        """The same as `_cycle` for such cycles; up to a following error too large."""
         spindle = self._spindle
         loop, gear, state = spindle.loop, spindle.gear, spindle.state
-        speed = spindle.motion(first_cycle)[1]
-        watched = gear.following_error_monitoring and not spindle.error_id and loop.closed and state != S.DISABLED
-        limit = gear.following_error_limit
-        on = state != S.DISABLED
-        positions, actuals, speeds, errors, outputs = [], [], [], [], []
-        for cycle in range(first_cycle, first_cycle + count):
-            position = spindle.motion(cycle)[0]
-            actual = loop.actual_position(position, speed)
-            error = position - actual
-            if watched and not -limit <= error <= limit:
-                break
-            speeds.append(loop.actual_speed(speed))
-            positions.append(position)
-            actuals.append(actual)
-            errors.append(error)
-            loop.command(error, speed, 0.0, on=on)
-            outputs.append(loop.drive_output)
-        n = len(positions)
-        target = spindle.target
-        targets = positions if target is None else [target] * n
-        zero = gear.zero_speed
-        return [
-            [speed / DEG_S_PER_RPM] * n,
-            [actual / DEG_S_PER_RPM for actual in speeds],
+        motions = spindle.motions(first_cycle, count)
+        positions, speeds, accelerations = map(list, zip(*motions, strict=True))
+        closed = loop.closed and state != S.DISABLED
+        watched = closed and gear.following_error_monitoring and not spindle.error_id
+        limit = gear.following_error_limit if watched else inf
+        if closed and not loop.feedforward.active:
+            actual = loop.closed_cycles(positions, limit)
+        else:
+            actual = loop.cycles(motions, limit, on=state != S.DISABLED)
+        actuals, actual_speeds, errors, outputs = actual
+        n = len(actuals)
+        positions, speeds, accelerations = positions[:n], speeds[:n], accelerations[:n]
+        targets = positions if spindle.target is None else [spindle.target] * n
+        reached = self._speeds_reached(actual_speeds)
+        columns = [
+            [speed / DEG_S_PER_RPM for speed in speeds],
+            [speed / DEG_S_PER_RPM for speed in actual_speeds],
             [spindle.programmed_speed / DEG_S_PER_RPM] * n,
-            [0.0] * n,
+            accelerations,
             positions,
             actuals,
             list(targets),
@@ -203,12 +221,30 @@ class SpindleCycles:
             outputs,
             [spindle.mode] * n,
             [gear.stage] * n,
-            [self._speed_reached(actual) for actual in speeds],
-            [abs(actual) <= zero for actual in speeds],
-            [self._in_position(actual) for actual in actuals],
+            reached,
+            [abs(speed) <= gear.zero_speed for speed in actual_speeds],
+            [False] * n if spindle.target is None else [self._in_position(position) for position in actuals],
             [spindle.referenced] * n,
             [False] * n,
             [self._bits()] * n,
             [state] * n,
             [spindle.error_id] * n,
         ]
+        if spindle.unsettled and n:
+            self._settle(first_cycle + n - 1, any(reached))
+        return columns
+
+    def _speeds_reached(self, actual_speeds: list[float]) -> list[bool]:
+        """`_speed_reached` of many cycles with the same wanted speed."""
+        wanted = self._spindle.wanted_speed
+        if wanted == 0.0:
+            return [self._speed_reached(speed) for speed in actual_speeds]
+        band = self._spindle.parameters.speed_reached_band * abs(wanted)
+        return [abs(speed - wanted) <= band for speed in actual_speeds]
+
+    def _settle(self, last_cycle: int, reached: bool) -> None:
+        spindle = self._spindle
+        if spindle.state == S.CONTINUOUS_MOTION:
+            spindle.speed_was_reached |= reached
+        self._orders.watch()
+        self._note_settled(last_cycle)

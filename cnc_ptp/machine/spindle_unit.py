@@ -54,7 +54,6 @@ class SpindleUnit(Unit):
             report_error=partial(self._report, Severity.ERROR),
             report_warning=partial(self._report, Severity.WARNING),
         )
-        self.spindle.loop.count_from(self.spindle.loop.position)
         self._orders = Orders(self.spindle)
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
         self._rotation = RotationCommands(self.spindle)
@@ -137,9 +136,12 @@ class SpindleUnit(Unit):
                     self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
 
     def do_reset(self, cycle: int) -> None:
-        """As PowerCommands.do_reset; what waits is forgotten."""
+        """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
+        in_error = bool(self.spindle.error_id)
         self._power.do_reset(cycle)
         self._orders.clear()
+        if not in_error:
+            self._passed_on.append(Command(self.name, "stop", {}))
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
@@ -168,17 +170,21 @@ class SpindleUnit(Unit):
     def _follow(self, cycle: int, master: SpindleBlock) -> None:
         spindle = self.spindle
         for command in master.commands:
-            if not can_follow(spindle):
-                return
-            try:
-                self._group_handler(command.command)(
-                    cycle, **self._coupling.of_slave(command.command, command.arguments)
-                )
-            except CncError as error:
-                name = self._coupling.master
-                if can_follow(spindle):
-                    reason = f"cannot carry out '{command.command}' of its master {name}: {why_not(error)}"
-                    spindle.fault(cycle, SLAVE_CANNOT, reason)
+            if can_follow(spindle):
+                self._do_as_master(cycle, command)
         if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
             reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
             spindle.fault(cycle, MASTER_IN_ERROR, reason)
+
+    def _do_as_master(self, cycle: int, command: Command) -> None:
+        """During a gear change of the slave the command waits; what the slave cannot do is an error."""
+        name, arguments = command.command, self._coupling.of_slave(command.arguments)
+        if self._orders.must_wait(name, ""):
+            self._orders.add(Order(name, arguments, ""))
+            return
+        try:
+            self._group_handler(name)(cycle, **arguments)
+        except CncError as error:
+            if can_follow(self.spindle):
+                reason = f"cannot carry out '{name}' of its master {self._coupling.master}: {why_not(error)}"
+                self.spindle.fault(cycle, SLAVE_CANNOT, reason)

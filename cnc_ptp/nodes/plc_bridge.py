@@ -32,10 +32,10 @@ class PlcBridgeNode(UnitNode):
     """UnitNode of the PLC.
 
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
-    /<axis>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of overrides and
-    switches a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
-    hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms sets feed hold on
-    all channels.
+    /<axis|spindle>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of
+    overrides and switches a value counts when it changes; the last one holds when messages stop; `valid` = false means
+    100 %, no feed hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms
+    sets feed hold on all channels.
     """
 
     def __init__(
@@ -56,8 +56,9 @@ class PlcBridgeNode(UnitNode):
             self._listen(msg.Override, unit, "override", self._override)
         for unit in machine.channels:
             self._listen(msg.Switch, unit, "feed_hold", partial(self._switch, command="feed_hold", idle=False))
-        for unit in machine.axes:
+        for unit in (*machine.axes, *machine.spindles):
             self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
+        for unit in machine.axes:
             received = partial(self._on_external_setpoint, unit)
             self.create_subscription(msg.ExternalSetpoint, f"/{unit}/external_setpoint", received, BLOCKS)
             self._listen(msg.CyclicCouplingFactor, unit, "coupling_factor", self._coupling_factor)

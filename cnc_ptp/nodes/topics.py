@@ -14,7 +14,7 @@ BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 REMEMBERED_BLOCKS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
 )
-"""Blocks of axes and spindles: one that is coupled to another finds those of the tick in which that was commanded."""
+"""Blocks of axes and spindles: a slave finds those of the tick in which it was coupled."""
 
 EVENTS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL

@@ -229,7 +229,7 @@ class UnitNode(Node):
             self._compute(*ready)
 
     def _follow_master(self) -> None:
-        """Needs the blocks of what this unit is coupled to now; the first ones come from the memory of the topic."""
+        """Needs the blocks of the unit that this one is coupled to now; the first ones come from the topic's memory."""
         master = self._runner.master
         self._gate.follow(master)
         if master is not None and master not in self._masters:

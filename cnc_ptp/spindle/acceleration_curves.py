@@ -18,9 +18,9 @@ from typing import NamedTuple
 from cnc_ptp.parameters import CurveParameters
 from cnc_ptp.spindle.polynomials import crossing, roots_between, value
 
-ORDER = 16
+ORDER = 12
 """Highest power of time in a segment of a ramp …"""
-TRUNCATION = 1e-16
+TRUNCATION = 1e-14
 """… which ends where that power would be worth more than this part of the speed."""
 
 Leg = tuple[float, tuple[float, ...]]

@@ -72,7 +72,7 @@ class CouplingCommands:
             self._spindle.refuse("decouple", NOT_COUPLED, "the spindle is not coupled")
         self.master = self.wanted = ""
 
-    def of_slave(self, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    def of_slave(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Arguments of the master's command, as they are for this spindle."""
         scaled = dict(arguments)
         for name, factor in (("speed_rpm", abs(self._ratio)), ("position_deg", self._ratio)):

@@ -8,14 +8,18 @@ is speed / Kv. Units: °, °/s.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from math import inf
 
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward, State
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.spindle.speed_table import Motion
 
 HISTORY = 16
 """Setpoints that feedforward may look back at."""
+Cycles = tuple[list[float], list[float], list[float], list[int]]
+"""Actual positions, actual speeds, following errors, drive outputs."""
 
 
 class PositionLoop:
@@ -149,6 +153,53 @@ class PositionLoop:
             last, self._last_position = self._last_position, self.position
             return 0.0 if last is None else (self._last_position - last) / self._cycle_time
         return self._sign * self.drive.velocity
+
+    def undisturbed(self, first_speed: float, last_speed: float) -> bool:
+        """True when nothing opens or closes the loop while the speed goes steadily from one value to the other."""
+        if self.velocity_control or self.beyond_limit:
+            return False
+        limit = self._gear.control_limit
+        return self._parameters.open_loop or (abs(first_speed) <= limit and abs(last_speed) <= limit)
+
+    def closed_cycles(self, positions: Sequence[float], limit: float) -> Cycles:
+        """Cycles of the closed loop for the set `positions`, up to a following error above `limit`.
+
+        The same as actual_position, actual_speed and command, cycle by cycle.
+        """
+        drive, sign, offset, kv, gain = self.drive, self._sign, self.offset, self._kv, self._gear.output_gain
+        step = drive.step
+        cycles: Cycles = [], [], [], []
+        actuals, speeds, errors, outputs = cycles
+        for position in positions:
+            actual = sign * drive.position + offset
+            error = position - actual
+            if not -limit <= error <= limit:
+                break
+            actuals.append(actual)
+            speeds.append(sign * drive.velocity)
+            errors.append(error)
+            command = kv * error
+            outputs.append(round(command * gain * sign))
+            step(sign * command)
+        if outputs:
+            self.drive_output = outputs[-1]
+        return cycles
+
+    def cycles(self, motions: Sequence[Motion], limit: float, *, on: bool) -> Cycles:
+        """The same with feedforward, where the loop is open, or without power."""
+        cycles: Cycles = [], [], [], []
+        actuals, actual_speeds, errors, outputs = cycles
+        for position, speed, acceleration in motions:
+            actual = self.actual_position(position, speed)
+            error = position - actual
+            if not -limit <= error <= limit:
+                break
+            actuals.append(actual)
+            actual_speeds.append(self.actual_speed(speed))
+            errors.append(error)
+            self.command(error, speed, acceleration, on=on)
+            outputs.append(self.drive_output)
+        return cycles
 
     def command(self, following_error: float, set_speed: float, acceleration: float, *, on: bool) -> float:
         """Moves the drive for one cycle; returns the commanded speed. `on` is False without power."""

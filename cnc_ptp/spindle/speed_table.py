@@ -32,12 +32,16 @@ class SpeedTable:
     end        (p, v, a) at the end, a = 0
     """
 
-    __slots__ = ("_starts", "duration", "end", "segments")
+    __slots__ = ("_falling", "_starts", "duration", "end", "segments")
 
     def __init__(self, segments: Sequence[Segment]) -> None:
         last = segments[-1]
         self.segments = tuple(segments)
         self._starts = tuple(segment.start for segment in segments)
+        self._falling = tuple(
+            (segment.start, segment.way[::-1], segment.speed[::-1], segment.rate[::-1]) for segment in segments
+        )
+        """The powers from the highest one down, as Horner's scheme takes them."""
         self.duration = last.start
         self.end: Motion = (last.way[0], last.speed[0], 0.0)
 
@@ -45,13 +49,20 @@ class SpeedTable:
         """(p, v, a) at t seconds after the begin; before it as at 0."""
         if t < 0.0:
             t = 0.0
-        start, way, speed, rate = self.segments[bisect_right(self._starts, t) - 1]
+        start, way, speed, rate = self._falling[bisect_right(self._starts, t) - 1]
         d = t - start
         if len(speed) == 1:
-            return way[0] + d * way[1], speed[0], 0.0
+            return way[1] + d * way[0], speed[0], 0.0
         if len(speed) == 2:
-            return way[0] + d * (way[1] + d * way[2]), speed[0] + d * speed[1], rate[0]
-        return value(way, d), value(speed, d), value(rate, d)
+            return way[2] + d * (way[1] + d * way[0]), speed[1] + d * speed[0], rate[0]
+        p = v = a = 0.0
+        for power in way:
+            p = p * d + power
+        for power in speed:
+            v = v * d + power
+        for power in rate:
+            a = a * d + power
+        return p, v, a
 
 
 def segment(start: float, position: float, powers: Sequence[float]) -> Segment:

@@ -45,6 +45,7 @@ class Spindle:
         self.cycle_time = cycle_time
         self.gear = parameters.gears[parameters.gear]
         self.tool = ToolLimits()
+        self.has_tool_limits = False
         self.next_tool: ToolLimits | None = None
         """Counts when the spindle next leaves standstill."""
         self.limits = SpindleLimits(self.gear, self.tool)
@@ -82,6 +83,19 @@ class Spindle:
         """Set position, speed and acceleration at `cycle`, as they stand before a command that acts there."""
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
+
+    def motions(self, first_cycle: int, count: int) -> list[Motion]:
+        """`motion` of many cycles."""
+        state_at, origin, shift, cycle_time = self._table.state_at, self._origin, self._shift, self.cycle_time
+        if not self.finished(first_cycle):
+            states = [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
+            return [(position + shift, speed, acceleration) for position, speed, acceleration in states]
+        end = self._table.segments[-1]
+        start, (position, speed) = end.start, end.way
+        return [
+            (position + ((cycle - origin) * cycle_time - start) * speed + shift, speed, 0.0)
+            for cycle in range(first_cycle, first_cycle + count)
+        ]
 
     def finished(self, cycle: int) -> bool:
         """The table has come to its end speed."""
@@ -152,6 +166,7 @@ class Spindle:
         """New limits of a tool count from standstill on."""
         if self.next_tool is not None and self.state == S.STANDSTILL and self.motion(cycle)[1] == 0.0:
             self.tool, self.next_tool = self.next_tool, None
+            self.has_tool_limits = self.tool != ToolLimits()
             self.limits = SpindleLimits(self.gear, self.tool)
 
     def use_gear(self, cycle: int, stage: int) -> None:

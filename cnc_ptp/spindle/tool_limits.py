@@ -19,10 +19,6 @@ class ToolLimits:
     min_speed: float = 0.0
     max_acceleration: float = inf
 
-    @property
-    def none(self) -> bool:
-        return self == ToolLimits()
-
 
 class SpindleLimits:
     """Speeds and ramps that count in one gear with one tool."""

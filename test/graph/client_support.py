@@ -163,7 +163,7 @@ def beside_composed_run(machine):
     process.initialise()
     client = Client(read_machine(machine))
     client.start()
-    client.wait_blocks("x", 3)
+    client.wait_blocks("plc", 3)
     try:
         yield client
     finally:

@@ -45,10 +45,12 @@ class Blocks:
         return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (8, 32, 32)))
 
     def spindle(self, first: int, count: int = 10) -> SpindleBlock:
-        columns = [self.floats(count) for _ in range(7)]
+        columns = [self.floats(count) for _ in range(10)]
+        output = [value - 2**31 for value in self.integers(count, 32)]
         modes = [self.integers(count, 8) for _ in range(2)]
-        flags = [self.booleans(count) for _ in range(3)]
-        return SpindleBlock(first, count, *columns, *modes, *flags, self.integers(count, 8), self.integers(count, 32))
+        flags = [self.booleans(count) for _ in range(5)]
+        last = [self.integers(count, bits) for bits in (32, 8, 32)]
+        return SpindleBlock(first, count, *columns, output, *modes, *flags, *last)
 
     def channel(self, first: int, count: int = 10, axes: tuple[str, ...] = ("x", "y", "z")) -> ChannelBlock:
         return ChannelBlock(
@@ -169,16 +171,23 @@ def _spindle(first: int) -> SpindleBlock:
         10,
         speeds,
         [speed * 0.98 for speed in speeds],
+        [1000.0] * 10,
+        zero,
+        zero,
         zero,
         zero,
         zero,
         zero,
         [100.0] * 10,
+        [0] * 10,
         [2] * 10,
         [1] * 10,
         [speed >= 950.0 for speed in speeds],
         [speed < 1.0 for speed in speeds],
+        [False] * 10,
         [True] * 10,
+        [False] * 10,
+        [5] * 10,
         [4] * 10,
         [0] * 10,
     )

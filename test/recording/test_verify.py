@@ -64,6 +64,12 @@ SAMPLES = [
         "master",
         "target_velocity",
         "couples_actual",
+        "gear_request",
+        "master_wanted",
+        "source",
+        "plc_commands",
+        "plc_acknowledged",
+        "refused",
     )
     and not (unit == "channel" and field.startswith("set_"))
 ]

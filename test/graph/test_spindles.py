@@ -1,0 +1,129 @@
+"""Spindles in processes of their own: coupled, with gears, by services and actions, and as in the offline run."""
+
+from copy import deepcopy
+
+import numpy as np
+import pytest
+import yaml
+from action_msgs.msg import GoalStatus
+from client_support import beside_composed_run
+from graph_support import MILL, run, states_equal, verified
+
+from cnc_ptp import action, srv
+
+SCENARIO = """
+- {at: 0.0, to: t, do: couple, master: s, factor_num: -1, factor_den: 2}
+- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 2000.0}
+- {at: 0.6, to: s, do: set_override, percent: 80.0}
+- {at: 0.8, to: s, do: orient, position_deg: 30.0, speed_rpm: 300.0}
+- {at: 1.6, to: t, do: decouple}
+- {at: 1.6, to: s, do: select_gear, stage: 2}
+- {at: 1.6, to: s, do: start, direction: ccw, speed_rpm: 700.0, source: plc}
+- {at: 1.6, to: s, do: orient, position_deg: 200.0, source: plc}
+- {at: 1.7, to: t, do: home}
+- {at: 2.6, to: t, do: start, direction: cw, speed_rpm: 900.0}
+"""
+
+
+def machine_of(folder):
+    """The mill without axes, its spindle twice; `s` with two gears, `t` with a control limit, not yet homed."""
+    mill = yaml.load(MILL.read_text(), yaml.BaseLoader)
+    spindle = mill["/s"]["ros__parameters"]
+    gear = spindle["getriebe"]["0"]
+    machine = mill["/machine"]["ros__parameters"] | {"channels": [], "axes": [], "spindles": ["s", "t"]}
+    other = {**gear, "getr_schalt_pos": "450000", "kv": "4000"}
+    s = {**spindle, "getriebe": {"0": gear, "1": other}}
+    t = {
+        **spindle,
+        "kopf": {"achs_nr": "5"},
+        "getriebe": {"0": {**gear, "vb_regelgrenze": "4200000"}},
+        "simulation": {"drive_time_constant": "3000", "referenced_at_start": "0", "zero_pulse": "77.7"},
+    }
+    units = deepcopy({"/machine": machine}) | {"/s": deepcopy(s)} | {"/t": deepcopy(t)}
+    units["/s"]["getriebe"] = {stage: deepcopy(record) for stage, record in s["getriebe"].items()}
+    path = folder / "spindles.yaml"
+    path.write_text(yaml.dump({name: {"ros__parameters": part} for name, part in units.items()}).replace("'", ""))
+    return path
+
+
+@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+def test_coupled_spindles_in_the_graph_equal_the_offline_run(tmp_path, options):
+    (tmp_path / "job.yaml").write_text(SCENARIO)
+    job = (machine_of(tmp_path), "--scenario", tmp_path / "job.yaml")
+    run("simulate", *job, "--record", tmp_path / "a.mcap")
+    output = run("run", *job, *options, "--record", tmp_path / "b.mcap").stdout
+    assert "lost 0, computed twice 0" in output
+    assert states_equal(tmp_path / "a.mcap", tmp_path / "b.mcap") == []
+    states = verified(tmp_path / "b.mcap").states
+    s, t = states["/s/state"], states["/t/state"]
+    assert t["set_speed_rpm"][550] == -1000.0 and s["set_speed_rpm"][550] == 2000.0
+    assert np.array_equal(np.unique(s["gear"]), [1, 2]) and t["referenced"].any()
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("spindles")
+    with beside_composed_run(machine_of(folder)) as client:
+        yield client
+
+
+def test_services_of_a_spindle(client):
+    client.done("s", "orient", position_deg=100.0, speed_rpm=0.0, direction="", source="")
+    client.wait_last("s", lambda block: block.in_position[-1], "in position")
+    client.done("s", "set_limits", max_speed_rpm=500.0, min_speed_rpm=float("nan"), max_acceleration=0.0)
+    answer = client.done("s", "start", direction="cw", speed_rpm=800.0, source="")
+    client.wait_last("s", lambda block: block.set_speed_rpm[-1] == 500.0, "500 rpm")
+    client.done("s", "set_speed", speed_rpm=300.0, source="")
+    client.wait_last("s", lambda block: block.set_speed_rpm[-1] == 300.0, "300 rpm")
+    client.done("s", "stop", source="")
+    client.wait_last("s", lambda block: block.speed_zero[-1], "speed zero")
+    client.done("s", "select_gear", stage=2, source="")
+    client.wait_last("s", lambda block: block.gear[-1] == 2, "gear 2")
+    client.done("s", "reset_limits")
+    text = "spindle s: select_gear refused: gear 4 has no record getriebe[i]; there are 1, 2; nothing was changed"
+    client.refused("s", "select_gear", 24014, text, stage=4, source="")
+    assert answer is None or answer.accepted
+
+
+def test_external_commanding_is_acknowledged(client):
+    """Page 11: in order of arrival; the block says how many are done."""
+    before = client.wait_last("s", lambda block: True, "a block").plc_commands
+    client.done("s", "start", direction="cw", speed_rpm=1000.0, source="plc")
+    client.done("s", "orient", position_deg=0.0, speed_rpm=0.0, direction="", source="plc")
+    done = client.wait_last("s", lambda block: block.plc_acknowledged == before + 2, "two acknowledgements")
+    assert done.in_position[-1] and done.plc_commands == before + 2
+
+
+def test_coupling_by_service(client):
+    answer = client.ask(srv.CoupleSpindle, "/t/couple", master="s", factor_num=1.0, factor_den=2.0)
+    assert answer.accepted
+    client.wait_last("t", lambda block: block.master == "s", "coupled")
+    client.done("s", "start", direction="ccw", speed_rpm=400.0, source="")
+    client.wait_last("t", lambda block: block.set_speed_rpm[-1] == -200.0, "half the speed")
+    client.done("s", "stop", source="")
+    client.wait_last("t", lambda block: block.set_speed_rpm[-1] == 0.0, "stopped with its master")
+    client.done("t", "decouple")
+    client.wait_last("t", lambda block: block.master == "", "free")
+
+
+def test_positioning_and_homing_as_actions(client):
+    goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=222.0, speed_rpm=120.0, direction="cw")
+    status, result = client.result_of(goal)
+    assert (status, result.success, result.message) == (GoalStatus.STATUS_SUCCEEDED, True, "")
+    assert result.position_deg % 360.0 == pytest.approx(222.0, abs=0.06)
+    goal, _ = client.action(action.Home, "/t/homing")
+    status, result = client.result_of(goal)
+    assert (status, result.success) == (GoalStatus.STATUS_SUCCEEDED, True)
+    assert client.wait_last("t", lambda block: True, "a block").referenced[-1]
+
+
+def test_a_cancelled_positioning_stops(client):
+    goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=10.0, speed_rpm=1.0, direction="ccw")
+    client.wait_last("s", lambda block: block.set_speed_rpm[-1] == -1.0, "1 rpm")
+    goal.cancel_goal_async()
+    status, result = client.result_of(goal)
+    assert status == GoalStatus.STATUS_CANCELED and not result.success
+    assert result.message.startswith("the positioning has ended at ")
+    goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=10.0, speed_rpm=1e6)
+    status, result = client.result_of(goal)
+    assert (status, result.error_id) == (GoalStatus.STATUS_ABORTED, 24002)
