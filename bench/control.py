@@ -102,4 +102,4 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
         "first-order drive alone",
     )
     for index, (name, value) in enumerate(zip(names, values, strict=True)):
-        yield Figure(name, value, "µs/cycle", goal=GOAL if index == 0 else None, at_most=True)
+        yield Figure(f"{name} (least)", value, "µs/cycle", goal=GOAL if index == 0 else None, at_most=True)
