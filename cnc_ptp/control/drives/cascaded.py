@@ -16,6 +16,9 @@ BEND = 0.1
 FAR = 5.5
 """Stribeck velocities above which the Stribeck part is none (e^-30) and zero is not near."""
 NEGLIGIBLE = 1e-12
+"""mm/s or deg/s that are none."""
+STRONGEST = 1e12
+"""mm/s² or deg/s²; where an unstable loop without torque limit ends before its numbers do."""
 
 
 class CascadedDrive:
@@ -88,7 +91,7 @@ class CascadedDrive:
         self._filtered = plant.time_constant > 0.0
         self._lagging = plant.current_time_constant > 0.0
         self._integral_rate = gain / plant.velocity_integral_time if plant.velocity_integral_time > 0.0 else 0.0
-        self._limit = plant.torque_limit / plant.torque_per_acceleration
+        self._limit = min(STRONGEST, plant.torque_limit / plant.torque_per_acceleration)
         self._edge = self._limit * (1.0 - 1e-9)
         self._transitions = tuple(
             transition(plant, gain=gain, duration=cycle_time / 2**level) for level in range(FINEST + 1)
