@@ -18,7 +18,7 @@ from rich.console import Console
 
 from bench.figures import FULL, SHORT, Effort, Figure, Say, table
 
-TOPICS = ("interpreter", "motion", "recording", "offline", "graph", "service", "slaves")
+TOPICS = ("interpreter", "motion", "control", "recording", "offline", "graph", "service", "slaves")
 
 
 @contextmanager
@@ -64,7 +64,7 @@ def write_json(path: str, effort: Effort, results: dict[str, list[Figure]]) -> N
 def main(topics: tuple[str, ...], short: bool, json_file: str | None) -> None:
     """Measure speed and memory of TOPICS (all if none is given). Figures never fail; goals stand beside them.
 
-    Medians over several runs. Where another program does the same, it runs in turn with ours.
+    Medians over several runs (control: the least). Where another program does the same, it runs in turn with ours.
     """
     effort = SHORT if short else FULL
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 140)

@@ -17,10 +17,10 @@ State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""
 ROUNDING = 1e-9
 """Part of a factor that is missing: it is reached."""
-EXCESS = 0.02
+EXCESS = 0.03
 """Part of the axis' acceleration that feedforward and motion may be above it together while it is coupled in or out."""
-DECAYED = 5.0
-"""Time constants after which nothing counts of a lag that was made up: e^5 · EXCESS > 1."""
+DECAYED = 3.0
+"""Time constants after which a lag that was made up does not count any more: e^3 · EXCESS > 1."""
 
 
 class Feedforward:
@@ -234,20 +234,21 @@ class CouplingLimits(NamedTuple):
 class Coupling:
     """Factor of a feedforward that is coupled in and out softly.
 
-    While the factor changes at the rate r, the feedforward velocity F adds r·F to the change of the velocity command.
-    That change stays within the axis' acceleration, and with it the acceleration of a first-order drive; r·F changes
-    by the axis' jerk. As a lag is made up, the axis is faster than its setpoint by about r·F/Kv: its velocity must
-    have room for that. With no room left the factor waits.
+    A change of the factor pushes the velocity command: what it changes it by beside the motion itself. The push changes
+    by the axis' jerk, comes down to 0 in time, and command and push together stay within the axis' acceleration - and
+    with them the acceleration of a first-order drive. As a lag is made up, the axis is faster than its setpoint by
+    about push/Kv; its velocity must have room for that. With no room left the factor waits.
 
     An additive torque M counts as a velocity M/(k·Kv), for a velocity controller is faster than a position controller.
     """
 
-    __slots__ = ("_cycle_time", "_kv", "_last_command", "_limits", "_rate", "_reserve", "factor", "target")
+    __slots__ = ("_cycle_time", "_kv", "_last_command", "_limits", "_push", "_quantum", "_reserve", "factor", "target")
 
     def __init__(self, limits: CouplingLimits, *, cycle_time: float, kv: float) -> None:
         self._limits, self._cycle_time, self._kv = limits, cycle_time, kv
+        self._quantum = limits.jerk * cycle_time
         self._reserve = kv / limits.jerk
-        self._rate = 0.0
+        self._push = 0.0
         self._last_command: float | None = None
         self.factor = self.target = 0.0
 
@@ -257,7 +258,7 @@ class Coupling:
 
     def settle(self) -> None:
         """The factor is what was selected."""
-        self.factor, self._rate = self.target, 0.0
+        self.factor, self._push = self.target, 0.0
 
     def forget(self) -> None:
         """The loop is open or nothing is put out: what was selected holds at once, nothing moves."""
@@ -274,38 +275,39 @@ class Coupling:
         `feedback` of the position controller; `velocity` of the feedforward and its torque as a velocity, both at
         factor 1; all in mm/s (deg/s).
         """
-        size = abs(velocity) + abs(torque_velocity)
-        if size == 0.0:
+        size, t = abs(velocity) + abs(torque_velocity), self._cycle_time
+        missing = (self.target - self.factor) * size
+        if missing == 0.0:
             self.settle()
             return
-        if self._last_command is None:
-            return
-        missing, t = self.target - self.factor, self._cycle_time
-        quantum = self._limits.jerk * t / size
-        rate = self._smooth_rate(missing, quantum)
-        drift = (feedback + self.factor * velocity - self._last_command) / t
-        most = self._room(rate * velocity, rate * torque_velocity, drift, setpoint) / size
-        rate = max(-most, min(most, rate))
-        if rate * t / missing >= 1.0 - ROUNDING and abs(rate) <= 2.0 * quantum:
+        direction = copysign(1.0, velocity or torque_velocity)
+        push = self._smooth(missing, self._push * direction)
+        last_command = feedback + self.factor * velocity if self._last_command is None else self._last_command
+        drift = (feedback + self.factor * velocity - last_command) / t
+        most = self._room(push * velocity, push * torque_velocity, drift, setpoint)
+        push = max(-most, min(most, push))
+        if push * t / missing >= 1.0 - ROUNDING and abs(push) <= 2.0 * self._quantum:
             self.settle()
             return
-        self._rate = rate
-        self.factor += rate * t
+        before = self.factor
+        self.factor = max(0.0, min(1.0, before + push * t / size))
+        self._push = (self.factor - before) * size / t * direction
 
-    def _smooth_rate(self, missing: float, quantum: float) -> float:
-        """A rate that differs by `quantum` from the last one at most and can come down to 0 in such steps in time.
+    def _smooth(self, missing: float, last: float) -> float:
+        """A push that differs by one quantum (jerk · T) from the last one at most and comes down to 0 in such steps.
 
         Coming down from n quanta takes a way of n (n + 1) / 2 quanta · T.
         """
+        quantum = self._quantum
         double_way = 2.0 * abs(missing) / self._cycle_time
-        rate = copysign(double_way / (0.5 + sqrt(0.25 + double_way / quantum)), missing)
-        return max(self._rate - quantum, min(self._rate + quantum, rate))
+        push = copysign(double_way / (0.5 + sqrt(0.25 + double_way / quantum)), missing)
+        return max(last - quantum, min(last + quantum, push))
 
     def _room(self, by_velocity: float, by_torque: float, drift: float, setpoint: State) -> float:
-        """How much the factor may change the velocity command, mm/s² (deg/s²); without it, it changes by `drift`.
+        """The largest push, mm/s² (deg/s²); without it, the velocity command changes by `drift`.
 
         A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
-        the axis' limit in room/J, by when e^(-Kv·room/J) is left of the change.
+        the axis' limit in room/J, by when e^(-Kv·room/J) is left of the push.
         """
         limit, velocity, command = self._limits.acceleration, setpoint[1], self._last_command or 0.0
         room = max(0.0, limit - abs(setpoint[2]))

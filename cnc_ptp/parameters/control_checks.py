@@ -30,6 +30,7 @@ def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
         gear_denominators,
         zero_denominators,
         inertia,
+        velocity_controller,
         known_objects,
         operation_mode,
         additive_objects,
@@ -61,6 +62,16 @@ def inertia(parameters: ParameterSet) -> Iterator[Problem]:
             reason = "a torque command" if torque else "P-SIM-00006 simulation.model CASCADED"
             text = f"value 0 is no inertia for {reason}, P-SIM-00007 simulation.inertia is 0 too"
             yield problem(parameters, errors.CONTRADICTION, "P-AXIS-00391", (gear,), text)
+
+
+def velocity_controller(parameters: ParameterSet) -> Iterator[Problem]:
+    """The velocity loop of a cascaded plant, s³ Ti + s² + Kp s + Kp/Tn, is stable for Ti < Tn (Routh)."""
+    lag, integral = parameters.number("P-SIM-00010"), parameters.number("P-SIM-00009")
+    used = parameters.text("P-SIM-00006") == "CASCADED" and telegram.interface(parameters) != "torque"
+    if used and integral and lag >= integral:
+        where = f"the {lag} µs of P-SIM-00010 simulation.current_time_constant"
+        text = f"value {integral} is not above {where}, the velocity controller is unstable"
+        yield problem(parameters, errors.CONTRADICTION, "P-SIM-00009", (), text)
 
 
 def known_objects(parameters: ParameterSet) -> Iterator[Problem]:

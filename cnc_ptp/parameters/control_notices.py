@@ -26,8 +26,8 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str
     yield from weight(parameters)
     yield from position_delay(parameters)
     yield from following_error(parameters)
+    yield from open_loop(parameters)
     yield from velocity_range(parameters, cycle_time)
-    yield from velocity_controller(parameters)
     yield from gain(parameters, cycle_time)
 
 
@@ -75,6 +75,12 @@ def following_error(parameters: ParameterSet) -> Iterator[str]:
         yield line(parameters, "P-AXIS-00168", gear, text)
 
 
+def open_loop(parameters: ParameterSet) -> Iterator[str]:
+    mode = parameters.text("P-AXIS-00320")
+    if mode.startswith("OPEN_POSITION_LOOP"):
+        yield line(parameters, "P-AXIS-00320", (), f"mode {mode} is accepted, but the position loop stays closed")
+
+
 def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
     """A velocity command that is too short for the largest velocity of the axis."""
     gear = int(parameters.number("P-AXIS-00079")) - 1
@@ -92,15 +98,6 @@ def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]
             f"the {bits} bits of the command carry {limit:g} {unit}, less than the {largest:g} {unit} of P-AXIS-00212"
         )
         yield line(parameters, number, (gear,) if drive.analogue else (), text)
-
-
-def velocity_controller(parameters: ParameterSet) -> Iterator[str]:
-    """An unstable velocity loop of a cascaded plant: s³ Ti + s² + Kp s + Kp/Tn is stable for Ti < Tn (Routh)."""
-    lag, integral = parameters.kernel("P-SIM-00010"), parameters.kernel("P-SIM-00009")
-    if parameters.text("P-SIM-00006") == "CASCADED" and integral and lag >= integral:
-        shown = f"{lag * 1e6:g} µs of the current loop"
-        text = f"integral time {integral * 1e6:g} µs must be above the {shown} (P-SIM-00010), the drive is unstable"
-        yield line(parameters, "P-SIM-00009", (), text)
 
 
 def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:

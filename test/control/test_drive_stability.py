@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from format_support import control_of
 from loop_support import LIMITS, T
@@ -51,3 +53,10 @@ def test_the_limit_is_where_loops_begin_to_grow(name: str) -> None:
     assert not loop.is_stable(1.02 * limit)
     assert size_after(lines, 0.97 * limit, 4000) < 1e-4
     assert size_after(lines, 1.03 * limit, 4000) > 1e-2
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_an_unstable_loop_swings_but_its_numbers_stay_numbers(name: str) -> None:
+    lines = LOOPS[name]
+    limit = position_loop(control_of(*lines), T).limit(T)
+    assert math.isfinite(size_after(lines, 3.0 * limit, 6000))

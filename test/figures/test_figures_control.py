@@ -76,6 +76,35 @@ def test_additive_torque_is_the_force_of_the_mass():
     assert not run.column("z", "feedforward_velocity").any()
 
 
+# weighting and coupling
+
+
+def test_weighting_leaves_its_part_of_the_lag():
+    run = run_of("control_weighting")
+    lag_of_x, velocity = run.column("x", "following_error"), run.column("x", "set_velocity")
+    steady = constant(velocity, cycles=600)
+    forwards = steady[velocity[steady] == 100.0]
+    for begin, end, left in ((0.0, 3.0, 1.0), (3.0, 6.0, 0.0), (6.0, 9.0, 0.5)):
+        cycles = forwards[(forwards * CYCLE_TIME >= begin) & (forwards * CYCLE_TIME < end)]
+        assert len(cycles) > 100
+        assert lag_of_x[cycles] == pytest.approx(left * 100.0 / KV, abs=1e-3)
+
+
+def test_feedforward_comes_and_goes_within_the_limits_of_the_axis():
+    """10000 mm/s², 50000 mm/s³; the lag of 10 mm is made up while it is on."""
+    run = run_of("control_coupling")
+    feedforward, lag_of_y = run.column("y", "feedforward_velocity"), run.column("y", "following_error")
+    on, off = (round(marker.time / CYCLE_TIME) for marker in run.markers[1:])
+    assert not feedforward[:on].any()
+    assert feedforward[off - 1] == pytest.approx(500.0, abs=1e-6)
+    assert feedforward[off + 300] == 0.0
+    change = np.diff(feedforward) / CYCLE_TIME
+    assert np.abs(change).max() <= 10_000.0
+    assert np.abs(np.diff(change)).max() / CYCLE_TIME <= 50_000.0 * (1.0 + 1e-6)
+    assert (lag_of_y[on], lag_of_y[off], lag_of_y[off + 500]) == pytest.approx((10.0, 0.0, 10.0), abs=1e-2)
+    assert np.abs(np.diff(run.column("y", "actual_velocity"))).max() / CYCLE_TIME <= 10_000.0
+
+
 # friction: friction manual, figures 1, 5, 7 and 8
 
 

@@ -1,7 +1,7 @@
-"""Makes the helper modules of these tests, and the curves of the spindle tests, importable (importlib mode)."""
+"""Makes the helper modules of these tests, of control and of the spindle tests importable (importlib mode)."""
 
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "spindle")]
+for folder in ("control", "spindle", "machine"):
+    sys.path.insert(0, str(Path(__file__).parents[1] / folder))

@@ -45,7 +45,7 @@ def test_a_standing_master_that_comes_back_from_elsewhere_does_not_take_its_slav
     bench.send_all([couple("y", 2.0), couple("z", -1.0, "y"), start(100.0)])
     bench.settle()
     bench.do("x", "power", on=False)
-    drive = bench.units["x"]._drive
+    drive = bench.units["x"]._loop.drive
     drive._true_position = 350.0
     bench.run(0.05)
     bench.do("x", "power", on=True)

@@ -107,7 +107,7 @@ def test_enabling_and_starting_a_pushed_master_does_not_throw_its_slave() -> Non
     bench.run(0.1)
     bench.give("x", "power", on=False)
     bench.run(0.1)
-    drive = bench.units["x"]._drive  # type: ignore[attr-defined]
+    drive = bench.units["x"]._loop.drive  # type: ignore[attr-defined]
     drive._true_position += 60.0
     drive.step(0.0)
     bench.run(0.1)

@@ -100,6 +100,10 @@ PROBLEMS = {
         "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for P-SIM-00006 "
         "simulation.model CASCADED, P-SIM-00007 simulation.inertia is 0 too"
     ),
+    "simulation: {model: CASCADED, current_time_constant: 5000, velocity_integral_time: 5000}": (
+        "P-ERR-25009 simulation list, P-SIM-00009 simulation.velocity_integral_time of /x: value 5000 is not above the "
+        "5000 µs of P-SIM-00010 simulation.current_time_constant, the velocity controller is unstable"
+    ),
     'antr: {telegram: {commands: [S-0-0080]}}, getriebe: {"0": {load: 0}}': (
         "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for a torque command, "
         "P-SIM-00007 simulation.inertia is 0 too"
@@ -200,9 +204,9 @@ NOTICES = {
         "P-AXIS-00129 getriebe[0].multi_gain_z of /x: the 16 bits of the command carry 273.058 °/s, less than the 300 "
         "°/s of P-AXIS-00212"
     ),
-    "simulation: {model: CASCADED, current_time_constant: 5000, velocity_integral_time: 5000}": (
-        "P-SIM-00009 simulation.velocity_integral_time of /x: integral time 5000 µs must be above the 5000 µs of the "
-        "current loop (P-SIM-00010), the drive is unstable"
+    "antr: {operation_mode: OPEN_POSITION_LOOP_MODE}": (
+        "P-AXIS-00320 antr.operation_mode of /x: mode OPEN_POSITION_LOOP_MODE is accepted, but the position loop stays "
+        "closed"
     ),
     "kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}": (
         "P-SIM-00019 simulation.drive_kv of /x: gain 3000 1/s makes the position loop unstable, with this drive the "

@@ -13,9 +13,12 @@ UNEVEN = 0.02
 """A step may carry at most this part of the Stribeck friction away; a longer one is halved."""
 BEND = 0.1
 """Stribeck velocities by which the velocity may leave the tangent of its beginning in a step near zero."""
-FAR = 6.0
-"""Stribeck velocities above which the Stribeck part is none (e^-36) and zero is not near."""
+FAR = 5.5
+"""Stribeck velocities above which the Stribeck part is none (e^-30) and zero is not near."""
 NEGLIGIBLE = 1e-12
+"""mm/s or deg/s that are none."""
+STRONGEST = 1e12
+"""mm/s² or deg/s²; where an unstable loop without torque limit ends before its numbers do."""
 
 
 class CascadedDrive:
@@ -80,15 +83,15 @@ class CascadedDrive:
         """+1, -1: the motor slides, 0: friction holds it."""
         self._motor_position = self.load_position = plant.start_position
         """Where motor and load are, mm (deg), behind whatever the encoder shows."""
-        self.position = 0.0
-        self._show()
+        self.position = plant.start_position
+        self.step(0.0)  # stands; shows the position as the encoder does
 
     def _set_controller(self, plant: PlantParameters, gain: float, cycle_time: float) -> None:
         self._gain = gain
         self._filtered = plant.time_constant > 0.0
         self._lagging = plant.current_time_constant > 0.0
         self._integral_rate = gain / plant.velocity_integral_time if plant.velocity_integral_time > 0.0 else 0.0
-        self._limit = plant.torque_limit / plant.torque_per_acceleration
+        self._limit = min(STRONGEST, plant.torque_limit / plant.torque_per_acceleration)
         self._edge = self._limit * (1.0 - 1e-9)
         self._transitions = tuple(
             transition(plant, gain=gain, duration=cycle_time / 2**level) for level in range(FINEST + 1)
@@ -117,20 +120,13 @@ class CascadedDrive:
         self._wanted = wanted = command + additive_velocity
         self._setpoint = self._setpoint + additive_velocity if self._filtered else wanted
         self._integral += additive
-        self._advance(0)
+        if not (self._slide(0) if self._direction else self._stand(0)):
+            self._halve(1)
         self._setpoint -= additive_velocity
         self._integral -= additive
         if not self._dry and -NEGLIGIBLE < self.velocity < NEGLIGIBLE:
             self._come_to_rest()
         self.torque = self._motor * self._per_acceleration
-        self._show()
-
-    def _come_to_rest(self) -> None:
-        """Without friction everything dies away for ever; what cannot be seen any more is over."""
-        if abs(self._setpoint) < NEGLIGIBLE and abs(self._integral) + abs(self._motor) < NEGLIGIBLE * self._gain:
-            self.velocity = self._setpoint = self._integral = self._motor = 0.0
-
-    def _show(self) -> None:
         if self._half_play:
             self._take_load()
             position = self.load_position if self._encoder_at_load else self._motor_position
@@ -138,6 +134,11 @@ class CascadedDrive:
             position = self.load_position = self._motor_position
         increment = self._encoder_increment
         self.position = round(position / increment) * increment if increment else position
+
+    def _come_to_rest(self) -> None:
+        """Without friction everything dies away for ever; what cannot be seen any more is over."""
+        if abs(self._setpoint) < NEGLIGIBLE and abs(self._integral) + abs(self._motor) < NEGLIGIBLE * self._gain:
+            self.velocity = self._setpoint = self._integral = self._motor = 0.0
 
     def _take_load(self) -> None:
         """The motor takes the load along where the play is used up."""
@@ -147,57 +148,57 @@ class CascadedDrive:
         elif self.load_position > motor + play:
             self.load_position = motor + play
 
-    def _advance(self, level: int) -> None:
-        """A step of 1/2^level cycle, in halves where it must be."""
-        done = self._slide(level) if self._direction else self._stand(level)
-        if not done:
-            self._advance(level + 1)
-            self._advance(level + 1)
+    def _halve(self, level: int) -> None:
+        """Two steps of 1/2^level cycle each, in halves again where it must be."""
+        for _ in range(2):
+            if not (self._slide(level) if self._direction else self._stand(level)):
+                self._halve(level + 1)
 
     def _slide(self, level: int) -> bool:
         """One step in motion; False, and nothing has happened, when its halves have to be looked at."""
-        duration, decay, slide, slide_lag, _, _ = self._transitions[level]
-        limit, edge, gain, far, direction = self._limit, self._edge, self._gain, self._far, self._direction
-        v, integral, motor = self.velocity, self._integral, self._motor
+        duration, decay, ip, ir, slide, slide_lag, _ = self._transitions[level]
+        edge, gain, far, direction = self._edge, self._gain, self._far, self._direction
+        v, integral = self.velocity, self._integral
         p, r = self._setpoint - v, self._wanted - v
-        asked = gain * p + integral
-        side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
-        pushed = side * limit if side else integral
         dry = self._dry_friction(v) if -far < v < far else self._coulomb
         friction = direction * dry + self._viscous * v
-        ip, ir, ii, jf, vp, vr, vi, vf, xp, xr, xi, xf = slide[side]
-        new_integral = integral + ip * p + ir * r + ii * pushed + jf * friction
-        y = vp * p + vr * r + vi * pushed + vf * friction
-        x = xp * p + xr * r + xi * pushed + xf * friction
-        new_motor = mf = 0.0
+        asked = gain * p + integral
+        side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
+        q = n = (side * self._limit if side else asked) - friction
+        yp, yr, yq, xp, xr, xq, yf, xf = slide[side]
+        y = yp * p + yr * r + yq * q
+        x = xp * p + xr * r + xq * q
+        motor = mf = 0.0
         if self._lagging:
-            mp, mr, mi, mf, mm, im, vm, xm = slide_lag[side]
-            new_motor = motor + mp * p + mr * r + mi * pushed + mf * friction + mm * motor
-            new_integral += im * motor
-            y += vm * motor
-            x += xm * motor
+            mp, mr, mq, mn, yn, xn, mf = slide_lag[side]
+            motor = self._motor
+            n = motor - friction
+            motor += mp * p + mr * r + mq * q + mn * n
+            y += yn * n
+            x += xn * n
         crosses = False
         if v * direction < far or (v + y) * direction < far:
-            start = motor if self._lagging else side * limit if side else asked
-            change = self._friction_change(level, v, y, dry, (start - friction) * duration)
+            change = self._friction_change(level, v, y, dry, n * duration)
             if change is None:
                 return False
-            new_integral += jf * change
-            new_motor += mf * change
-            y += vf * change
+            motor += mf * change
+            y += yf * change
             x += xf * change
             crosses = (v + y) * direction < 0.0
             if crosses and level < FINEST:
                 return False
         new_p = (p - r) * decay + r - y
-        if side or not -edge < gain * new_p + new_integral < edge:
+        new_integral = integral if side else integral + ip * p + ir * r - self._integral_rate * x
+        asked = gain * new_p + new_integral
+        if side or not -edge < asked < edge:
             held = self._integral_at_limit(level, side, p, new_p, new_integral)
             if held is None:
                 return False
             new_integral = held
-        if not self._lagging:
-            new_motor = max(-limit, min(limit, gain * new_p + new_integral))
-        self._setpoint, self._integral, self._motor = new_p + v + y, new_integral, new_motor
+            asked = max(-self._limit, min(self._limit, gain * new_p + new_integral))
+        self._integral = new_integral
+        self._setpoint = new_p + v + y
+        self._motor = motor if self._lagging else asked
         if crosses:
             self._pass_zero(v, v + y, duration)
         else:
@@ -234,31 +235,30 @@ class CascadedDrive:
 
     def _stand(self, level: int) -> bool:
         """One step at rest; the axis breaks away at the end of a shortest step."""
-        _, decay, _, _, stand, stand_lag = self._transitions[level]
-        limit, edge, gain = self._limit, self._edge, self._gain
+        _, decay, ip, ir, _, _, stand_lag = self._transitions[level]
+        edge, gain, static = self._edge, self._gain, self._static
         w, u, integral, motor = self._setpoint, self._wanted, self._integral, self._motor
         asked = gain * w + integral
         side = 0 if -edge < asked < edge else 1 if asked > 0.0 else -1
-        pushed = side * limit if side else integral
-        start = motor if self._lagging else side * limit if side else asked
-        if not -self._static <= start <= self._static:
+        pushed = side * self._limit if side else integral
+        start = motor if self._lagging else pushed if side else asked
+        if not -static <= start <= static:
             self._direction = copysign(1.0, start)
             return self._slide(level)
-        iw, iu, ii = stand[side]
-        new_integral = integral + iw * w + iu * u + ii * pushed
         if self._lagging:
-            mw, mu, mi, mm, im = stand_lag[side]
-            new_integral += im * motor
+            mw, mu, mi, mm = stand_lag[side]
             motor += mw * w + mu * u + mi * pushed + mm * motor
         new_w = (w - u) * decay + u
-        if side or not -edge < gain * new_w + new_integral < edge:
+        new_integral = integral if side else integral + ip * w + ir * u
+        asked = gain * new_w + new_integral
+        if side or not -edge < asked < edge:
             held = self._integral_at_limit(level, side, w, new_w, new_integral)
             if held is None:
                 return False
             new_integral = held
-        if not self._lagging:
-            motor = max(-limit, min(limit, gain * new_w + new_integral))
-        holds = -self._static <= motor <= self._static
+            asked = max(-self._limit, min(self._limit, gain * new_w + new_integral))
+        motor = motor if self._lagging else asked
+        holds = -static <= motor <= static
         if level < FINEST and not holds:
             return False
         self._setpoint, self._integral, self._motor = new_w, new_integral, motor

@@ -6,6 +6,8 @@ import math
 
 NEGLIGIBLE = 1e-12
 """mm/s or deg/s; a lag below it is over, so that a drive comes to rest exactly."""
+FASTEST = 1e9
+"""mm/s or deg/s; where an unstable loop ends before its numbers do."""
 
 
 class FirstOrderDrive:
@@ -60,6 +62,8 @@ class FirstOrderDrive:
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Holds the velocities `command` and `additive_velocity` (mm/s, deg/s) and the torque (Nm, N) for one cycle."""
         wanted = command + additive_velocity + additive_torque * self._velocity_per_torque
+        if not -FASTEST < wanted < FASTEST:
+            wanted = math.copysign(FASTEST, wanted)
         before = self.velocity
         surplus = before - wanted
         if -NEGLIGIBLE < surplus < NEGLIGIBLE:

@@ -1,0 +1,294 @@
+"""Feedforward, friction compensation and following errors of an axis unit; the fast and the slow way are one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from axis_control_support import (
+    BOTH,
+    CONVENTIONAL,
+    MECHANICS,
+    control_bench,
+    control_of,
+    move,
+    plain_control,
+)
+from loop_support import KV, PLANT, TA, feedforward
+from machine_support import UnitBench
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.machine.blocks import AxisStateCode as S
+from cnc_ptp.machine.blocks import Severity
+from cnc_ptp.parameters.control_view import ControlParameters, LagMonitoring
+
+# ---------------------------------------------------------------- what a user sees
+
+
+def test_feedforward_takes_the_lag_away_while_the_axis_moves() -> None:
+    """200 mm/s at Kv 50/s lag 4 mm; G135 in motion, then nothing; G136 50: half."""
+    bench = control_bench(plain_control(CONVENTIONAL))
+    move(bench, 800.0)
+    bench.run(500)
+    assert bench.column("following_error")[-1] == pytest.approx(200.0 / KV, abs=1e-6)
+    assert bench.accepted("set_feedforward", on=True) == ""
+    bench.run(500)
+    assert bench.column("following_error")[-1] == pytest.approx(0.0, abs=1e-6)
+    bench.accepted("set_feedforward", weight_percent=50)
+    bench.run(500)
+    assert bench.column("following_error")[-1] == pytest.approx(0.5 * 200.0 / KV, abs=1e-6)
+    assert bench.column("feedforward_velocity")[-1] == pytest.approx(100.0, abs=1e-9)
+    bench.accepted("reset_feedforward")
+    bench.run(500)
+    assert bench.column("following_error")[-1] == pytest.approx(200.0 / KV, abs=1e-6)
+    actual = np.diff(bench.column("actual_velocity")) / 0.001
+    assert np.abs(actual).max() <= 4000.0
+
+
+def test_lags_of_a_ptp_motion() -> None:
+    """v/Kv and a·Ta/Kv in a motion that the axis plans itself."""
+    for mode, lag in ((0x1, 1000.0 * TA / KV), (CONVENTIONAL, 0.0)):
+        bench = control_bench(plain_control(mode))
+        bench.accepted("set_feedforward", on=True)
+        move(bench, 900.0, velocity=480.0, acceleration=1000.0, jerk=400_000.0)
+        bench.run(450)
+        assert bench.column("set_acceleration")[-1] == 1000.0
+        assert bench.column("following_error")[-1] == pytest.approx(lag, abs=1e-6)
+
+
+def test_refusals_and_warnings_of_the_unit() -> None:
+    bench = control_bench(plain_control())
+    assert bench.accepted("set_feedforward", on=True) == (
+        "axis x: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
+    )
+    assert bench.refused("set_feedforward", weight_percent=100.5) == (
+        "P-ERR-23060 axis x: set_feedforward refused: weight_percent = 100.5 is not within 0 ... 100 (G136); nothing "
+        "was changed"
+    )
+    assert bench.refused("set_friction_compensation", on=True) == (
+        "P-ERR-70495 axis x: set_friction_compensation refused: friction compensation is not activated (P-AXIS-00522 "
+        "lr_param.frict_comp = 0); nothing was changed"
+    )
+    assert bench.refused("set_feedforward", on="yes") == (
+        "P-ERR-22001 axis x: set_feedforward refused: on = 'yes' is not a switch; nothing was changed"
+    )
+    bench.run(10)
+    assert [event.severity for event in bench.events] == [Severity.WARNING] * 3
+
+
+# ---------------------------------------------------------------- following errors
+
+
+def stuck() -> Any:
+    class Stuck:
+        """A drive that has lost its coupling."""
+
+        position = velocity = torque = 0.0
+        has_torque = False
+
+        def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+            pass
+
+    return Stuck()
+
+
+def monitored(kind: int, **changes: Any) -> LagMonitoring:
+    of = LagMonitoring(kind=kind, moving_limit=1.0, standstill_limit=0.2, dynamic=960, filter_time=0.0)
+    return replace(of, **changes)
+
+
+@pytest.mark.parametrize("filter_time", [0.0, 0.004])
+def test_a_following_error_on_the_way(filter_time: float) -> None:
+    bench = control_bench(plain_control(monitoring=monitored(4, filter_time=filter_time)), drive=stuck())
+    move(bench, 100.0)
+    bench.run(1000)
+    cycle, position = bench.events[0].cycle, bench.column("set_position")
+    assert bench.event_texts() == [
+        f"P-ERR-17744 axis x: following error {position[cycle]:.4f} mm exceeds 1.0 mm (P-AXIS-00168); the axis stops on "
+        "its own ramp (ErrorStop)"
+    ]
+    first = next(k for k, x in enumerate(position) if abs(x) > 1.0)
+    assert cycle == first + round(filter_time / 0.001)
+    assert bench.column("state")[cycle] == S.ERROR_STOP and bench.column("set_velocity")[-1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("monitoring", "source", "limit"),
+    [
+        (monitored(2, moving_limit=1e-9, dynamic=0), "P-AXIS-00167, linear", lambda v, _: v / KV),
+        (monitored(2, moving_limit=50.0, dynamic=0), "P-AXIS-00168", lambda v, _: 50.0),
+        (monitored(1, standstill_limit=1e-9, dynamic=0), "P-AXIS-00167, estimated", lambda v, _: v * 0.001),
+        (monitored(1, dynamic=512), "P-AXIS-00169", lambda v, _: 0.2),
+    ],
+)
+def test_texts_name_the_parameter_that_has_set_the_limit(
+    monitoring: LagMonitoring, source: str, limit: Callable[[float, float], float]
+) -> None:
+    bench = control_bench(plain_control(monitoring=monitoring), drive=stuck())
+    move(bench, 100.0)
+    bench.run(400)
+    cycle = bench.events[0].cycle
+    x, v = bench.column("set_position")[cycle], bench.column("set_velocity")[cycle]
+    assert bench.event_texts() == [
+        f"P-ERR-17744 axis x: following error {x:.4f} mm exceeds {round(limit(v, x), 4)} mm ({source}); the axis stops "
+        "on its own ramp (ErrorStop)"
+    ]
+
+
+def test_a_standing_axis_that_is_pushed_out_of_place() -> None:
+    """P-AXIS-00169 counts from 5/Kv = 100 ms after the end of the motion on."""
+    bench = control_bench(plain_control(monitoring=monitored(4, moving_limit=5.0)), drive=stuck())
+    move(bench, 0.5)
+    bench.run(1000)
+    end = next(k for k in range(1, 1000) if bench.column("set_velocity")[k] == 0.0)
+    assert bench.event_texts() == [
+        "P-ERR-17744 axis x: following error 0.5000 mm exceeds 0.2 mm (P-AXIS-00169); the axis stops on its own ramp "
+        "(ErrorStop)"
+    ]
+    assert bench.events[0].cycle == pytest.approx(end + 100, abs=1)
+
+
+def test_behind_a_delay_line_the_text_has_the_error_of_the_position_controller() -> None:
+    """4 cycles of shift_time at 200 mm/s are 0.8 mm of way, and no following error."""
+    of_feedforward = feedforward(CONVENTIONAL, lead_cycles=4, always_active=True)
+    control = replace(plain_control(monitoring=monitored(4)), feedforward=of_feedforward)
+    bench = control_bench(control, drive=stuck())
+    move(bench, 100.0)
+    bench.run(400)
+    cycle, position = bench.events[0].cycle, bench.column("set_position")
+    first = next(k for k, x in enumerate(position) if x > 1.0)
+    assert cycle == first + 4
+    assert bench.event_texts() == [
+        f"P-ERR-17744 axis x: following error {position[first]:.4f} mm exceeds 1.0 mm (P-AXIS-00168); the axis stops on "
+        "its own ramp (ErrorStop)"
+    ]
+
+
+# ---------------------------------------------------------------- the same bits
+
+
+CONTROLS: dict[str, Callable[[], ControlParameters]] = {
+    "everything": control_of,
+    "everything under torque": lambda: control_of("torque"),
+    "lead, delays, prefilter": lambda: control_of(
+        "lag",
+        of_feedforward=feedforward(
+            BOTH, lead_cycles=3, velocity_delay=0.0016, acceleration_delay=0.0003, prefilter_cycles=4
+        ),
+    ),
+    "conventional in front of a position drive": lambda: control_of(
+        "position", of_feedforward=feedforward(CONVENTIONAL)
+    ),
+    "monitored": lambda: plain_control(
+        CONVENTIONAL, monitoring=monitored(1, moving_limit=12.0, dynamic=1000, filter_time=0.003)
+    ),
+    "friction alone": lambda: control_of(of_feedforward=feedforward(0), plant=replace(MECHANICS, backlash=0.01)),
+    "coarse encoder": lambda: control_of(plant=replace(MECHANICS, encoder_increment=0.01)),
+}
+
+SCRIPT: list[tuple[int, str, dict[str, Any]]] = [
+    (0, "set_feedforward", {"on": True}),
+    (70, "move_absolute", {"target": 90.0, "velocity": 200.0, "acceleration": 2000.0, "jerk": 40_000.0}),
+    (210, "set_feedforward", {"weight_percent": 60.0}),
+    (280, "set_override", {"percent": 40.0}),
+    (420, "new_target", {"target": -5.0}),
+    (490, "set_friction_compensation", {"on": False}),
+    (560, "set_feedforward", {"on": False}),
+    (700, "set_override", {"percent": 100.0}),
+    (1050, "set_friction_compensation", {"on": True}),
+    (1120, "set_feedforward", {"on": True, "weight_percent": 100.0}),
+    (1400, "move_absolute", {"target": 300.0, "velocity": 450.0, "acceleration": 4000.0, "jerk": 50_000.0}),
+    (1610, "stop", {}),
+    (1680, "power", {"on": False}),
+    (2170, "power", {"on": True}),
+    (2240, "move_absolute", {"target": 0.0, "velocity": 300.0, "acceleration": 3000.0, "jerk": 50_000.0}),
+    (2590, "upstream_lost", {"source": "plc"}),
+    (3150, "reset", {}),
+]
+
+
+def scripted(control: ControlParameters, count: int, *, slowly: bool = False) -> dict[str, list[Any]]:
+    """All columns of a run in which the commands of `SCRIPT` come at their cycles, whatever the blocks."""
+    if not control.friction.permitted:
+        script = [entry for entry in SCRIPT if entry[1] != "set_friction_compensation"]
+    else:
+        script = SCRIPT
+    bench = control_bench(control, count=count)
+    if slowly:
+        bench.unit._undisturbed_cycles = lambda *_: 0  # type: ignore[attr-defined]
+    for cycle, command, arguments in script:
+        bench.run(cycle - bench.cycle)
+        bench.accepted(command, **arguments)
+    bench.run(3500 - bench.cycle)
+    assert bench.state == S.STANDSTILL
+    return bench.columns()
+
+
+def differing(ours: dict[str, list[Any]], theirs: dict[str, list[Any]]) -> list[str]:
+    """Names and first cycles of columns that are not equal to the bit."""
+    result = []
+    for name, values in ours.items():
+        pairs = zip(map(repr, values), map(repr, theirs[name]), strict=True)
+        cycle = next((k for k, (a, b) in enumerate(pairs) if a != b), None)
+        if cycle is not None:
+            result.append(f"{name} at {cycle}")
+    return result
+
+
+@pytest.mark.parametrize("name", CONTROLS)
+def test_the_fast_way_is_the_slow_way(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`_undisturbed_cycles` against `_cycle`, in states in which the one or the other is taken."""
+    control = CONTROLS[name]()
+    fast = scripted(control, 10)
+    monkeypatch.setattr(Axis, "undisturbed", lambda *_: False)
+    assert differing(fast, scripted(control, 10)) == []
+    assert np.abs(fast["following_error"]).max() > 0.01
+
+
+@pytest.mark.parametrize("name", CONTROLS)
+def test_the_size_of_the_blocks_changes_nothing(name: str) -> None:
+    control = CONTROLS[name]()
+    blocks_of_ten = scripted(control, 10)
+    for count in (1, 7):
+        assert differing(blocks_of_ten, scripted(control, count)) == []
+
+
+def test_a_fault_in_the_middle_of_a_block_is_at_the_same_cycle_in_all_blocks() -> None:
+    """The fast way stops before the following error that is too large, and the filter time has counted on."""
+    columns = []
+    for count in (1, 7, 10, 100):
+        control = plain_control(CONVENTIONAL, monitoring=monitored(4, moving_limit=2.0, filter_time=0.013))
+        bench = control_bench(control, count=count)
+        move(bench, 300.0)
+        bench.run(700)
+        assert len(bench.events) == 1
+        columns.append((bench.events[0].cycle, bench.columns()))
+    for cycle, theirs in columns[1:]:
+        assert cycle == columns[0][0] and differing(columns[0][1], theirs) == []
+
+
+def test_feedforward_off_is_the_plain_axis_to_the_bit() -> None:
+    def run(mode: int) -> UnitBench:
+        bench = control_bench(plain_control(mode))
+        move(bench, 300.0)
+        bench.run(400)
+        bench.accepted("stop")
+        bench.run(600)
+        return bench
+
+    assert differing(run(0).columns(), run(CONVENTIONAL).columns()) == []
+
+
+def test_a_virtual_axis_shows_its_setpoints() -> None:
+    bench = control_bench(control_of("none", plant=PLANT, monitoring=monitored(4, moving_limit=1e-6)))
+    bench.accepted("set_feedforward", on=True)
+    move(bench, 300.0)
+    bench.run(400)
+    bench.accepted("power", on=False)
+    bench.run(1000)
+    assert bench.events == [] and bench.state == S.DISABLED
+    assert bench.column("actual_position") == bench.column("set_position")
+    assert set(bench.column("following_error")) == {0.0}
