@@ -15,7 +15,9 @@ from cnc_ptp.spindle.speed_ramp import Ramp, ramp_legs
 from cnc_ptp.spindle.speed_table import SpeedTable, table, way_of
 
 SAME_PLACE = 1e-7
-"""°: a target this little behind the place where the spindle would stop is that place."""
+"""°: a target this little behind the place where the spindle would stop is that place …"""
+ROUNDING = 1e-15
+"""… and this part of the positions besides, which count on for ever."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +53,13 @@ def next_target(
     else:
         least = stop_way(abs(speed), limits)
     ahead = ((goal - start) * direction - least) % turn
-    if turn - ahead < SAME_PLACE:
+    if turn - ahead < same_place(position):
         ahead -= turn
     return start + direction * (least + ahead)
+
+
+def same_place(position: float) -> float:
+    return SAME_PLACE + ROUNDING * abs(position)
 
 
 def shortest_direction(position: float, goal: float, turn: float) -> float:
@@ -76,9 +82,9 @@ def plan_positioning(
         amount = 0.0
     rest = (target - position) * direction - way_of(legs)
     least = stop_way(amount, limits)
-    if least > rest + SAME_PLACE:
+    if least > rest + 2.0 * same_place(position):
         return None
-    if limits.speed == 0.0 and least < rest - SAME_PLACE:
+    if limits.speed == 0.0 and least < rest - same_place(position):
         return table(position, signed([*legs, *ramp_legs(amount, 0.0, limits.ramp)], direction), 0.0)
     legs += approach(amount, rest, limits)
     return table(position, signed(legs, direction), 0.0, end_position=target)

@@ -105,3 +105,16 @@ def test_against_the_motion_it_comes_to_rest_first() -> None:
     assert table is not None
     check_table(table, 0.0, 1000.0, target, 1200.0)
     assert max(table.state_at(k * 0.001)[0] for k in range(1000)) == pytest.approx(125.0, abs=0.01)
+
+
+def test_far_away_from_zero_after_days_of_rotation() -> None:
+    """12000 rpm for two days: positions of 1e10 deg have steps of 2e-6 deg."""
+    draw = random.Random(31)
+    for _ in range(500):
+        position, speed = draw.uniform(-1e10, 1e10), draw.uniform(-9000.0, 9000.0)
+        bound, direction = limits(draw.uniform(0.0, 2000.0)), draw.choice((-1.0, 1.0))
+        target = next_target(position, speed, draw.uniform(0.0, 360.0), 360.0, direction, bound)
+        table = plan_positioning(position, speed, target, direction, bound)
+        assert table is not None and (bound.speed == 0.0 or table.end[0] == target)
+        again = plan_positioning(*table.state_at(0.7 * table.duration)[:2], target, direction, bound)
+        assert again is not None and again.end[0] == pytest.approx(target, abs=1e-4)
