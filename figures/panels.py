@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import get_type_hints
 
 from cnc_ptp.machine.blocks import AxisBlock, SpindleBlock
 from figures.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
@@ -38,9 +39,9 @@ class UnitKind:
     usual: tuple[str, ...]
 
 
-def columns(block: type, *others: str) -> tuple[str, ...]:
-    """Fields of a block with a value a cycle; `others` are of the block as a whole."""
-    return tuple(field.name for field in fields(block) if field.name not in ("first_cycle", "count", *others))
+def columns(block: type) -> tuple[str, ...]:
+    """Fields of a block with a number a cycle; the others are of the block as a whole."""
+    return tuple(name for name, of in get_type_hints(block).items() if of in (list[float], list[int], list[bool]))
 
 
 AXIS = {
@@ -64,7 +65,7 @@ SPINDLE = {
 }
 UNIT_KINDS = {
     "axis": UnitKind(
-        columns(AxisBlock, "master", "target_velocity", "couples_actual"),
+        columns(AxisBlock),
         "set_velocity",
         "following_error",
         AXIS,

@@ -112,16 +112,6 @@ def test_nothing_asked_for() -> None:
     )
 
 
-def test_another_gear_takes_the_selection_over() -> None:
-    _, commands = bench(subject="spindle s")
-    commands.do_set_feedforward(0, on=True, weight_percent=70.0)
-    other, _ = bench()
-    commands.use(other)
-    assert share(other) == pytest.approx(0.7)
-    commands.do_set_feedforward(0, on=False)
-    assert share(other) == 0.0
-
-
 # ---------------------------------------------------------------- friction
 
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from cnc_ptp.control.drives import FirstOrderDrive
-from cnc_ptp.control.position_controller import PositionController
 
 T = 0.001
 
@@ -84,24 +83,13 @@ def test_start_position_on_the_encoder() -> None:
 def test_position_loop_at_constant_velocity_lags_by_v_over_kv() -> None:
     """To 1e-9 once the start has died away; the drive's lag does not change the steady state."""
     for time_constant in (0.0, 0.003):
-        controller = PositionController(kv=50.0, following_error_limit=10.0, monitoring=True)
         simulated, v = drive(time_constant), 120.0
         error = 0.0
         for cycle in range(2000):
             error = v * cycle * T - simulated.position
-            simulated.step(controller.command_velocity(error))
+            simulated.step(50.0 * error)
         assert error == pytest.approx(v / 50.0, abs=1e-9)
         assert simulated.velocity == pytest.approx(v, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("error", "monitoring", "exceeds"),
-    [(0.5, True, False), (-0.5, True, False), (0.500001, True, True), (-0.500001, True, True), (9.0, False, False)],
-)
-def test_following_error_limit_on_both_sides(error: float, monitoring: bool, exceeds: bool) -> None:
-    controller = PositionController(kv=10.0, following_error_limit=0.5, monitoring=monitoring)
-    assert controller.exceeds_limit(error) is exceeds
-    assert controller.command_velocity(error) == 10.0 * error
 
 
 @pytest.mark.parametrize("time_constant", [0.0005, 0.003, 0.1])

@@ -67,7 +67,7 @@ def test_spindle_2_2_4_1_sensorless_spindle_at_a_terminal() -> None:
     """32767 digits give 10 V and 3000 rpm."""
     form = format_of(
         "kenngr.antr_typ: 6",
-        "antr.operation_mode: OPEN_POSITION_LOOP_MODE",
+        "antr.operation_mode: OPEN_POSITION_LOOP_NO_FEEDBACK",
         "antr.v_time_base: 0",
         "antr.v_reso_num: 32767",
         "antr.v_reso_denom: 1080000000",

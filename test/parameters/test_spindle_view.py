@@ -3,37 +3,39 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
 from cnc_ptp.parameters import GearParameters, MachineParameters, SpindleParameters, load_machine
+from cnc_ptp.parameters.control_view import control_view
 from cnc_ptp.parameters.spindle_view import CurveParameters, SpeedScaling
 
-DEFAULT_GEAR = GearParameters(
-    stage=1,
-    kv=10.0,
-    max_speed=200.0,
-    positioning_speed=166.666,
-    max_acceleration=1000.0,
-    acceleration=1000.0,
-    deceleration=1000.0,
-    emergency_deceleration=1000.0,
-    curve=None,
-    zero_speed=0.1,
-    control_limit=200.0,
-    change_position=0.0,
-    reference_position=0.0,
-    homing_speed=16.666,
-    modulo_low=0.0,
-    modulo_high=360.0,
-    following_error_monitoring=False,
-    following_error_limit=10.0,
-    following_error_standstill_limit=2.0,
-    position_window=0.05,
-    encoder_increment=0.0001,
-    reversed=False,
-    output_gain=120.0,
-)
+DEFAULT_GEAR: dict[str, Any] = {
+    "stage": 1,
+    "kv": 10.0,
+    "max_speed": 200.0,
+    "positioning_speed": 166.666,
+    "max_acceleration": 1000.0,
+    "acceleration": 1000.0,
+    "deceleration": 1000.0,
+    "emergency_deceleration": 1000.0,
+    "curve": None,
+    "zero_speed": 0.1,
+    "control_limit": 200.0,
+    "change_position": 0.0,
+    "reference_position": 0.0,
+    "homing_speed": 16.666,
+    "modulo_low": 0.0,
+    "modulo_high": 360.0,
+    "following_error_monitoring": False,
+    "following_error_limit": 10.0,
+    "following_error_standstill_limit": 2.0,
+    "position_window": 0.05,
+    "encoder_increment": 0.0001,
+    "reversed": False,
+    "output_gain": 120.0,
+}
 
 
 def machine(parameters: str) -> MachineParameters:
@@ -50,6 +52,7 @@ def gear(parameters: str) -> GearParameters:
 
 
 def test_a_spindle_of_defaults() -> None:
+    control = control_view(machine("").raw("s"), 0, 0.001)
     assert spindle() == SpindleParameters(
         name="s",
         number=1,
@@ -64,7 +67,7 @@ def test_a_spindle_of_defaults() -> None:
         velocity_control_on=2_000_000.0,
         velocity_control_off=0.0,
         gear=1,
-        gears={1: DEFAULT_GEAR},
+        gears={1: GearParameters(**DEFAULT_GEAR, control=control)},
         stops_at_reset=True,
         target_time=2.0,
         speed_time=0.0,
