@@ -10,13 +10,14 @@ import numpy as np
 from rich.console import Console
 
 from cnc_ptp.commands.circle_page import circle_page
-from cnc_ptp.commands.circle_picture import circle_picture, require_matplotlib
+from cnc_ptp.commands.circle_picture import circle_picture
 from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, circle_lines
 from cnc_ptp.commands.console import RUN_FAILED
-from cnc_ptp.commands.output_file import check_output, write_output
+from cnc_ptp.commands.output_file import write_output
+from cnc_ptp.commands.picture_file import check_picture, picture_kind
 from cnc_ptp.commands.trial_run import run_trial
 from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_program, find_plane, measured_turn
-from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_OUTPUT, BAD_PLANE, NOTHING_TO_COMPARE
+from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_PLANE, NOTHING_TO_COMPARE
 from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_circle
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
@@ -26,7 +27,6 @@ from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.parameters import AxisParameters, MachineParameters, load_machine
 
 DIRECTIONS = {"both": (False, True), "ccw": (False,), "cw": (True,)}
-SUFFIXES = (".svg", ".png", ".html")
 FILE = "circle.nc"
 LARGEST = 1e5
 """mm and mm/min; beyond it is no circle test."""
@@ -57,7 +57,7 @@ def circle(
     """Runs the circle test of all variants. Status 1 when a run failed."""
     check_numbers(radius=radius, feed=feed, magnification=magnification)
     for output in outputs:
-        check_picture(output, machine)
+        check_picture(output, machine_file=machine)
     text = read_file("machine file", machine)
     parameters = load_machine(text, machine)
     found = find_plane(plane)
@@ -106,17 +106,6 @@ def check_numbers(*, radius: float, feed: float, magnification: float | None) ->
                 BAD_CIRCLE,
                 f"{name} {shown} is not within 0 … {LARGEST:g}; nothing was started",
             )
-
-
-def check_picture(output: str, machine: str) -> None:
-    """Raises CncError 27030, 27031 for a picture that cannot be made."""
-    if not output.lower().endswith(SUFFIXES):
-        raise CncError(
-            BAD_OUTPUT, f"{output}: a picture is one of {', '.join(SUFFIXES)} by its ending; nothing was started"
-        )
-    check_output(output, machine_file=machine)
-    if not output.lower().endswith(".html"):
-        require_matplotlib(output)
 
 
 def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, float] | None) -> Place:
@@ -211,8 +200,7 @@ def show(test: CircleTest, outputs: Sequence[str], magnification: float | None) 
     for line in circle_lines(test):
         console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
     for output in outputs:
-        if output.lower().endswith(".html"):
-            write_output(output, circle_page(test, magnification))
-        else:
-            write_output(output, circle_picture(test, magnification, output.rsplit(".", 1)[-1].lower()))
+        kind = picture_kind(output)
+        page = kind == "html"
+        write_output(output, circle_page(test, magnification) if page else circle_picture(test, magnification, kind))
         console.print(f"{output} written", markup=False)

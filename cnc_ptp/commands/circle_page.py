@@ -7,29 +7,14 @@ from html import escape
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.offline import get_plotlyjs
 
 from cnc_ptp.commands.circle_report import UM, CircleTest, circle_lines, direction_name, magnification_for
-from cnc_ptp.recording.report import CONFIG, SECURITY, STYLE
-
-COLOURS = ("#1d4f9e", "#b0271d", "#17713a", "#c08a00")
+from cnc_ptp.commands.picture_file import COLOURS, INK, plot_page
 
 
 def circle_page(test: CircleTest, magnification: float | None) -> str:
     """The page as text: plot to zoom and to point at, and the table."""
-    plot = circle_figure(test, magnification).to_html(
-        full_html=False, include_plotlyjs=False, config=CONFIG, div_id="circle"
-    )
-    lines = list(circle_lines(test))
-    table = escape("\n".join(lines[1:]))
-    return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{SECURITY}">'
-        f"<title>{escape(lines[0])}</title><style>{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
-        f"<header><h1>{escape(lines[0])}</h1></header><main>\n"
-        f"<section>{plot}</section><section><pre>{table}</pre></section></main></body></html>\n"
-    )
+    return plot_page(circle_figure(test, magnification), list(circle_lines(test)))
 
 
 def circle_figure(test: CircleTest, magnification: float | None) -> go.Figure:
@@ -53,7 +38,7 @@ def circle_figure(test: CircleTest, magnification: float | None) -> go.Figure:
 
 def _curves(test: CircleTest) -> Iterator[go.Scatterpolargl]:
     turn = list(range(0, 361, 2))
-    line = {"color": "#1c2430", "width": 1, "dash": "dash"}
+    line = {"color": INK, "width": 1, "dash": "dash"}
     yield go.Scatterpolar(r=[0.0] * len(turn), theta=turn, mode="lines", line=line, name="nominal", hoverinfo="skip")
     for number, result in enumerate(test.results):
         for circle in result.circles:

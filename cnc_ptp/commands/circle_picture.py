@@ -2,55 +2,29 @@
 
 from __future__ import annotations
 
-import io
-from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.projections.polar import PolarAxes
 
 from cnc_ptp.commands.circle_report import UM, CircleTest, VariantResult, direction_name, magnification_for
-from cnc_ptp.commissioning.faults import NO_MATPLOTLIB
+from cnc_ptp.commands.picture_file import COLOURS, GRID, INK, SOFT, picture_bytes
 from cnc_ptp.commissioning.roundness import CircleResult
-from cnc_ptp.errors import CncError
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
-
-COLOURS = ("#1d4f9e", "#b0271d", "#17713a", "#c08a00")
-INK, SOFT, GRID = "#1c2430", "#566273", "#d5dbe3"
-SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none"}
 OUTSIDE = -0.35
 """How far the scale goes outwards, over how far it goes inwards."""
 MOST_POINTS = 4000
 """Of a curve: no eye and no printer tells more."""
 
 
-def require_matplotlib(output: str) -> None:
-    """Raises CncError 27031 where matplotlib is not installed."""
-    if find_spec("matplotlib") is None:
-        raise CncError(
-            NO_MATPLOTLIB,
-            f"{output} needs matplotlib, which is not installed (pip install matplotlib); nothing was started. "
-            "A page (.html) needs nothing else",
-        )
-
-
 def circle_picture(test: CircleTest, magnification: float | None, kind: str) -> bytes:
     """The picture as the bytes of an `svg` or `png` file, the same for the same test."""
-    import matplotlib
-
-    buffer = io.BytesIO()
-    with matplotlib.rc_context(SETTINGS):
-        metadata = {"Date": None, "Creator": None, "Title": test.title} if kind == "svg" else {"Software": None}
-        draw_circle(test, magnification).savefig(buffer, format=kind, dpi=150, metadata=metadata)
-    return buffer.getvalue()
+    return picture_bytes(draw_circle(test, magnification), kind, title=test.title)
 
 
 def draw_circle(test: CircleTest, magnification: float | None = None) -> Figure:
     """Deviations over the angle, magnified: the middle lies at -R / magnification, the nominal circle at 0."""
-    from matplotlib.figure import Figure
-
     magnified = magnification or magnification_for(test)
     figure = Figure(figsize=(8.0, 8.6 + 0.22 * len(test.results)), facecolor="white", layout="constrained")
     axes: Any = figure.add_subplot(projection="polar")

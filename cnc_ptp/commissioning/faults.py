@@ -23,7 +23,6 @@ NOT_COVERED = 27022
 NOTHING_TO_COMPARE = 27023
 BAD_PLANE = 27024
 BAD_OUTPUT = 27030
-NO_MATPLOTLIB = 27031
 
 
 def refusal(number: int, axis: str, text: str) -> CncError:

@@ -8,8 +8,6 @@ import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill
 
-from cnc_ptp.commands import circle_picture
-
 RADIUS, FEED = 25.0, 2000.0
 NUMBER = r"(-?\d+\.\d\d)"
 ROW = re.compile(
@@ -237,18 +235,6 @@ def test_a_run_that_fails_is_status_1_and_tells_why(tmp_path):
     assert result.exit_code == 1
     assert "error: P-ERR-17744 axis x: following error" in result.stderr
     assert result.stdout == ""
-
-
-def test_without_matplotlib_pages_are_left(monkeypatch, tmp_path):
-    monkeypatch.setattr(circle_picture, "find_spec", lambda name: None)
-    result = call("circle", MILL, "--radius", 5, "--feed", 3000, "-o", tmp_path / "c.png")
-    text = (
-        f"P-ERR-27031 {tmp_path / 'c.png'} needs matplotlib, which is not installed (pip install matplotlib); nothing was "
-        "started. A page (.html) needs nothing else\n"
-    )
-    assert (result.exit_code, result.stderr) == (2, text)
-    result = call("circle", MILL, "--radius", 5, "--feed", 3000, "--direction", "cw", "-o", tmp_path / "c.html")
-    assert result.exit_code == 0 and (tmp_path / "c.html").exists()
 
 
 def test_a_picture_that_cannot_be_written_after_all(tmp_path):

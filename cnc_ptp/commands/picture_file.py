@@ -1,0 +1,59 @@
+"""Pictures that commands write: .svg and .png drawn by Matplotlib, .html by Plotly as the reports are."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from html import escape
+from typing import Any
+
+import matplotlib
+import plotly.graph_objects as go
+from matplotlib.figure import Figure
+from plotly.offline import get_plotlyjs
+
+from cnc_ptp.commands.output_file import check_output
+from cnc_ptp.commissioning.faults import BAD_OUTPUT
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.report import CONFIG, SECURITY, STYLE
+
+KINDS = ("svg", "png", "html")
+COLOURS = ("#1d4f9e", "#b0271d", "#17713a", "#c08a00")
+INK, SOFT, GRID = "#1c2430", "#566273", "#d5dbe3"
+SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none"}
+
+
+def picture_kind(output: str) -> str:
+    """The ending without its dot, in small letters."""
+    return output.rsplit(".", 1)[-1].lower()
+
+
+def check_picture(output: str, **inputs: str | None) -> None:
+    """Raises CncError 27030 for a picture that cannot be made or would overwrite an input: machine_file="…"."""
+    if picture_kind(output) not in KINDS:
+        known = ", ".join(f".{kind}" for kind in KINDS)
+        raise CncError(BAD_OUTPUT, f"{output}: a picture is one of {known} by its ending; nothing was started")
+    check_output(output, **inputs)
+
+
+def picture_bytes(drawing: Figure, kind: str, *, title: str) -> bytes:
+    """An `svg` or `png` file, the same for the same drawing."""
+    buffer = io.BytesIO()
+    with matplotlib.rc_context(SETTINGS):
+        metadata = {"Date": None, "Creator": None, "Title": title} if kind == "svg" else {"Software": None}
+        drawing.savefig(buffer, format=kind, dpi=150, metadata=metadata)
+    return buffer.getvalue()
+
+
+def plot_page(plot: go.Figure, lines: Sequence[str]) -> str:
+    """One self-contained HTML page: title (the first of `lines`), plot, and the other lines as a table of text."""
+    title, table = escape(lines[0]), escape("\n".join(lines[1:]))
+    drawn = plot.to_html(full_html=False, include_plotlyjs=False, config=CONFIG, div_id="plot")
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f'<meta http-equiv="Content-Security-Policy" content="{SECURITY}">'
+        f"<title>{title}</title><style>{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
+        f"<header><h1>{title}</h1></header><main>\n"
+        f"<section>{drawn}</section><section><pre>{table}</pre></section></main></body></html>\n"
+    )
