@@ -15,7 +15,7 @@ from setuptools.command.build_ext import build_ext
 
 PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
-COMMANDS = ("simulate", "run", "check", "replay", "report", "params", "identify", "circle")
+COMMANDS = ("simulate", "run", "check", "replay", "report", "params", "identify", "circle", "curve")
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 

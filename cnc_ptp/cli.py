@@ -182,6 +182,50 @@ def circle_command(**options: Any) -> None:
     sys.exit(circle(**options))
 
 
+@main.group("curve")
+def curve_group() -> None:
+    """Acceleration curves of spindles (P-AXIS-00202)."""
+
+
+@curve_group.command("fit")
+@click.argument("kind", type=click.Choice(["polynomial", "hyperbola"]))
+@click.option(
+    "--point", "points", multiple=True, metavar="SPEED:ACCELERATION", help="12000:16000 in --unit and °/s²; ascending."
+)
+@click.option("--csv", type=click.Path(dir_okay=False), help="Columns acceleration_deg_s2, speed_deg_s or speed_rpm.")
+@click.option(
+    "--unit",
+    type=click.Choice(["deg/s", "rpm"]),
+    default="deg/s",
+    show_default=True,
+    help="Of the speeds in --point, --limit and --top-speed.",
+)
+@click.option("--limit", type=float, help="Limit speed, one of the points; without it the first.")
+@click.option("--top-speed", type=float, help="Up to which the curve must hold; without it the last point.")
+@click.option("--a-min", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Floor in °/s².")
+@click.option("--spindle", default="s", show_default=True, help="For the lines of the machine file.")
+@click.option("--gear", type=click.IntRange(0), default=0, show_default=True, help="Index of getriebe[i].")
+@click.option(
+    "-o",
+    "--output",
+    "outputs",
+    type=click.Path(dir_okay=False),
+    multiple=True,
+    help="Picture (.svg, .png, .html), or the lines of the machine file (.yaml) instead of printing them.",
+)
+def curve_fit_command(**options: Any) -> None:
+    """Coefficients b1, b2, b3 of an acceleration curve from interpolation points of the drive.
+
+    The point at the limit speed gives n_grenz and a_konst. Above it 3 points make the polynomial and 2 the hyperbola,
+    exactly; with more of them the curve is the least squares fit, and the table shows how far it is off each point.
+    """
+    from cnc_ptp.commands.curve import curve_fit
+
+    if bool(options["points"]) == bool(options["csv"]):
+        raise click.UsageError("Either --point (again and again) or --csv is needed.")
+    sys.exit(curve_fit(**options))
+
+
 def _entry(command: click.Command) -> Callable[[], Any]:
     """A command of its own, so that `ros2 run cnc_ptp simulate ...` serves the same."""
 
@@ -199,6 +243,7 @@ report = _entry(report_command)
 params = _entry(params_command)
 identify = _entry(identify_group)
 circle = _entry(circle_command)
+curve = _entry(curve_group)
 
 if __name__ == "__main__":
     main()

@@ -10,7 +10,7 @@ from cnc_ptp.commands.axis_data import AxisData, drive, open_axis, recorded_trac
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.commands.dynamics_report import dynamics_yaml, found_lines
 from cnc_ptp.commands.friction_report import curve_lines, friction_yaml, max_points, scaling_of
-from cnc_ptp.commands.output_file import check_output, write_output
+from cnc_ptp.commands.output_file import check_output, deliver
 from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
 from cnc_ptp.commissioning.dynamics import fit_drive
 from cnc_ptp.commissioning.excitation import Motion, check_speeds, forth_and_back, highest_velocity, speed_ladder
@@ -130,13 +130,3 @@ def coverage_lines(data: AxisData, found: Sequence[float], timing: Timing) -> It
     shown = ", ".join(f"{speed:g}" for speed in missing)
     yield f"missing speeds: {shown} {data.unit}/s; this scenario drives them:"
     yield from scenario_lines(data.room, forth_and_back(data.room, missing, steady=timing.steady, rest=REST))
-
-
-def deliver(console: Console, output: str | None, text: str) -> None:
-    """Writes the lines for the machine file, or prints them."""
-    if output is None:
-        print()
-        print(text, end="")
-        return
-    write_output(output, text)
-    console.print(f"{output}: to be pasted into the machine file", markup=False)

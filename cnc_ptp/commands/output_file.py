@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rich.console import Console
+
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 
@@ -27,3 +29,13 @@ def write_output(output: str, content: str | bytes) -> None:
         Path(output).write_bytes(data)
     except OSError as error:
         raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; the result above is all") from None
+
+
+def deliver(console: Console, output: str | None, text: str) -> None:
+    """Writes the lines for the machine file, or prints them."""
+    if output is None:
+        print()
+        print(text, end="")
+        return
+    write_output(output, text)
+    console.print(f"{output}: to be pasted into the machine file", markup=False)

@@ -310,7 +310,7 @@ def test_an_ideal_rotary_axis():
     assert "kg·m² (P-AXIS-00391)" in result.stdout
 
 
-@pytest.mark.parametrize("name", ["identify", "circle"])
+@pytest.mark.parametrize("name", ["identify", "circle", "curve"])
 def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
     """`ros2 run cnc_ptp identify ...`"""
     monkeypatch.setattr(sys, "argv", [name, "--help"])
