@@ -16,7 +16,9 @@ FULL_WEIGHT = 100.0
 class FeedforwardLoop(Protocol):
     """A control loop with feedforward; what is selected holds in all its gears."""
 
-    feedforward: Feedforward
+    @property
+    def feedforward(self) -> Feedforward:
+        """That of the gear in work."""
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136."""

@@ -10,6 +10,7 @@ P-COMP-00044). Sources: TF5200 feedforward figures 1 and 2, friction figures 4 a
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from cnc_ptp.control.drives import Drive, VirtualDrive
@@ -21,6 +22,9 @@ from cnc_ptp.control.velocity_controller import VelocityController
 from cnc_ptp.parameters.control_view import ControlParameters
 
 State = tuple[float, float, float, float]
+"""Position, velocity, acceleration, jerk of a setpoint."""
+Row = tuple[float, float, float, float, float, float, float, float, float]
+"""A ControlCycle without its names, which take their time."""
 HISTORY = 16
 """Setpoints that are kept: 4 cycles of lead, 6 of delay, and their neighbours."""
 
@@ -73,14 +77,35 @@ class ControlLoop:
             cycle_time=cycle_time,
         )
         self._history: deque[State] = deque(maxlen=HISTORY)
-        self._plain = parameters.feedforward.mode == 0 and not parameters.friction.permitted
-        self._plain = self._plain and self._interface == "velocity" and self.delay_cycles == 0
+        self.offset = 0.0
+        """Between the counting of the encoder and the coordinates of the axis."""
+        self._plain = self._interface == "velocity" and self.delay_cycles == 0
+        self._plain = self._plain and not (self._virtual or self._modulo.on or parameters.friction.permitted)
+
+    @property
+    def virtual(self) -> bool:
+        """No drive: actual values are the set values of the same cycle."""
+        return self._virtual is not None
+
+    @property
+    def encoder(self) -> float:
+        """Position as the encoder counts it, with what its modulo circle is short of, mm (deg)."""
+        position = self.drive.position
+        return position + self._modulo.correction(position) if self._modulo.on else position
 
     @property
     def position(self) -> float:
         """Actual position, mm (deg)."""
-        position = self.drive.position
-        return position + self._modulo.correction(position) if self._modulo.on else position
+        return self.encoder + self.offset
+
+    def count_from(self, position: float) -> None:
+        """The axis is at `position`, whatever the encoder shows."""
+        self.offset = position - self.encoder
+
+    def shift(self, distance: float) -> None:
+        """All coordinates grow by `distance`."""
+        self.offset += distance
+        self._history = deque(((p + distance, v, a, j) for p, v, a, j in self._history), maxlen=HISTORY)
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136."""
@@ -96,30 +121,68 @@ class ControlLoop:
         """True when the following error of this cycle is above what P-AXIS-00172 permits; changes nothing."""
         return self._virtual is None and self.monitor.exceeded(*self.monitored(setpoint))
 
-    def step(self, setpoint: State, closed: bool) -> ControlCycle:
-        """Closes the loop for one cycle; open, the drive is to stand and nothing is remembered."""
+    def why_too_far(self, setpoint: State, unit: str) -> str:
+        """Following error, limit and its parameter, for messages."""
+        following_error, velocity = self.monitored(setpoint)
+        limit = f"{round(self.monitor.limit(velocity), 4)} {unit} ({self.monitor.source(velocity)})"
+        return f"following error {following_error:.4f} {unit} exceeds {limit}"
+
+    def step(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
+        """Closes the loop for one cycle; open, the drive is to have `open_velocity` and nothing is remembered."""
+        return ControlCycle(*self._cycle(setpoint, closed, open_velocity))
+
+    def follow(self, setpoints: Sequence[State], closed: bool, *, watched: bool) -> list[Row]:
+        """`step` for many setpoints; if `watched`, up to one whose following error is too large."""
+        if closed and self._plain and not self.feedforward.active:
+            return self._plain_cycles(setpoints, watched)
+        rows = []
+        for setpoint in setpoints:
+            if watched and self.too_far(setpoint):
+                break
+            rows.append(self._cycle(setpoint, closed))
+        return rows
+
+    def _plain_cycles(self, setpoints: Sequence[State], watched: bool) -> list[Row]:
+        """Position control with nothing beside it: v = Kv · following error."""
+        drive, monitor, offset, kv = self.drive, self.monitor, self.offset, self.kv
+        step, monitored = drive.step, monitor.on
+        rows = []
+        for setpoint in setpoints:
+            position = drive.position + offset
+            following_error = setpoint[0] - position
+            if monitored:
+                if watched and monitor.exceeded(following_error, setpoint[1]):
+                    break
+                monitor.advance(following_error, setpoint[1])
+            command = kv * following_error
+            rows.append((position, drive.velocity, following_error, command, 0.0, 0.0, 0.0, 0.0, drive.torque))
+            step(command)
+        if self.feedforward.mode:
+            for setpoint in setpoints[: len(rows)][-HISTORY:]:
+                self._remember(setpoint)
+        return rows
+
+    def _remember(self, setpoint: State) -> None:
+        """Before the first setpoint the axis stood there."""
+        if self._history:
+            self._history.appendleft(setpoint)
+        else:
+            self._history.extend([setpoint] * HISTORY)
+
+    def _cycle(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> Row:
         drive = self.drive
         if self._virtual is not None:
-            self._virtual.follow(setpoint[0], setpoint[1])
-            return ControlCycle(setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            self._virtual.follow(setpoint[0] - self.offset, setpoint[1])
+            return setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         position, velocity, torque = self.position, drive.velocity, drive.torque
-        following_error = setpoint[0] - position
-        if not closed:
-            self._open()
-            return ControlCycle(position, velocity, following_error, 0.0, 0.0, 0.0, 0.0, 0.0, torque)
-        if self._plain:
-            self.monitor.advance(following_error, setpoint[1])
-            command = self.kv * following_error
-            drive.step(command)
-            return ControlCycle(position, velocity, following_error, command, 0.0, 0.0, 0.0, 0.0, torque)
-        return self._full_step(setpoint, position, velocity, torque)
+        if closed:
+            return self._closed_cycle(setpoint, position, velocity, torque)
+        self._open(open_velocity)
+        return position, velocity, setpoint[0] - position, open_velocity, 0.0, 0.0, 0.0, 0.0, torque
 
-    def _full_step(self, setpoint: State, position: float, velocity: float, torque: float) -> ControlCycle:
+    def _closed_cycle(self, setpoint: State, position: float, velocity: float, torque: float) -> Row:
+        self._remember(setpoint)
         history = self._history
-        if history:
-            history.appendleft(setpoint)
-        else:
-            history.extend([setpoint] * HISTORY)
         set_position, set_velocity, _, _ = history[self.delay_cycles]
         lag = set_position - position
         self.monitor.advance(lag, set_velocity)
@@ -131,7 +194,7 @@ class ControlLoop:
         friction.update(history)
         additive_torque = feedforward.additive_torque + friction.current * self._torque_per_digit
         self._command(command, set_position, lag, velocity, feedforward.additive_velocity, additive_torque)
-        return ControlCycle(
+        return (
             position,
             velocity,
             setpoint[0] - position,
@@ -164,20 +227,22 @@ class ControlLoop:
             self.drive.step(base + shift, additive_velocity, additive_torque)
 
     def _on_the_encoder(self, set_position: float, lag: float) -> float:
-        """The set position for a drive that knows nothing of the modulo compensation."""
-        return self.drive.position + lag if self._modulo.on else set_position
+        """The set position for a drive that knows nothing of offset and modulo compensation."""
+        return self.drive.position + lag if self._modulo.on or self.offset else set_position
 
-    def _open(self) -> None:
-        """No position control: the drive holds velocity 0 from where it is."""
+    def _open(self, velocity: float) -> None:
+        """No position control: the drive holds a velocity from where it is."""
         self._history.clear()
         self.monitor.forget()
         self.feedforward.forget()
         self.friction.forget()
-        drive = self.drive
-        if self._interface == "torque":
-            drive.step(self._velocity_controller.brake(drive.velocity))
+        drive, controller = self.drive, self._velocity_controller
+        if self._interface == "velocity":
+            drive.step(velocity)
+        elif self._interface == "torque":
+            drive.step(controller.torque(velocity - drive.velocity) if velocity else controller.brake(drive.velocity))
         else:
-            drive.step(drive.position if self._interface == "position" else 0.0)
+            drive.step(velocity / self.kv + (drive.position if self._interface == "position" else 0.0))
 
 
 def _delay_cycles(parameters: ControlParameters) -> int:

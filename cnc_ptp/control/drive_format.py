@@ -5,6 +5,7 @@ Sources: TF5200 feedforward 4.1 (velocity), 4.2 (resolution, torque); spindle 2.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from cnc_ptp.parameters.control_view import DriveParameters, DriveScaling
@@ -24,6 +25,13 @@ class Digits(NamedTuple):
         """The nearest integer to value · scale, at most what the length holds: -2^(bits-1) … 2^(bits-1) - 1."""
         highest = (1 << (self.bits - 1)) - 1
         return max(-highest - 1, min(highest, round(value * self.scale)))
+
+    def encode_all(self, values: Sequence[float]) -> list[int]:
+        """`encode` of many values."""
+        scale, highest = self.scale, (1 << (self.bits - 1)) - 1
+        digits = [round(value * scale) for value in values]
+        fits = -highest - 1 <= min(digits, default=0) and max(digits, default=0) <= highest
+        return digits if fits else [self.encode(value) for value in values]
 
     def decode(self, digits: int) -> float:
         """The value of an integer in kernel units."""
@@ -108,3 +116,10 @@ def drive_format(scaling: DriveScaling, drive: DriveParameters) -> DriveFormat:
         actual_torque=Digits(scaling.torque, feedback["torque"]),
         sign=-1 if drive.reverse else 1,
     )
+
+
+def shown_velocity(scaling: DriveScaling, drive: DriveParameters) -> Digits:
+    """The velocity command as it is shown, with the drive's sign; without a telegram, in the scale of a DA word."""
+    velocity = drive_format(scaling, drive).velocity
+    scale = scaling.analogue if drive.ideal else velocity.scale
+    return Digits(-scale if drive.reverse else scale, velocity.bits)

@@ -127,8 +127,7 @@ class Feedforward:
         if coupling.active:
             coupling.note(feedback + factor * (velocity + additive))
         else:
-            self._prefilter.clear()
-            coupling.forget()
+            self.forget()
 
 
 class Parts(NamedTuple):

@@ -155,12 +155,7 @@ class AxisUnit(Unit):
         """
         axis, loop = self._axis, self._loop
         closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
-        watched = closed and loop.monitor.on
-        cycles = []
-        for setpoint in setpoints:
-            if watched and loop.too_far(setpoint):
-                break
-            cycles.append(loop.step(setpoint, closed))
+        cycles = loop.follow(setpoints, closed, watched=closed and loop.monitor.on)
         n = len(cycles)
         if n == 0:
             return 0
@@ -190,7 +185,7 @@ class AxisUnit(Unit):
         axis.watch_target(cycle, setpoint, actual_position)
         closed = axis.powered or axis.moving(cycle)
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
-            self._following_error_fault(cycle, setpoint)
+            axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
         control = loop.step(setpoint, closed)
         return (
             *setpoint,
@@ -200,10 +195,3 @@ class AxisUnit(Unit):
             axis.status_bits(cycle, setpoint, control.actual_position),
             axis.error_id,
         )
-
-    def _following_error_fault(self, cycle: int, setpoint: State) -> None:
-        axis, monitor = self._axis, self._loop.monitor
-        following_error, velocity = self._loop.monitored(setpoint)
-        limit = f"{round(monitor.limit(velocity), 4)} {axis.unit} ({monitor.source(velocity)})"
-        reason = f"following error {following_error:.4f} {axis.unit} exceeds {limit}"
-        axis.fault(cycle, FOLLOWING_ERROR, reason, setpoint)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any
 
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.control.control_loop import State
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
 from cnc_ptp.spindle.orders import Orders
 from cnc_ptp.spindle.rotation_commands import RotationCommands
@@ -65,12 +65,12 @@ class SpindleCycles:
         elif speed == 0.0 and spindle.state == S.STOPPING:
             spindle.state = S.STANDSTILL
         actual = loop.actual_position(position, speed)
-        following_error = position - actual
-        self._watch_following_error(cycle, following_error)
+        setpoint = position, speed, acceleration, 0.0
+        self._watch_following_error(cycle, setpoint)
         reached = self._speed_reached(actual_speed)
         self._watch_speed(cycle, reached)
         target = position if spindle.target is None else spindle.target
-        loop.command(following_error, speed, acceleration, on=spindle.state != S.DISABLED)
+        loop.command(setpoint, on=spindle.state != S.DISABLED)
         self._orders.watch()
         self._note_settled(cycle)
         return (
@@ -82,7 +82,7 @@ class SpindleCycles:
             actual,
             target,
             target - position,
-            following_error,
+            position - actual,
             spindle.override_percent,
             loop.drive_output,
             spindle.mode,
@@ -97,15 +97,14 @@ class SpindleCycles:
             spindle.error_id,
         )
 
-    def _watch_following_error(self, cycle: int, following_error: float) -> None:
+    def _watch_following_error(self, cycle: int, setpoint: State) -> None:
+        spindle, control = self._spindle, self._spindle.loop.control
+        if self._watched() and control.too_far(setpoint):
+            spindle.fault(cycle, FOLLOWING_ERROR, control.why_too_far(setpoint, "deg"))
+
+    def _watched(self) -> bool:
         spindle = self._spindle
-        gear = spindle.gear
-        if not gear.following_error_monitoring or spindle.error_id or not spindle.loop.closed:
-            return
-        if abs(following_error) > gear.following_error_limit and spindle.state != S.DISABLED:
-            limit = gear.following_error_limit
-            reason = f"following error {following_error:.3f} deg exceeds {limit} deg (P-AXIS-00168)"
-            spindle.fault(cycle, FOLLOWING_ERROR, reason)
+        return not spindle.error_id and spindle.loop.watches(on=spindle.state != S.DISABLED)
 
     def _speed_reached(self, actual_speed: float) -> bool:
         """P-AXIS-00217: within the tolerance band around the wanted speed; for speed 0 the zero limit P-AXIS-00216.
@@ -192,19 +191,13 @@ class SpindleCycles:
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
         """The same as `_cycle` for such cycles; up to a following error too large."""
         spindle = self._spindle
-        loop, gear, state = spindle.loop, spindle.gear, spindle.state
+        gear, state = spindle.gear, spindle.state
         motions = spindle.motions(first_cycle, count)
-        positions, speeds, accelerations = map(list, zip(*motions, strict=True))
-        closed = loop.closed and state != S.DISABLED
-        watched = closed and gear.following_error_monitoring and not spindle.error_id
-        limit = gear.following_error_limit if watched else inf
-        if closed and not loop.feedforward.active:
-            actual = loop.closed_cycles(positions, limit)
-        else:
-            actual = loop.cycles(motions, limit, on=state != S.DISABLED)
-        actuals, actual_speeds, errors, outputs = actual
+        actuals, actual_speeds, errors, outputs = spindle.loop.cycles(
+            motions, on=state != S.DISABLED, watched=self._watched()
+        )
         n = len(actuals)
-        positions, speeds, accelerations = positions[:n], speeds[:n], accelerations[:n]
+        positions, speeds, accelerations, _ = map(list, zip(*motions[:n], strict=True)) if n else ([], [], [], [])
         targets = positions if spindle.target is None else [spindle.target] * n
         reached = self._speeds_reached(actual_speeds)
         columns = [

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.control.commands import FeedforwardCommands
-from cnc_ptp.control.drives import Drive, FirstOrderDrive
+from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
 from cnc_ptp.machine.spindle_cycles import SpindleCycles
@@ -44,11 +45,9 @@ class SpindleUnit(Unit):
         super().__init__(parameters.name)
         self._given_drive = drive
         self._cycle_time = cycle_time
-        self._time_constant = parameters.drive_time_constant
-        gear = parameters.gears[parameters.gear]
         self.spindle = Spindle(
             parameters,
-            drive=self._make_drive(gear, parameters.start_position * (-1.0 if gear.reversed else 1.0)),
+            drive=self._make_drive(parameters.gears[parameters.gear], parameters.start_position),
             make_drive=self._make_drive,
             cycle_time=cycle_time,
             report_error=partial(self._report, Severity.ERROR),
@@ -71,12 +70,8 @@ class SpindleUnit(Unit):
         self._refused: list[str] = []
 
     def _make_drive(self, gear: GearParameters, position: float) -> Drive:
-        return self._given_drive or FirstOrderDrive(
-            cycle_time=self._cycle_time,
-            time_constant=self._time_constant,
-            encoder_increment=gear.encoder_increment,
-            start_position=position,
-        )
+        plant = replace(gear.control.plant, start_position=position)
+        return self._given_drive or make_drive(replace(gear.control, plant=plant), self._cycle_time)
 
     def _report(self, severity: Severity, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, severity, error_id, text)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cnc_ptp.parameters.control_view import ControlParameters, control_view
-from cnc_ptp.parameters.encoder import encoder_increment
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
 NO_AUTOMATIC_HOMING = 0x100
@@ -18,10 +17,7 @@ OPEN_LOOP_FEEDBACK = {
     "OPEN_POSITION_LOOP_VEL_FEEDBACK": "SPEED",
     "OPEN_POSITION_LOOP_NO_FEEDBACK": "NONE",
 }
-MONITORING_TYPES = (1, 2, 4)
 CURVE_TYPES = {1: "hyperbola", 2: "polynomial", 3: "asynchronous"}
-DIGITS_PER_DEG_S = 60.0 / 1000.0
-"""Drive output of a position-controlled spindle: P-AXIS-00129 / 00128 digits at 1000 °/min."""
 
 
 class CurveParameters(NamedTuple):
@@ -43,27 +39,11 @@ class CurveParameters(NamedTuple):
     n2: float
 
 
-class SpeedScaling(NamedTuple):
-    """Speed command in drive format: `increments` go out at `distance` ° a time base (P-AXIS-00205 … 00207)."""
-
-    increments: int
-    distance: float
-    time_base: int
-    """0 minute, 1 second, 2 sampling interval."""
-
-    def per_deg_s(self, cycle_time: float) -> float:
-        """Increments at 1 °/s; `cycle_time` in s is the sampling interval."""
-        seconds = (60.0, 1.0, cycle_time)[self.time_base]
-        return self.increments * seconds / self.distance
-
-
 @dataclass(frozen=True, slots=True)
 class GearParameters:
     """What depends on the gear stage. Positions in °, speeds in °/s, accelerations in °/s²."""
 
     stage: int
-    kv: float
-    """1/s."""
     max_speed: float
     positioning_speed: float
     """Rapid traverse: M19 without a speed, and the way to the change position."""
@@ -83,18 +63,9 @@ class GearParameters:
     homing_speed: float
     modulo_low: float
     modulo_high: float
-    following_error_monitoring: bool
-    following_error_limit: float
-    following_error_standstill_limit: float
     position_window: float
-    encoder_increment: float
-    """° an increment, 0 is an ideal measuring system."""
-    reversed: bool
-    """The drive turns the other way round."""
-    output_gain: float
-    """Digits of the drive output at 1 °/s, position-controlled."""
     control: ControlParameters
-    """Feedforward and simulated drive."""
+    """Position control and drive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +83,6 @@ class SpindleParameters:
     """Never under position control (P-AXIS-00320)."""
     feedback: str
     """What the drive sends: POSITION, SPEED or NONE."""
-    scaling: SpeedScaling
     speed_reached_band: float
     """Speed reached within (1 ± band) times the commanded speed."""
     preferred_direction: int
@@ -132,7 +102,6 @@ class SpindleParameters:
     """The same for the speed of endless rotation."""
     gear_change_time: float
     """In which the PLC must have acknowledged a gear change; 0 = for ever."""
-    drive_time_constant: float
     zero_pulse: float
     max_override_percent: float
     powered_at_start: bool
@@ -163,11 +132,6 @@ def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParamete
         automatic_homing=not mode & NO_AUTOMATIC_HOMING,
         open_loop=is_open_loop(parameters),
         feedback=feedback(parameters),
-        scaling=SpeedScaling(
-            int(parameters.number("P-AXIS-00206")),
-            parameters.kernel("P-AXIS-00205"),
-            int(parameters.number("P-AXIS-00207")),
-        ),
         speed_reached_band=parameters.kernel("P-AXIS-00217"),
         preferred_direction=preferred_direction(parameters),
         velocity_control_on=parameters.kernel("P-AXIS-00265"),
@@ -178,7 +142,6 @@ def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParamete
         target_time=parameters.number("P-MACH-00014") / 1000.0,
         speed_time=parameters.number("P-MACH-00050") / 1000.0,
         gear_change_time=parameters.number("P-MACH-00051") / 1000.0,
-        drive_time_constant=parameters.kernel("P-SIM-00001"),
         zero_pulse=parameters.kernel("P-SIM-00051"),
         max_override_percent=parameters.percent("P-AXIS-00109"),
         powered_at_start=bool(parameters.number("P-SIM-00004")),
@@ -191,7 +154,6 @@ def gear_view(parameters: ParameterSet, gear: int, cycle_time: float) -> GearPar
     """The record getriebe[gear]; `cycle_time` in s."""
     return GearParameters(
         stage=gear + 1,
-        kv=parameters.kernel("P-AXIS-00099", gear),
         max_speed=parameters.kernel("P-AXIS-00212", gear),
         positioning_speed=parameters.kernel("P-AXIS-00209", gear),
         max_acceleration=parameters.kernel("P-AXIS-00008", gear),
@@ -206,15 +168,7 @@ def gear_view(parameters: ParameterSet, gear: int, cycle_time: float) -> GearPar
         homing_speed=parameters.kernel("P-AXIS-00218", gear),
         modulo_low=parameters.kernel("P-AXIS-00127", gear),
         modulo_high=parameters.kernel("P-AXIS-00126", gear),
-        following_error_monitoring=parameters.number("P-AXIS-00172", gear) in MONITORING_TYPES,
-        following_error_limit=parameters.kernel("P-AXIS-00168", gear),
-        following_error_standstill_limit=parameters.kernel("P-AXIS-00169", gear),
         position_window=parameters.kernel("P-AXIS-00236", gear),
-        encoder_increment=encoder_increment(parameters, gear),
-        reversed=bool(parameters.number("P-AXIS-00159", gear)),
-        output_gain=parameters.number("P-AXIS-00129", gear)
-        / parameters.number("P-AXIS-00128", gear)
-        * DIGITS_PER_DEG_S,
         control=control_view(parameters, gear, cycle_time),
     )
 

@@ -230,7 +230,7 @@ class Jobs:
         mark = self._zero_pulse.passed(spindle.loop.encoder)
         if mark is not None:
             reference = spindle.gear.reference_position
-            spindle.shift_coordinates(nearest_shift(mark + spindle.loop.offset, reference))
+            spindle.shift_coordinates(nearest_shift(mark + spindle.loop.control.offset, reference))
             spindle.referenced, spindle.reference_lost = True, False
             return True
         if abs(position - self._search_from) > PATIENCE:

@@ -7,86 +7,73 @@ is speed / Kv. Units: °, °/s.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from math import inf
 
+from cnc_ptp.control.control_loop import ControlLoop, State
+from cnc_ptp.control.drive_format import shown_velocity
 from cnc_ptp.control.drives import Drive
-from cnc_ptp.control.feedforward import CouplingLimits, Feedforward, State
+from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
 from cnc_ptp.parameters import GearParameters, SpindleParameters
-from cnc_ptp.spindle.speed_table import Motion
 
-HISTORY = 16
-"""Setpoints that feedforward may look back at."""
 Cycles = tuple[list[float], list[float], list[float], list[int]]
 """Actual positions, actual speeds, following errors, drive outputs."""
 
 
 class PositionLoop:
-    """Command to the drive and actual values, cycle by cycle."""
+    """The control loop of the gear in work, where it is closed and where it is not; actual values, cycle by cycle."""
 
     def __init__(self, parameters: SpindleParameters, gear: GearParameters, drive: Drive, *, cycle_time: float) -> None:
         """`cycle_time` in s."""
         self._parameters = parameters
         self._cycle_time = cycle_time
-        self._increments = parameters.scaling.per_deg_s(cycle_time)
-        self.drive = drive
-        self.offset = 0.0
-        """Between the counting of the encoder and the coordinates of the spindle."""
         self.beyond_limit = False
         self.velocity_control = False
         self.drive_output = 0
         self._last_position: float | None = None
         self._feedforward_on, self._weight_percent = False, 100.0
-        self._history: deque[State] = deque(maxlen=HISTORY)
-        self.use_gear(gear)
+        self.use_gear(gear, drive)
 
-    def use_gear(self, gear: GearParameters) -> None:
-        """The parameters of a gear count from now on."""
+    def use_gear(self, gear: GearParameters, drive: Drive) -> None:
+        """The parameters of a gear count from now on; `drive` has its measuring system."""
         self._gear = gear
-        self._sign = -1.0 if gear.reversed else 1.0
-        self._kv = gear.kv
-        self._zero = gear.zero_speed
-        self.feedforward = self._make_feedforward(gear)
-
-    def _make_feedforward(self, gear: GearParameters) -> Feedforward:
-        """That of a gear, with what was selected; there is no delay line, so no lead either (P-AXIS-00165)."""
-        parameters = gear.control.feedforward
-        feedforward = Feedforward(
-            parameters,
+        self.control = ControlLoop(
+            gear.control,
             cycle_time=self._cycle_time,
-            kv=gear.kv,
-            torque_per_acceleration=gear.control.scaling.torque_per_acceleration,
             limits=CouplingLimits(gear.max_speed, gear.max_acceleration, inf),
-            delay_cycles=parameters.lead_cycles,
+            drive=drive,
         )
-        feedforward.select(self._feedforward_on, self._weight_percent)
-        return feedforward
+        self.control.select_feedforward(self._feedforward_on, self._weight_percent)
+        self._output = shown_velocity(gear.control.scaling, gear.control.drive)
+
+    @property
+    def feedforward(self) -> Feedforward:
+        return self.control.feedforward
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136; it holds in all gears."""
         self._feedforward_on, self._weight_percent = on, weight_percent
-        self.feedforward.select(on, weight_percent)
+        self.control.select_feedforward(on, weight_percent)
 
     def count_from(self, position: float) -> None:
-        """The encoder stands at `position`, whatever it shows."""
-        self.offset = position - self._sign * self.drive.position
+        """The spindle stands at `position`, whatever the encoder shows."""
+        self.control.count_from(position)
         self._last_position = None
 
     def shift(self, distance: float) -> None:
         """All coordinates grow by `distance`."""
-        self.offset += distance
+        self.control.shift(distance)
         self._last_position = None if self._last_position is None else self._last_position + distance
 
     @property
     def encoder(self) -> float:
         """Position as the encoder counts it."""
-        return self._sign * self.drive.position
+        return self.control.encoder
 
     @property
     def position(self) -> float:
         """Actual position as the encoder shows it."""
-        return self._sign * self.drive.position + self.offset
+        return self.control.position
 
     @property
     def closed(self) -> bool:
@@ -104,7 +91,7 @@ class PositionLoop:
 
     def lag(self, speed: float) -> float:
         """Following error of a closed loop at a constant speed."""
-        return speed / self._kv
+        return speed / self.control.kv
 
     def passes_limit(self, set_speed: float) -> bool:
         """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
@@ -134,25 +121,28 @@ class PositionLoop:
         if not self.waits_to_close(set_speed, wanted_speed):
             return False
         limit = self._parameters.velocity_control_off
-        if abs(self.drive.velocity) > limit + max(self._zero, self._parameters.speed_reached_band * limit):
+        if abs(self.control.drive.velocity) > limit + max(
+            self._gear.zero_speed, self._parameters.speed_reached_band * limit
+        ):
             return False
         self.velocity_control = False
         return True
 
     def actual_position(self, set_position: float, set_speed: float) -> float:
         """Measured, or simulated where there is no measurement."""
-        if self.measures_position:
-            return self._sign * self.drive.position + self.offset
-        return set_position - set_speed / self._kv if self.beyond_limit else set_position
+        if self.beyond_limit:
+            return set_position - self.lag(set_speed)
+        measured = self._parameters.has_position and not self.control.virtual
+        return self.control.position if measured else set_position
 
     def actual_speed(self, set_speed: float) -> float:
         """By what the drive sends; asked once a cycle, because an open loop takes it from two positions."""
-        if not self.measures_speed:
+        if not self.measures_speed or self.control.virtual:
             return set_speed
         if self._parameters.open_loop and self._parameters.has_position:
             last, self._last_position = self._last_position, self.position
             return 0.0 if last is None else (self._last_position - last) / self._cycle_time
-        return self._sign * self.drive.velocity
+        return self.control.drive.velocity
 
     def undisturbed(self, first_speed: float, last_speed: float) -> bool:
         """True when nothing opens or closes the loop while the speed goes steadily from one value to the other."""
@@ -161,77 +151,44 @@ class PositionLoop:
         limit = self._gear.control_limit
         return self._parameters.open_loop or (abs(first_speed) <= limit and abs(last_speed) <= limit)
 
-    def closed_cycles(self, positions: Sequence[float], limit: float) -> Cycles:
-        """Cycles of the closed loop for the set `positions`, up to a following error above `limit`.
+    def watches(self, *, on: bool) -> bool:
+        """True while the following error is monitored; `on` is False without power."""
+        return on and self.closed and self.control.monitor.on
+
+    def cycles(self, setpoints: Sequence[State], *, on: bool, watched: bool) -> Cycles:
+        """Many cycles through which the loop stays as it is; if `watched`, up to a following error too large.
 
         The same as actual_position, actual_speed and command, cycle by cycle.
         """
-        drive, sign, offset, kv, gain = self.drive, self._sign, self.offset, self._kv, self._gear.output_gain
-        step = drive.step
-        cycles: Cycles = [], [], [], []
-        actuals, speeds, errors, outputs = cycles
-        for position in positions:
-            actual = sign * drive.position + offset
-            error = position - actual
-            if not -limit <= error <= limit:
-                break
-            actuals.append(actual)
-            speeds.append(sign * drive.velocity)
-            errors.append(error)
-            command = kv * error
-            outputs.append(round(command * gain * sign))
-            step(sign * command)
-        if outputs:
-            self.drive_output = outputs[-1]
-        return cycles
-
-    def cycles(self, motions: Sequence[Motion], limit: float, *, on: bool) -> Cycles:
-        """The same with feedforward, where the loop is open, or without power."""
+        if on and self.closed:
+            return self._closed_cycles(setpoints, watched)
         cycles: Cycles = [], [], [], []
         actuals, actual_speeds, errors, outputs = cycles
-        for position, speed, acceleration in motions:
-            actual = self.actual_position(position, speed)
-            error = position - actual
-            if not -limit <= error <= limit:
-                break
+        for setpoint in setpoints:
+            actual = self.actual_position(setpoint[0], setpoint[1])
             actuals.append(actual)
-            actual_speeds.append(self.actual_speed(speed))
-            errors.append(error)
-            self.command(error, speed, acceleration, on=on)
+            actual_speeds.append(self.actual_speed(setpoint[1]))
+            errors.append(setpoint[0] - actual)
+            self.command(setpoint, on=on)
             outputs.append(self.drive_output)
         return cycles
 
-    def command(self, following_error: float, set_speed: float, acceleration: float, *, on: bool) -> float:
-        """Moves the drive for one cycle; returns the commanded speed. `on` is False without power."""
-        feedforward = self.feedforward
-        if not on:
-            command = 0.0
-        elif self.closed:
-            command = self._kv * following_error
-            if feedforward.active:
-                self._feed_forward(command, set_speed, acceleration)
-                command += feedforward.velocity
-        else:
-            command = set_speed
-        if not (on and self.closed):
-            self._history.clear()
-            feedforward.forget()
-        if self._parameters.open_loop and self._increments:
-            self.drive_output = round(command * self._increments * self._sign)
-            self.drive.step(self.drive_output / self._increments)
-        else:
-            self.drive_output = round(command * self._gear.output_gain * self._sign)
-            self._step(command)
-        return command
+    def _closed_cycles(self, setpoints: Sequence[State], watched: bool) -> Cycles:
+        rows = self.control.follow(setpoints, True, watched=watched)
+        if not rows:
+            return [], [], [], []
+        actuals, actual_speeds, errors, commands, *_ = map(list, zip(*rows, strict=True))
+        outputs = self._output.encode_all(commands)
+        self.drive_output = outputs[-1]
+        return actuals, actual_speeds, errors, outputs
 
-    def _step(self, command: float) -> None:
-        sign, feedforward = self._sign, self.feedforward
-        self.drive.step(sign * command, sign * feedforward.additive_velocity, sign * feedforward.additive_torque)
+    def command(self, setpoint: State, *, on: bool) -> None:
+        """Moves the drive for one cycle. `on` is False without power.
 
-    def _feed_forward(self, feedback: float, speed: float, acceleration: float) -> None:
-        setpoint = (0.0, speed, acceleration, 0.0)
-        if self._history:
-            self._history.appendleft(setpoint)
-        else:
-            self._history.extend([setpoint] * HISTORY)
-        self.feedforward.update(self._history, feedback)
+        A spindle that is never under position control turns as fast as the digits say that go out (spindle 2.2.4).
+        """
+        speed = setpoint[1] if on else 0.0
+        if self._parameters.open_loop:
+            speed = self._output.decode(self._output.encode(speed))
+        cycle = self.control.step(setpoint, on and self.closed, speed)
+        self.drive_output = self._output.encode(cycle.command_velocity)

@@ -7,6 +7,7 @@ from math import copysign
 from typing import NoReturn
 
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.control.control_loop import State
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import GearParameters, SpindleParameters
@@ -84,16 +85,16 @@ class Spindle:
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
 
-    def motions(self, first_cycle: int, count: int) -> list[Motion]:
-        """`motion` of many cycles."""
+    def motions(self, first_cycle: int, count: int) -> list[State]:
+        """`motion` of many cycles, as setpoints of the control loop (no jerk is fed forward)."""
         state_at, origin, shift, cycle_time = self._table.state_at, self._origin, self._shift, self.cycle_time
         if not self.finished(first_cycle):
             states = [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
-            return [(position + shift, speed, acceleration) for position, speed, acceleration in states]
+            return [(position + shift, speed, acceleration, 0.0) for position, speed, acceleration in states]
         end = self._table.segments[-1]
         start, (position, speed) = end.start, end.way
         return [
-            (position + ((cycle - origin) * cycle_time - start) * speed + shift, speed, 0.0)
+            (position + ((cycle - origin) * cycle_time - start) * speed + shift, speed, 0.0, 0.0)
             for cycle in range(first_cycle, first_cycle + count)
         ]
 
@@ -173,8 +174,7 @@ class Spindle:
         """Parameters of another gear; the spindle stands where the encoder shows it."""
         actual = self.loop.position
         self.gear = self.parameters.gears[stage]
-        self.loop.use_gear(self.gear)
-        self.loop.drive = self._make_drive(self.gear, self.loop.drive.position)
+        self.loop.use_gear(self.gear, self._make_drive(self.gear, self.loop.control.drive.position))
         self.loop.count_from(actual)
         self.limits = SpindleLimits(self.gear, self.tool)
         if self.parameters.has_position:

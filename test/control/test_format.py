@@ -136,6 +136,9 @@ def test_a_zero_denominator_of_the_torque_puts_nothing_out() -> None:
 @pytest.mark.parametrize(("bits", "lowest", "highest"), [(16, -32_768, 32_767), (32, -(2**31), 2**31 - 1)])
 def test_digits_stay_within_their_length(bits: int, lowest: int, highest: int) -> None:
     digits = Digits(scale=10.0, bits=bits)
+    values = [highest / 5.0, -0.26, lowest / 5.0]
+    assert digits.encode_all(values) == [highest, -3, lowest]
+    assert digits.encode_all(values[1:2]) == [-3] and digits.encode_all([]) == []
     assert digits.encode(highest / 10.0) == highest
     assert digits.encode(lowest / 10.0) == lowest
     assert digits.encode(1e15) == highest

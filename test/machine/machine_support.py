@@ -18,6 +18,7 @@ from cnc_ptp.machine.spindle_unit import SpindleUnit
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import AxisParameters, GearParameters, MachineParameters, SpindleParameters, read_machine
+from cnc_ptp.parameters.control_view import ControlParameters
 
 ROOT = Path(__file__).parents[2]
 MILL = read_machine(ROOT / "config" / "mill.yaml")
@@ -89,22 +90,40 @@ def _fields(block: Block) -> Iterable[tuple[str, Any]]:
     return ((name, getattr(block, name)) for name in type(block).__dataclass_fields__)
 
 
-def changed(parameters: AxisParameters, **changes: Any) -> AxisParameters:
-    """Other parameters of an axis, those of its control loop by their old short names too."""
-    control = parameters.control
-    plant, monitoring = control.plant, control.monitoring
-    if "kv" in changes:
-        control = replace(control, kv=changes["kv"])
-        plant = replace(plant, kv=changes.pop("kv"))
-    if "drive_time_constant" in changes:
-        plant = replace(plant, time_constant=changes.pop("drive_time_constant"))
-    if "following_error_limit" in changes:
-        monitoring = replace(monitoring, moving_limit=changes.pop("following_error_limit"))
+def changed_control(control: ControlParameters, changes: dict[str, Any]) -> ControlParameters:
+    """Other parameters of a control loop by short names, which are taken out of `changes`."""
+
+    def taken(**names: str) -> dict[str, Any]:
+        return {name: changes.pop(short) for name, short in names.items() if short in changes}
+
     if "following_error_monitoring" in changes:
-        monitoring = replace(monitoring, kind=4 if changes.pop("following_error_monitoring") else 0)
+        changes["monitoring"] = 4 if changes.pop("following_error_monitoring") else 0
+    limits = {"moving_limit": "following_error_limit", "standstill_limit": "standstill_limit"}
+    monitoring = replace(control.monitoring, **taken(kind="monitoring", dynamic="dynamic", **limits))
+    plant = taken(time_constant="drive_time_constant", encoder_increment="encoder_increment")
+    if "kv" in changes:
+        plant["kv"] = changes["kv"]
+    return replace(
+        control,
+        **taken(kv="kv", modulo_error="modulo_error"),
+        monitoring=monitoring,
+        drive=replace(control.drive, **taken(reverse="reversed")),
+        scaling=replace(control.scaling, **taken(analogue="digits_per_deg_s")),
+        plant=replace(control.plant, **plant),
+    )
+
+
+def changed(parameters: AxisParameters, **changes: Any) -> AxisParameters:
+    """Other parameters of an axis, those of its control loop by their short names too."""
     shared = {name: changes[name] for name in ("encoder_increment", "start_position") if name in changes}
-    control = replace(control, plant=replace(plant, **shared), monitoring=monitoring)
-    return replace(parameters, **{"control": control} | changes)
+    control = changed_control(parameters.control, changes)
+    control = replace(control, plant=replace(control.plant, **shared))
+    return replace(parameters, **{"control": control} | changes | shared)
+
+
+def changed_gear(gear: GearParameters, **changes: Any) -> GearParameters:
+    """Other parameters of a gear, those of its control loop by their short names too."""
+    return replace(gear, **{"control": changed_control(gear.control, changes)} | changes)
 
 
 def axis_parameters(**changes: Any) -> AxisParameters:
@@ -119,10 +138,10 @@ def axis_bench(*, count: int = 10, **changes: Any) -> UnitBench:
 def spindle_parameters(**changes: Any) -> SpindleParameters:
     """The spindle of config/mill.yaml: 12000 rpm, A+ 36000 °/s², A- 40000 °/s². Changes of a gear count for all."""
     spindle = MILL.spindles["s"]
-    of_gear = {name: value for name, value in changes.items() if name in GearParameters.__dataclass_fields__}
-    stages = sorted({1, changes.get("gear", 1)})
-    gears = {stage: replace(spindle.gears[1], stage=stage, **of_gear) for stage in stages}
-    return replace(spindle, **{"gears": gears, **{n: v for n, v in changes.items() if n not in of_gear}})
+    own = {name: changes.pop(name) for name in [*changes] if name in SpindleParameters.__dataclass_fields__}
+    stages = sorted({1, own.get("gear", 1)})
+    gears = {stage: changed_gear(spindle.gears[1], stage=stage, **changes) for stage in stages}
+    return replace(spindle, **{"gears": gears, **own})
 
 
 def spindle_bench(*, count: int = 10, **changes: Any) -> UnitBench:

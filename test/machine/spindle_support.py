@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from machine_support import CYCLE_TIME, UnitBench, spindle_parameters
+from machine_support import CYCLE_TIME, UnitBench, changed_gear, spindle_parameters
 
 from cnc_ptp.control.drives import FirstOrderDrive
 from cnc_ptp.machine.blocks import AxisStateCode as S
@@ -27,7 +27,7 @@ def two_gears(*, gear: int = 1, second: Mapping[str, Any] | None = None, **chang
     """Gears 1 and 2; the changes count for both, `second` for gear 2 only."""
     parameters = spindle_parameters(gear=gear, **changes)
     first = replace(next(iter(parameters.gears.values())), stage=1)
-    return replace(parameters, gears={1: first, 2: replace(first, stage=2, **(second or {}))})
+    return replace(parameters, gears={1: first, 2: changed_gear(first, stage=2, **(second or {}))})
 
 
 def states(bench: UnitBench) -> list[S]:

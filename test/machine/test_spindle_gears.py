@@ -61,7 +61,7 @@ def test_after_the_acknowledgement_the_parameters_of_the_new_gear_count() -> Non
     assert each.column("set_acceleration_deg_s2")[begin + 1] == 9000.0
     assert each.column("following_error_deg")[-1] == pytest.approx(1000.0 * RPM / 25.0, abs=0.02)
     counts = each.column("actual_position_deg")[-1] / 0.01
-    assert abs(math.remainder(counts - each.unit.spindle.loop.offset / 0.01, 1.0)) < 1e-6
+    assert abs(math.remainder(counts - each.unit.spindle.loop.control.offset / 0.01, 1.0)) < 1e-6
     assert each.refused("start", direction="cw", speed_rpm=7000.0) == (
         "P-ERR-24002 spindle s: start refused: speed 7000.0 rpm is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); "
         "nothing was changed"

@@ -54,7 +54,7 @@ def test_the_following_error_is_watched_in_steady_rotation_too() -> None:
     errors = bench.column("following_error_deg")
     assert errors[fault - 1] <= 100.0 < errors[fault]
     assert bench.event_texts() == [
-        f"P-ERR-17744 spindle s: following error {errors[fault]:.3f} deg exceeds 100.0 deg (P-AXIS-00168); the spindle stops "
+        f"P-ERR-17744 spindle s: following error {errors[fault]:.4f} deg exceeds 100.0 deg (P-AXIS-00168); the spindle stops "
         "on its ramp (ErrorStop)"
     ]
     assert bench.column("state")[fault - 1 : fault + 1] == [S.CONTINUOUS_MOTION, S.ERROR_STOP]

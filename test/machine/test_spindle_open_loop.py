@@ -11,20 +11,19 @@ from spindle_support import bench_of, first_cycle, states
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import SpindleBit
-from cnc_ptp.parameters.spindle_view import SpeedScaling
 
-TERMINAL = SpeedScaling(32767, 1_080_000.0, 0)
-"""Page 17: 32767 increments (10 V) turn the motor at 3000 rpm."""
-ONE_AN_RPM = SpeedScaling(1, 360.0, 0)
-"""Page 18: 1 increment is 1 rpm."""
+TERMINAL = 32767 / 18_000.0
+"""Page 17: 32767 digits (10 V) turn the motor at 3000 rpm; digits at 1 °/s."""
+ONE_AN_RPM = 1 / 6.0
+"""Page 18: 1 digit is 1 rpm."""
 
 
-def open_loop(feedback: str, scaling: SpeedScaling = TERMINAL, **changes: Any) -> UnitBench:
+def open_loop(feedback: str, digits_per_deg_s: float = TERMINAL, **changes: Any) -> UnitBench:
     referenced = feedback == "POSITION"
     parameters = {
         "open_loop": True,
         "feedback": feedback,
-        "scaling": scaling,
+        "digits_per_deg_s": digits_per_deg_s,
         "referenced_at_start": referenced,
         **changes,
     }
@@ -32,7 +31,7 @@ def open_loop(feedback: str, scaling: SpeedScaling = TERMINAL, **changes: Any) -
 
 
 @pytest.mark.parametrize(
-    ("scaling", "rpm", "output"),
+    ("digits_per_deg_s", "rpm", "output"),
     [
         (TERMINAL, 3000.0, 32767),
         (TERMINAL, 1500.0, 16384),
@@ -43,9 +42,9 @@ def open_loop(feedback: str, scaling: SpeedScaling = TERMINAL, **changes: Any) -
 )
 @pytest.mark.parametrize("direction", ["cw", "ccw"])
 def test_the_drive_output_of_the_manuals_examples(
-    scaling: SpeedScaling, rpm: float, output: int, direction: str
+    digits_per_deg_s: float, rpm: float, output: int, direction: str
 ) -> None:
-    bench = open_loop("NONE", scaling)
+    bench = open_loop("NONE", digits_per_deg_s)
     bench.accepted("start", direction=direction, speed_rpm=rpm)
     bench.run(700)
     assert bench.column("drive_output")[-1] == (output if direction == "cw" else -output)
@@ -129,7 +128,7 @@ def test_without_a_position_there_is_no_m19_and_no_homing(feedback: str) -> None
 
 
 def test_with_a_position_m19_stops_first_and_positions_in_the_open_loop() -> None:
-    bench = open_loop("POSITION", SpeedScaling(1, 0.036, 0))
+    bench = open_loop("POSITION", 60 / 0.036)
     bench.accepted("start", direction="cw", speed_rpm=1000.0)
     bench.run(500)
     bench.accepted("orient", position_deg=90.0, speed_rpm=200.0)

@@ -77,7 +77,7 @@ def test_homing_from_standstill(make: Any, reference: float) -> None:
     assert step == pytest.approx(shift, abs=1e-9)
     assert column["following_error_deg"][found] == pytest.approx(column["following_error_deg"][found - 1], abs=1e-3)
     encoder = column["actual_position_deg"][-1] - shift
-    assert encoder == pytest.approx(bench.unit.spindle.loop.drive.position, abs=1e-9)
+    assert encoder == pytest.approx(bench.unit.spindle.loop.control.drive.position, abs=1e-9)
 
 
 def test_the_pulse_is_latched_at_its_place() -> None:
@@ -87,7 +87,7 @@ def test_the_pulse_is_latched_at_its_place() -> None:
         bench.accepted("orient", position_deg=0.0, speed_rpm=100.0)
         bench.run(2500)
         assert bench.column("in_position")[-1]
-        away = math.remainder(bench.unit.spindle.loop.drive.position - pulse, 360.0)
+        away = math.remainder(bench.unit.spindle.loop.control.drive.position - pulse, 360.0)
         assert away == pytest.approx(0.0, abs=1e-6)
 
 
@@ -333,7 +333,7 @@ def test_power() -> None:
 def test_power_takes_the_place_where_the_spindle_was_turned_by_hand() -> None:
     bench = spindle_bench(powered_at_start=False)
     bench.run(10)
-    bench.unit.spindle.loop.drive._true_position = 45.0
+    bench.unit.spindle.loop.control.drive._true_position = 45.0
     bench.run(10)
     bench.accepted("power", on=True)
     bench.run(10)

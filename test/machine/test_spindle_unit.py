@@ -366,7 +366,7 @@ def test_following_error_fault() -> None:
     error = bench.column("following_error_deg")
     assert error[cycle - 1] <= 100.0 < error[cycle]
     assert bench.event_texts() == [
-        f"P-ERR-17744 spindle s: following error {error[cycle]:.3f} deg exceeds 100.0 deg (P-AXIS-00168); "
+        f"P-ERR-17744 spindle s: following error {error[cycle]:.4f} deg exceeds 100.0 deg (P-AXIS-00168); "
         "the spindle stops on its ramp (ErrorStop)"
     ]
     assert bench.column("state")[cycle] == S.ERROR_STOP and bench.column("set_speed_rpm")[-1] == 0.0

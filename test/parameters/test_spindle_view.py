@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
+from cnc_ptp.control.drive_format import shown_velocity
 from cnc_ptp.parameters import GearParameters, MachineParameters, SpindleParameters, load_machine
 from cnc_ptp.parameters.control_view import control_view
-from cnc_ptp.parameters.spindle_view import CurveParameters, SpeedScaling
+from cnc_ptp.parameters.spindle_view import CurveParameters
 
 DEFAULT_GEAR: dict[str, Any] = {
     "stage": 1,
-    "kv": 10.0,
     "max_speed": 200.0,
     "positioning_speed": 166.666,
     "max_acceleration": 1000.0,
@@ -28,13 +28,7 @@ DEFAULT_GEAR: dict[str, Any] = {
     "homing_speed": 16.666,
     "modulo_low": 0.0,
     "modulo_high": 360.0,
-    "following_error_monitoring": False,
-    "following_error_limit": 10.0,
-    "following_error_standstill_limit": 2.0,
     "position_window": 0.05,
-    "encoder_increment": 0.0001,
-    "reversed": False,
-    "output_gain": 120.0,
 }
 
 
@@ -61,7 +55,6 @@ def test_a_spindle_of_defaults() -> None:
         automatic_homing=True,
         open_loop=False,
         feedback="POSITION",
-        scaling=SpeedScaling(1, 0.036, 0),
         speed_reached_band=0.1,
         preferred_direction=0,
         velocity_control_on=2_000_000.0,
@@ -72,7 +65,6 @@ def test_a_spindle_of_defaults() -> None:
         target_time=2.0,
         speed_time=0.0,
         gear_change_time=10.0,
-        drive_time_constant=0.0,
         zero_pulse=0.0,
         max_override_percent=100.0,
         powered_at_start=True,
@@ -83,7 +75,8 @@ def test_a_spindle_of_defaults() -> None:
 
 def test_every_gear_that_the_file_describes_has_a_record() -> None:
     view = spindle("kenngr.getriebe_stufe: 2, getriebe: {0: {kv: 100}, 1: {kv: 300, dynamik.vb_max: 60000000}}")
-    assert (view.gear, sorted(view.gears), view.gears[2].kv, view.gears[1].kv) == (2, [1, 2], 3.0, 1.0)
+    assert (view.gear, sorted(view.gears)) == (2, [1, 2])
+    assert (view.gears[2].control.kv, view.gears[1].control.kv) == (3.0, 1.0)
     assert view.max_speed_deg_s == 60_000.0
     assert sorted(spindle("kenngr.getriebe_stufe: 4").gears) == [4]
 
@@ -94,8 +87,8 @@ def test_values_of_a_gear_in_kernel_units() -> None:
         "multi_gain_z: 32767, multi_gain_n: 18, reverse: 1"
     )
     assert (view.change_position, view.reference_position, view.homing_speed) == (-90.5, 12.3456, 50.0)
-    assert (view.control_limit, view.reversed) == (12_000.0, True)
-    assert view.output_gain * 1000.0 / 60.0 == pytest.approx(32767 / 18)
+    assert (view.control_limit, view.control.drive.reverse) == (12_000.0, True)
+    assert view.control.scaling.analogue * 1000.0 / 60.0 == pytest.approx(32767 / 18)
 
 
 @pytest.mark.parametrize(
@@ -113,11 +106,6 @@ def test_a_control_limit_of_0_is_none() -> None:
 @pytest.mark.parametrize(("restricted", "positive", "direction"), [(0, 0, 0), (0, 1, 0), (1, 0, -1), (1, 1, 1)])
 def test_preferred_direction(restricted: int, positive: int, direction: int) -> None:
     assert spindle(f"kenngr: {{vorz_richtung: {restricted}, beweg_richt: {positive}}}").preferred_direction == direction
-
-
-@pytest.mark.parametrize(("kind", "on"), [(0, False), (1, True), (2, True), (3, False), (4, True), (5, False)])
-def test_following_error_monitoring(kind: int, on: bool) -> None:
-    assert gear(f"slep_ueberw_typ: {kind}").following_error_monitoring is on
 
 
 def test_modes_of_operation() -> None:
@@ -144,17 +132,34 @@ def test_the_ways_to_acknowledge_a_speed(mode: str, telegram: str, open_loop: bo
     assert view.referenced_at_start is (feedback == "POSITION")
 
 
-def test_scaling_examples_of_the_manual_to_the_digit() -> None:
-    """Page 17: 32767 increments are 3000 rpm; page 18: 1 increment is 1 rpm."""
-    sensorless = spindle("antr: {v_time_base: 0, v_reso_num: 32767, v_reso_denom: 1080000000}").scaling
-    assert round(3000.0 * 6.0 * sensorless.per_deg_s(0.001)) == 32767
-    with_speed = spindle("antr: {v_time_base: 0, v_reso_num: 1, v_reso_denom: 360000}").scaling
-    assert [round(rpm * 6.0 * with_speed.per_deg_s(0.001), 9) for rpm in (1.0, 750.0)] == [1.0, 750.0]
+@pytest.mark.parametrize("mode", ["POS", "VEL", "NO"])
+@pytest.mark.parametrize(
+    ("scaling", "rpm", "digits"),
+    [
+        ("v_time_base: 0, v_reso_num: 32767, v_reso_denom: 1080000000", 3000.0, 32767),
+        ("v_time_base: 0, v_reso_num: 1, v_reso_denom: 360000", 750.0, 750),
+        ("v_time_base: 1, v_reso_num: 10, v_reso_denom: 500", 1.0, 120),
+        ("v_time_base: 2, v_reso_num: 10, v_reso_denom: 6", 1.0, 10),
+    ],
+)
+def test_scaling_of_the_open_loop(mode: str, scaling: str, rpm: float, digits: int) -> None:
+    """Page 17: 32767 digits are 3000 rpm; page 18: 1 digit is 1 rpm; 10 digits are 0.5° a second, 0.006° a cycle."""
+    drive = f"antr: {{operation_mode: OPEN_POSITION_LOOP_{mode}_FEEDBACK, {scaling}}}"
+    control = spindle(f"{drive}, getriebe.0: {{wegaufz: 1, wegaufn: 1}}").gears[1].control
+    assert shown_velocity(control.scaling, control.drive).encode(rpm * 6.0) == digits
 
 
-def test_time_bases_of_the_scaling() -> None:
-    assert SpeedScaling(10, 0.5, 1).per_deg_s(0.002) == 20.0
-    assert SpeedScaling(10, 0.5, 2).per_deg_s(0.002) == pytest.approx(0.04)
+def test_digits_of_the_closed_loop() -> None:
+    """A real drive shows the word of its telegram, a simulated one that of a DA converter; a reversed one the sign."""
+    of_telegram = "antr: {v_time_base: 0, v_reso_num: 1, v_reso_denom: 360000}"
+    for drive, digits in (
+        ("kenngr.antr_typ: 2", 500),
+        ("kenngr.antr_typ: 1", 360_000),
+        ("kenngr.antr_typ: 4", 360_000),
+    ):
+        control = spindle(f"{drive}, {of_telegram}, getriebe.0: {{reverse: 1, vb_regelgrenze: 0}}").gears[1].control
+        shown = shown_velocity(control.scaling, control.drive)
+        assert shown.encode(500.0 * 6.0) == max(-(1 << shown.bits - 1), -digits)
 
 
 def test_curves() -> None:
@@ -172,7 +177,7 @@ def test_curves() -> None:
 def test_a_resolution_of_0_is_corrected_with_the_warnings_of_the_manual() -> None:
     """Page 73: 110386 and, as it is printed, 110086."""
     found = machine("getriebe.0: {wegaufz: 0, wegaufn: 0}")
-    assert found.spindles["s"].gears[1].encoder_increment == 0.0001
+    assert found.spindles["s"].gears[1].control.plant.encoder_increment == 0.0001
     assert found.warnings == (
         "m.yaml:2:46: P-AXIS-00234 getriebe[0].wegaufz of /s: P-WARN-110386 value 0 is corrected to 1",
         "m.yaml:2:58: P-AXIS-00233 getriebe[0].wegaufn of /s: P-WARN-110086 value 0 is corrected to 1",
