@@ -1,0 +1,8 @@
+%BRACKETS (TF5200 spindle 2.2.1.1, the same in the syntax of axes)
+N10 S[M03 REV1000]
+N20 Z0
+N30 S[M04 REV1000]
+N40 Z100
+N50 S[M05]
+N60 S[M19 REV200 POS100]
+M30

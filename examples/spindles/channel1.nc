@@ -1,0 +1,6 @@
+%CHANNEL1 (TF5200 spindle 2.2.5.2: S2 is the main spindle)
+N10 S[M03 REV1000] S3[M03 REV600]
+N20 X50
+N30 S3[M05]
+N40 M05
+M30

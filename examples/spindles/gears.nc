@@ -1,0 +1,11 @@
+%GEARS (TF5200 spindle p.37, the gear follows from the speed)
+N10 S650 M03
+N20 S750
+N30 S950
+N40 S1050
+N50 S750
+N60 S500
+N70 S350
+N80 M41 S750
+N90 M05
+M30

@@ -1,0 +1,9 @@
+%OPEN_LOOP (TF5200 spindle 2.2.4: speeds of an open position loop)
+N10 M03 S3000
+N20 Z50
+N30 S1500
+N40 Z0
+N50 M04 S1000
+N60 Z50
+N70 M05
+M30

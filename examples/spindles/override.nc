@@ -1,0 +1,8 @@
+%OVERRIDE (TF5200 spindle 2.4.1, with the override of override.yaml)
+N10 S2[M3 REV1000]
+N20 G04 1
+N30 S2[G167]
+N40 G04 1
+N50 S2[REV3000]
+N60 G04 1
+M30
