@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
-from figures import circle, friction_curve, picture, weights
+from figures import circle, friction_curve, picture, spindle_curve, weights
 from figures.run import FigureRun
 from figures.scenario_head import OVER_TIME, FigureError, FigureScenario
 
@@ -15,6 +15,7 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "friction_curve": friction_curve.draw,
     "weights": weights.draw,
     "circle": circle.draw,
+    "spindle_curve": spindle_curve.draw,
 }
 
 

@@ -11,7 +11,8 @@ The head is the block of comment lines at the top of the file, `key: value` each
 Besides there may be
 - `panels: velocity, following error`: these in this order (figures/panels.py) instead of the usual ones,
 - `program: part.nc`: an NC program beside the scenario, which starts with it on the first channel,
-- `kind: circle`: another picture than panels over time (figures/kinds.py), with `turns:` (figures/circle.py),
+- `kind: circle`: another picture than panels over time (figures/kinds.py), with `turns:` (figures/circle.py)
+  or `over:` and `points:` (figures/spindle_curve.py),
 - `errors: shown`: a figure of faults; without it a fault means that there is no picture.
 
 `axes` may name spindles too. All this stands in the scenario itself so that a figure is one file, read in one go and
@@ -30,7 +31,8 @@ from cnc_ptp.machine.job import read_file
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")
 PANELS, PROGRAM, KIND, TURNS, ERRORS, SHOWN = "panels", "program", "kind", "turns", "errors", "shown"
-CHOICES = (PANELS, PROGRAM, KIND, TURNS, ERRORS)
+OVER, POINTS = "over", "points"
+CHOICES = (PANELS, PROGRAM, KIND, TURNS, OVER, POINTS, ERRORS)
 OVER_TIME = "time"
 
 
@@ -58,6 +60,8 @@ class FigureScenario:
     program: str = ""
     kind: str = OVER_TIME
     turns: str = ""
+    over: str = ""
+    points: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -108,6 +112,8 @@ def read_head(path: Path) -> FigureScenario:
         head.get(PROGRAM, ""),
         head.get(KIND, OVER_TIME),
         head.get(TURNS, ""),
+        head.get(OVER, ""),
+        names(head.get(POINTS, "")),
     )
 
 

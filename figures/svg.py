@@ -23,6 +23,7 @@ SETTINGS: dict[Any, Any] = {
 
 HEAD = '<style type="text/css">'
 LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
+TAG = re.compile(r"<[^>]*>")
 
 
 def svg_text(drawing: Figure, *, title: str) -> str:
@@ -30,9 +31,14 @@ def svg_text(drawing: Figure, *, title: str) -> str:
     buffer = io.StringIO()
     with matplotlib.rc_context(SETTINGS):
         drawing.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Title": title})
-    text = LONG_NUMBER.sub(lambda match: f"{float(match[0]):.2f}", buffer.getvalue())
+    text = TAG.sub(lambda tag: short_numbers(tag[0]), buffer.getvalue())
     text = "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
     return text.replace(HEAD, HEAD + style(), 1)
+
+
+def short_numbers(tag: str) -> str:
+    """Coordinates to a hundredth of a point; what stands between tags are words."""
+    return LONG_NUMBER.sub(lambda match: f"{float(match[0]):.2f}", tag)
 
 
 def style() -> str:

@@ -125,7 +125,7 @@ def test_program_that_cannot_be_read(tmp_path):
 
 
 def test_unknown_kind(tmp_path):
-    expected = "kind 'bars' does not exist, known are time, friction_curve, weights, circle"
+    expected = "kind 'bars' does not exist, known are time, friction_curve, weights, circle, spindle_curve"
     assert refusal(written(tmp_path, kind="bars")) == expected
 
 
