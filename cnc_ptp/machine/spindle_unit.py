@@ -172,11 +172,16 @@ class SpindleUnit(Unit):
             spindle.fault(cycle, MASTER_IN_ERROR, reason)
 
     def _do_as_master(self, cycle: int, command: Command) -> None:
-        """During a gear change of the slave the command waits; what the slave cannot do is an error."""
+        """During a gear change of the slave the command waits; what the slave cannot do is an error.
+
+        A stop forgets what waits.
+        """
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
         if self._orders.must_wait(name, ""):
             self._orders.add(Order(name, arguments, ""))
             return
+        if name == "stop":
+            self._orders.clear()
         try:
             self._group_handler(name)(cycle, **arguments)
         except CncError as error:

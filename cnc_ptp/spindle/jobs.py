@@ -83,6 +83,11 @@ class Jobs:
         self.job = None
         self.done = False
 
+    def forget_rotation(self) -> None:
+        """The endless rotation that a gear change has interrupted does not go on after it."""
+        if self.job is not None:
+            self.job.resume = 0.0
+
     # begin
 
     def start(self, cycle: int, job: Job) -> None:

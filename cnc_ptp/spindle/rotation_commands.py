@@ -56,9 +56,15 @@ class RotationCommands:
         return f"spindle {self._spindle.name}: speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
 
     def do_stop(self, cycle: int) -> None:
-        """M05: down to speed 0; after the control limit was exceeded the spindle homes before it stops."""
+        """M05: down to speed 0; after the control limit was exceeded the spindle homes before it stops.
+
+        While the PLC changes the gear the spindle stands; it stays at rest afterwards.
+        """
         spindle = self._spindle
-        if spindle.state in (S.ERROR_STOP, S.DISABLED) or spindle.jobs.gear_request:
+        if spindle.jobs.gear_request:
+            spindle.jobs.forget_rotation()
+            return
+        if spindle.state in (S.ERROR_STOP, S.DISABLED):
             return
         if spindle.reference_lost and spindle.parameters.automatic_homing and spindle.state == S.CONTINUOUS_MOTION:
             spindle.jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))

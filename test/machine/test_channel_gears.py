@@ -93,6 +93,32 @@ def test_the_path_waits_until_the_plc_has_changed_the_gear() -> None:
     assert waiting.units["channel"].waits_for() == "channel channel waits in line 2 for gear 3 of spindle s"
 
 
+@pytest.mark.parametrize(
+    ("what", "errors"),
+    [
+        ("{at: 2, to: channel, do: reset}", []),
+        (
+            "{at: 2, to: x, do: power, on: off}",
+            [
+                "P-ERR-23010 axis x: the enable was removed during path motion; the axis stops on its own ramp "
+                "(ErrorStop)",
+                "P-ERR-22012 channel channel: x is in error P-ERR-23010; the path stops on its ramp and the program is "
+                "aborted",
+            ],
+        ),
+    ],
+)
+def test_nothing_turns_when_the_program_ends_while_somebody_changes_the_gear(what: str, errors: list[str]) -> None:
+    """The gear is changed from outside, which would take up the rotation of the program again."""
+    scenario = f"{MANUAL}- {{at: 1, to: s, do: select_gear, stage: 2}}\n- {what}\n- {{at: 3, to: s, do: gear_changed}}"
+    bench = MachineBench(
+        "%P\nS500 M03\nG01 X90 F300\nM30", scenario, machine=gear_machine(automatic=False), end_when_idle=False
+    ).run(4.0)
+    assert bench.errors() == errors and bench.refusals() == []
+    assert bench.column("s", "gear")[2990] == 1 and bench.column("s", "gear")[-1] == 2
+    assert set(bench.column("s", "set_speed_rpm")[2000:]) == {0.0} and bench.column("s", "set_speed_rpm")[990] == 500.0
+
+
 def test_a_plc_that_never_changes_the_gear_aborts_the_program() -> None:
     machine = gear_machine(automatic=False)
     patient = replace(machine, spindles={**machine.spindles, "s": geared(gear_change_time=1.0)})

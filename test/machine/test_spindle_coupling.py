@@ -62,6 +62,23 @@ def test_a_ratio_scales_speeds_and_positions_and_turns_the_direction() -> None:
     assert min(run.column("t", "set_speed_rpm")) == -750.0 and max(run.column("t", "set_speed_rpm")) == 0.0
 
 
+def test_a_stop_of_the_master_counts_in_the_gear_change_of_a_slave_too() -> None:
+    """What the slave was told before its master stopped is forgotten with that."""
+    each = machine()
+    two = {**each.spindles, "t": replace(two_gears(), name="t", number=11)}
+    scenario = """
+- {at: 0.0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0.0, to: t, do: select_gear, stage: 2}
+- {at: 0.1, to: t, do: couple, master: s}
+- {at: 0.2, to: s, do: start, direction: cw, speed_rpm: 1000.0}
+- {at: 0.5, to: s, do: stop}
+- {at: 0.8, to: t, do: gear_changed}
+"""
+    run = MachineBench(scenario=scenario, machine=replace(each, spindles=two), end_when_idle=False).run(1.5)
+    assert run.refusals() == [] and max(run.column("s", "set_speed_rpm")) == 1000.0
+    assert run.last("t").gear[-1] == 2 and set(run.column("t", "set_speed_rpm")) == {0.0}
+
+
 def test_two_slaves_of_one_master() -> None:
     scenario = (
         "- {at: 0.0, to: u, do: couple, master: s}\n- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}"

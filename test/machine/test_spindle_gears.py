@@ -140,15 +140,40 @@ def test_a_stop_on_the_way_gives_the_change_up_and_clears_what_waits() -> None:
     assert not each.column("gear_change_active")[-1] and each.last.gear_request == 0
 
 
-def test_a_stop_while_the_plc_changes_lets_it_go_on_at_rest() -> None:
-    each = bench()
+def in_change(**changes: Any) -> UnitBench:
+    """Turned at 600 rpm; now the PLC is to change the gear, and a command waits for that."""
+    each = bench(**changes)
     each.accepted("start", direction="cw", speed_rpm=600.0)
     each.run(200)
     each.accepted("select_gear", stage=2)
     each.run(500)
+    each.accepted("set_speed", speed_rpm=700.0)
+    assert each.last.gear_request == 2
+    return each
+
+
+def at_rest_in_the_new_gear(each: UnitBench) -> bool:
+    """After the acknowledgement of the PLC, and without a cycle in which the spindle moved since the change began."""
+    each.accepted("gear_changed")
+    begin = each.cycle
+    each.run(300)
+    return each.column("gear")[-1] == 2 and set(each.column("set_speed_rpm")[begin - 10 :]) == {0.0}
+
+
+def test_a_stop_while_the_plc_changes_ends_the_rotation_too() -> None:
+    each = in_change()
     each.accepted("stop")
     each.run(10)
     assert each.last.gear_request == 2
+    assert at_rest_in_the_new_gear(each) and each.state == S.STANDSTILL
+
+
+def test_a_reset_while_the_plc_changes_gives_the_change_up() -> None:
+    each = in_change()
+    each.accepted("reset")
+    each.run(300)
+    assert each.last.gear_request == 0 and set(each.column("set_speed_rpm")[700:]) == {0.0}
+    assert each.refused("gear_changed").startswith("P-ERR-24015 ")
 
 
 @pytest.mark.parametrize("stage", [0, 3, 7, -1])
