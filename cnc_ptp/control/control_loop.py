@@ -57,23 +57,24 @@ class ControlLoop:
         self.kv = parameters.kv
         self.monitor = LagMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
         self.delay_cycles = _delay_cycles(parameters)
+        scaling = parameters.scaling
         self.feedforward = Feedforward(
             parameters.feedforward,
             cycle_time=cycle_time,
             kv=parameters.kv,
-            torque_per_acceleration=parameters.scaling.torque_per_acceleration,
+            torque_per_acceleration=scaling.torque_per_acceleration if scaling.torque else 0.0,  # 110465
             limits=limits,
             delay_cycles=self.delay_cycles,
             samples_velocity=parameters.drive.interface == "torque",
         )
         self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles)
-        self._torque_per_digit = 1.0 / parameters.scaling.torque if parameters.scaling.torque else 0.0
+        self._torque_per_digit = 1.0 / scaling.torque if scaling.torque else 0.0
         self._modulo = ModuloCompensation(parameters.modulo_error, origin=drive.position)
         self._interface = parameters.drive.interface
         self._velocity_controller = VelocityController(
             gain=parameters.drive.velocity_gain,
             integral_time=parameters.drive.velocity_integral_time,
-            torque_per_acceleration=parameters.scaling.torque_per_acceleration,
+            torque_per_acceleration=scaling.torque_per_acceleration,
             cycle_time=cycle_time,
         )
         self._history: deque[State] = deque(maxlen=HISTORY)

@@ -84,6 +84,25 @@ def test_torque_commands_with_feedforward(delay: float) -> None:
     assert error[-1] == pytest.approx(2000.0 * delay / KV, abs=1e-6)
 
 
+@pytest.mark.parametrize("interface", ["velocity", "torque"])
+def test_a_torque_without_scaling_is_not_put_out(interface: str) -> None:
+    """110465: the axis moves as if ADD_ACC and friction compensation were not there."""
+    friction = replace(NO_FRICTION, permitted=True, active=True, velocities=(0.0,), currents=(0.25,))
+    ways = {}
+    for scale, mode in ((0.0, ADD_VEL | ADD_ACC), (1.0, ADD_VEL)):
+        parameters = for_interface(
+            interface,
+            plant=FRICTIONLESS,
+            of_feedforward=feedforward(mode, always_active=True),
+            friction=friction if scale == 0.0 else NO_FRICTION,
+            torque_scale=scale,
+        )
+        cycles = run(looped(parameters), STATES)
+        ways[scale] = column(cycles, "actual_position")
+        assert set(column(cycles, "additive_torque")) == {0.0}
+    assert np.array_equal(ways[0.0], ways[1.0])
+
+
 def test_an_integral_part_takes_the_friction_over() -> None:
     parameters = for_interface("torque", plant=MECHANICS)
     drive = replace(parameters.drive, velocity_integral_time=0.02)
