@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cnc_ptp.parameters.control_view import (
+    ADD_ACC,
+    ADD_JERK,
     DEFAULT_JERK_DENOMINATOR,
     DELAY_CYCLES,
     PlantParameters,
     control_view,
+    feedforward_mode,
+    friction_parameters,
     permitted_delay,
 )
 from cnc_ptp.parameters.lines import line
@@ -43,9 +47,17 @@ def denominators(parameters: ParameterSet) -> Iterator[str]:
     if parameters.number("P-AXIS-00326") == 0:
         text = "P-ERR-110465: value 0 is no denominator, no additive torque is put out"
         yield line(parameters, "P-AXIS-00326", (), text)
+    if parameters.number("P-AXIS-00392") == 0 and puts_out_torque(parameters):
+        text = "P-ERR-110465: value 0 is no reference of the torque scaling, no additive torque is put out"
+        yield line(parameters, "P-AXIS-00392", (), text)
     if parameters.number("P-AXIS-00338") == 0:
         text = f"P-ERR-110473: value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
         yield line(parameters, "P-AXIS-00338", (), text)
+
+
+def puts_out_torque(parameters: ParameterSet) -> bool:
+    """Additive torque is configured, of the feedforward or of the friction compensation."""
+    return bool(feedforward_mode(parameters) & (ADD_ACC | ADD_JERK)) or friction_parameters(parameters).active
 
 
 def weight(parameters: ParameterSet) -> Iterator[str]:

@@ -179,6 +179,14 @@ NOTICES = {
         "P-AXIS-00326 antr.torque_scale_denom of /x: P-ERR-110465: value 0 is no denominator, no additive torque is put "
         "out"
     ),
+    "antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: ADD_ACC}": (
+        "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
+        "additive torque is put out"
+    ),
+    "antr: {acc_reference_value: 0}, lr_param: {frict_comp: 1}, frict_comp: {mode: 3, table_entries: 1}": (
+        "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
+        "additive torque is put out"
+    ),
     "vorsteuer: {jerk_fact_denom: 0}": (
         "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: P-ERR-110473: value 0 is no denominator, 100 is used"
     ),
@@ -222,6 +230,10 @@ NOTICES = {
 @pytest.mark.parametrize("section", NOTICES)
 def test_notice(section: str) -> None:
     assert notices(section) == [NOTICES[section]]
+
+
+def test_a_torque_scaling_without_reference_does_not_matter_where_no_torque_goes_out() -> None:
+    assert notices("antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: VEL | ACC}") == []
 
 
 def test_what_is_corrected() -> None:
