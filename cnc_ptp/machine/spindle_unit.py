@@ -104,6 +104,7 @@ class SpindleUnit(Unit):
     def _ordered(self, command: str, cycle: int, *, source: str = "", **arguments: Any) -> str | None:
         self._orders.check(command, source, self._coupling.master)
         if self._orders.must_wait(command, source):
+            self.spindle.require_ready(command)
             self._orders.add(Order(command, arguments, source))
             message: str | None = f"spindle {self.name}: {command} waits until what is in work is done"
         else:
@@ -129,6 +130,14 @@ class SpindleUnit(Unit):
                 self.event(cycle, Severity.WARNING, error.error_id, error.message)
                 if order.source:
                     self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
+
+    def do_power(self, cycle: int, *, on: bool) -> str | None:
+        """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""
+        if not on:
+            self._orders.clear()
+            if self.spindle.jobs.gear_request:
+                self._passed_on.append(Command(self.name, "stop", {}))
+        return self._power.do_power(cycle, on=on)
 
     def do_reset(self, cycle: int) -> None:
         """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""

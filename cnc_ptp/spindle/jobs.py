@@ -281,7 +281,7 @@ class Jobs:
         self.job = None
         self.done = True
         spindle.programmed_speed = 0.0
-        spindle.state = S.STANDSTILL
+        spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
         if job.name in ("home", "stop"):
             spindle.mode = SpindleMode.STOP
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.spindle.faults import ENABLE_REMOVED, IN_GEAR_CHANGE, STILL_TURNING
+from cnc_ptp.spindle.faults import ENABLE_REMOVED, STILL_TURNING
 from cnc_ptp.spindle.spindle import Spindle
 
 
@@ -16,15 +16,18 @@ class PowerCommands:
     def do_power(self, cycle: int, *, on: bool) -> str | None:
         """Enables or disables the spindle; one that moves stops on its ramp with an error first (24011).
 
-        Refused while the PLC changes the gear (24017). The enable itself moves nothing.
+        While the PLC changes the gear an enable counts after that; no rotation goes on then. The enable itself moves
+        nothing.
         """
         spindle = self._spindle
         if on == spindle.powered:
             return f"spindle {spindle.name}: power is {'on' if on else 'off'} already"
-        if spindle.jobs.gear_request:
-            spindle.refuse("power", IN_GEAR_CHANGE, "the PLC changes the gear")
         spindle.powered = on
         spindle.unsettled = True
+        if spindle.jobs.gear_request:
+            spindle.state = S.DISABLED
+            spindle.jobs.forget_rotation()
+            return f"spindle {spindle.name}: power on counts when the PLC has changed the gear" if on else None
         if on:
             self._switch_on(cycle)
         elif spindle.state == S.STANDSTILL:
@@ -44,6 +47,7 @@ class PowerCommands:
         """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle, whatever it does."""
         spindle = self._spindle
         if spindle.state == S.DISABLED:
+            spindle.end_job()
             return
         if spindle.state != S.ERROR_STOP:
             spindle.stop(cycle)

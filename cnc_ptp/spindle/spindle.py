@@ -207,6 +207,8 @@ class Spindle:
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
         had_job = self.jobs.job is not None
+        if self.state == S.DISABLED and self.loop.measures_position:
+            self.place(cycle, self.loop.position)
         self.stop(cycle)
         self.error_id = error_id
         self.job_error = had_job

@@ -79,6 +79,23 @@ def test_a_stop_of_the_master_counts_in_the_gear_change_of_a_slave_too() -> None
     assert run.last("t").gear[-1] == 2 and set(run.column("t", "set_speed_rpm")) == {0.0}
 
 
+def test_slaves_stop_when_their_master_loses_its_power_in_a_gear_change() -> None:
+    each = machine()
+    two = {**each.spindles, "s": replace(two_gears(), number=10)}
+    scenario = """
+- {at: 0.0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0.0, to: t, do: couple, master: s}
+- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 500.0}
+- {at: 0.5, to: s, do: select_gear, stage: 2}
+- {at: 1.0, to: s, do: power, on: off}
+- {at: 1.5, to: s, do: gear_changed}
+"""
+    run = MachineBench(scenario=scenario, machine=replace(each, spindles=two), end_when_idle=False).run(2.0)
+    assert run.refusals() == [] and run.errors() == []
+    assert run.last("s").state[-1] == S.DISABLED and run.last("s").gear[-1] == 2
+    assert run.column("t", "set_speed_rpm")[990] == 500.0 and run.last("t").set_speed_rpm[-1] == 0.0
+
+
 def test_two_slaves_of_one_master() -> None:
     scenario = (
         "- {at: 0.0, to: u, do: couple, master: s}\n- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}"

@@ -208,13 +208,56 @@ def test_a_plc_that_never_acknowledges() -> None:
     each.accepted("start", direction="cw", speed_rpm=100.0)
 
 
-def test_power_is_not_switched_while_the_plc_changes() -> None:
-    each = bench()
-    each.accepted("select_gear", stage=2)
-    each.run(500)
-    assert each.refused("power", on=False) == (
-        "P-ERR-24017 spindle s: power refused: the PLC changes the gear; nothing was changed"
+def test_the_enable_can_be_removed_while_the_plc_changes() -> None:
+    each = in_change()
+    each.accepted("power", on=False)
+    each.run(10)
+    assert (each.state, each.last.gear_request) == (S.DISABLED, 2)
+    assert each.refused("start", direction="cw", speed_rpm=600.0) == (
+        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed"
     )
+    assert at_rest_in_the_new_gear(each) and each.state == S.DISABLED
+    each.accepted("power", on=True)
+    each.run(100)
+    assert each.state == S.STANDSTILL and set(each.column("set_speed_rpm")[700:]) == {0.0}
+
+
+def test_an_enable_while_the_plc_changes_counts_afterwards() -> None:
+    each = in_change()
+    each.accepted("power", on=False)
+    each.accepted("power", on=True)
+    each.accepted("power", on=False)
+    assert each.accepted("power", on=True) == "spindle s: power on counts when the PLC has changed the gear"
+    each.run(10)
+    assert each.state == S.DISABLED
+    assert at_rest_in_the_new_gear(each) and each.state == S.STANDSTILL
+
+
+def test_a_gear_change_without_power_can_be_given_up() -> None:
+    each = in_change()
+    each.accepted("power", on=False)
+    each.run(10)
+    each.accepted("reset")
+    each.run(10)
+    assert (each.state, each.last.gear_request, each.column("gear")[-1]) == (S.DISABLED, 0, 1)
+    assert not each.column("gear_change_active")[-1]
+
+
+def test_a_plc_that_never_acknowledges_without_power_moves_nothing() -> None:
+    """The drive was turned by hand meanwhile: the spindle stays where it is."""
+    each = in_change(gear_change_time=1.0)
+    each.accepted("power", on=False)
+    each.run(10)
+    each.unit.spindle.loop.control.count_from(70.0)
+    each.run(1500)
+    assert each.event_texts() == [
+        "P-ERR-24016 spindle s: the PLC has not acknowledged the change to gear 2 within 1 s (P-MACH-00051); the spindle "
+        "stops on its ramp (ErrorStop)"
+    ]
+    assert each.column("actual_position_deg")[-1] == 70.0 and set(each.column("drive_output")[710:]) == {0}
+    each.accepted("reset")
+    each.run(10)
+    assert each.state == S.DISABLED
 
 
 def test_a_gear_change_homes_first_where_there_is_no_reference() -> None:
