@@ -76,6 +76,7 @@ class FunctionOutput:
             if change is not None:
                 outputs.commands.append(change[0])
                 outputs.waits_before.append(change[1])
+                outputs.told.append(change[1])
         return outputs
 
     def at_program_end(self, feedback: Mapping[str, Block]) -> Outputs:
@@ -106,6 +107,8 @@ class FunctionOutput:
                 self._spindle_function(function, block, outputs)
             case SpindleCommand():
                 outputs.commands += self.spindles.plain(function)
+                if function.command == "home":
+                    outputs.told.append(Wait(self.spindles[function.spindle].node))
             case SpindleLink():
                 command, wait = self.spindles.link(function)
                 outputs.commands.append(command)
@@ -132,6 +135,7 @@ class FunctionOutput:
         if not acts:
             return
         wait = self.spindles.wait(function)
+        outputs.told.append(wait)
         told = self.spindles.told_to_plc(function.spindle) or synchronisation & Synchronisation.PLC_INFO
         if told and not self.spindles.follows(function.spindle):
             self._ask(self._of_spindle(function, spindle, synchronisation, block), synchronisation, wait, outputs)

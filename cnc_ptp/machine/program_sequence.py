@@ -13,7 +13,7 @@ from enum import Enum, auto
 from cnc_ptp.machine.blocks import Block, HandshakeRequest
 from cnc_ptp.machine.function_output import FunctionOutput, Moment
 from cnc_ptp.machine.path_motion import PathMotion
-from cnc_ptp.machine.waits import Condition, Outputs, Wait
+from cnc_ptp.machine.waits import Outputs, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 
 ENDS = ("stop", "decouple")
@@ -194,7 +194,7 @@ class ProgramSequence:
             self.measuring_event()
         outputs = self._functions.of_block(self._block, Moment.AFTER) if self._block else Outputs()
         self._queue(outputs)
-        self._waits = self._waits_after + outputs.waits_after
+        self._waits, self._waits_after = self._waits_after + outputs.waits_after, []
         self.phase = Phase.WAIT_AFTER
 
     def _begin_block(self, feedback: Mapping[str, Block]) -> None:
@@ -276,16 +276,16 @@ class ProgramSequence:
         self._outputs.commands += outputs.commands
         self._outputs.requests += outputs.requests
         self._unsent += outputs.waits
-        self._drop_old_waits(outputs.waits)
+        self._renew_old_waits(outputs)
         self._waits_machining += outputs.waits_machining
         self._waits_explicit += outputs.waits_explicit
         self.open_requests |= {request.id for request in outputs.requests if request.acknowledge_needed}
 
-    def _drop_old_waits(self, waits: Sequence[Wait]) -> None:
-        """A newer function of a spindle takes the place of what MVS_SLM and MVS_SLP still wait for: only the PLC's
-        acknowledgement of the older one remains.
-        """
-        nodes = {wait.spindle for wait in waits if wait.condition is not Condition.NONE}
-        for wait in self._waits_machining + self._waits_explicit:
-            if wait.spindle in nodes:
-                wait.condition = Condition.NONE
+    def _renew_old_waits(self, outputs: Outputs) -> None:
+        """A newer function of a spindle takes the place of what the path is still to wait for."""
+        for newer in outputs.told:
+            waits_too = any(wait is newer for wait in outputs.waits)
+            for wait in self._waits_after + self._waits_machining + self._waits_explicit:
+                if wait.spindle == newer.spindle:
+                    wait.renew(newer, waits_too=waits_too)
+                    self._unsent += [wait] if wait.sent_cycle is None else []

@@ -23,6 +23,7 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
     STOP_AT_PROGRAM_END,
     TOOL_LIMITS,
     JOB_ERROR,
+    ORDERS_WAIT,
 ) = map(int, SpindleBit)
 """As plain numbers: operations on members of an IntEnum take microseconds."""
 FIELDS = 21
@@ -158,6 +159,8 @@ class SpindleCycles:
             bits |= TOOL_LIMITS
         if spindle.job_error:
             bits |= JOB_ERROR
+        if self._orders.waiting:
+            bits |= ORDERS_WAIT
         return bits
 
     def _note_settled(self, cycle: int) -> None:

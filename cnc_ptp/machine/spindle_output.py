@@ -12,7 +12,8 @@ from typing import Any
 
 from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
 from cnc_ptp.machine.commands import COMMANDS
-from cnc_ptp.machine.waits import Condition, Wait
+from cnc_ptp.machine.spindle_reports import Condition
+from cnc_ptp.machine.waits import Wait
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
 from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
 
@@ -57,7 +58,14 @@ class SpindleOutput:
         node = self[function.spindle].node
         if self.told_to_plc(function.spindle):
             return Wait(spindle=node)
-        return Wait(spindle=node, condition=CONDITIONS[function.m])
+        condition = CONDITIONS[function.m]
+        if condition is Condition.SPEED:
+            sign = 1.0 if self._directions[function.spindle] == "cw" else -1.0
+            return Wait(node, condition, sign * (function.speed_rpm or 0.0))
+        if condition is Condition.POSITION:
+            gear = self._units[node].gears[self._units[node].gear]
+            return Wait(node, condition, function.position_deg or 0.0, turn=gear.modulo_high - gear.modulo_low)
+        return Wait(node, condition)
 
     def synchronisation(self, function: SpindleFunction) -> Synchronisation:
         """M19, M3, M4, M5 go before S."""
@@ -152,7 +160,7 @@ class SpindleOutput:
             return None
         if change.spindle in self._directions:
             self._standing_after_gear.add(change.spindle)
-        wait = Wait(spindle=node, condition=Condition.GEAR, value=change.stage)
+        wait = Wait(node, Condition.GEAR, change.stage)
         return self._command(node, "select_gear", stage=change.stage), wait
 
     # synchronous operation
@@ -163,9 +171,9 @@ class SpindleOutput:
         if link.on:
             self._masters[link.slave] = link.master
             command = self._command(slave, "couple", master=master)
-            return command, Wait(spindle=slave, condition=Condition.MASTER, value=master)
+            return command, Wait(slave, Condition.MASTER, master=master)
         self._masters.pop(link.slave, None)
-        return self._command(slave, "decouple"), Wait(spindle=slave, condition=Condition.ALONE)
+        return self._command(slave, "decouple"), Wait(slave, Condition.ALONE)
 
     # ends
 

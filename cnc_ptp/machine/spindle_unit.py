@@ -118,7 +118,8 @@ class SpindleUnit(Unit):
             self._orders.clear()
         self._orders.begin(order.source)
         if order.command in PASSED_ON:
-            self._passed_on.append(Command(self.name, order.command, dict(order.arguments)))
+            source = {"source": order.source} if order.source else {}
+            self._passed_on.append(Command(self.name, order.command, {**order.arguments, **source}))
         return message
 
     def _take_turns(self, cycle: int) -> None:
@@ -176,9 +177,19 @@ class SpindleUnit(Unit):
         for command in master.commands:
             if can_follow(spindle):
                 self._do_as_master(cycle, command)
+            elif spindle.state == S.DISABLED and command.command != "stop":
+                self._stays_behind(cycle, command)
         if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
             reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
             spindle.fault(cycle, MASTER_IN_ERROR, reason)
+
+    def _stays_behind(self, cycle: int, command: Command) -> None:
+        """A slave without power: who has commanded its master hears of it."""
+        reason = f"cannot carry out '{command.command}' of its master {self._coupling.master}"
+        text = f"spindle {self.name}: {reason}: the spindle is in Disabled; give it power first; nothing was changed"
+        self._report(Severity.ERROR, cycle, SLAVE_CANNOT, text)
+        if "source" in command.arguments:
+            self._refused.append(f"{command.arguments['source']}: P-ERR-{SLAVE_CANNOT} {text}")
 
     def _do_as_master(self, cycle: int, command: Command) -> None:
         """During a gear change of the slave the command waits; what the slave cannot do is an error.
@@ -186,6 +197,7 @@ class SpindleUnit(Unit):
         A stop forgets what waits.
         """
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
+        arguments.pop("source", None)
         if self._orders.must_wait(name, ""):
             self._orders.add(Order(name, arguments, ""))
             return

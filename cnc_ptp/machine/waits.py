@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBlock
+from cnc_ptp.machine.spindle_reports import TOLD, Condition, carries_out, is_there, must_wait, what_it_does
 from cnc_ptp.parameters import Synchronisation
 
 NOT_COUPLED = 22019
+NOT_CARRIED_OUT = 22021
 
 T = Synchronisation
 AFTER_MOTION = T.MNS_SNS
@@ -29,56 +30,64 @@ OUTPUT = WAITING | T.MOS
 """Types that go out to the PLC."""
 
 
-class Condition(Enum):
-    """What a spindle has to report."""
-
-    NONE = ""
-    SPEED = "the speed of spindle {spindle}"
-    STANDSTILL = "the standstill of spindle {spindle}"
-    POSITION = "the position of spindle {spindle}"
-    GEAR = "gear {value} of spindle {spindle}"
-    MASTER = "the coupling of spindle {spindle} to {value}"
-    ALONE = "the end of the coupling of spindle {spindle}"
-
-
 @dataclass(slots=True)
 class Wait:
     """Something the path waits for: a report of a spindle and, or, the acknowledgement of request `request_id`.
 
-    `value`: the gear stage of GEAR, the node of the master of MASTER.
+    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, gear stage, or the node of the master.
     """
 
     spindle: str = ""
     condition: Condition = Condition.NONE
-    value: int | str = 0
+    value: float = 0.0
+    turn: float = 360.0
+    master: str = ""
     request_id: int = 0
     sent_cycle: int | None = None
     """First cycle of the block in which the function went out; what was reported for earlier cycles does not count."""
 
     def fulfilled(self, cycle: int, spindles: Mapping[str, Block], open_requests: set[int]) -> bool:
-        """Raises CncError 22019 for a coupling that did not come about."""
-        if self.sent_cycle is None or cycle <= self.sent_cycle or self.request_id in open_requests:
+        """Raises CncError: 22019 for a coupling that did not come about, 22021 for a spindle that does something else.
+
+        A spindle that does something else is found out while the PLC has not acknowledged, too.
+        """
+        if self.sent_cycle is None or cycle <= self.sent_cycle:
             return False
+        acknowledged = self.request_id not in open_requests
         if self.condition is Condition.NONE:
-            return True
+            return acknowledged
         block = spindles.get(self.spindle)
-        return isinstance(block, SpindleBlock) and self._reported(block)
+        return isinstance(block, SpindleBlock) and self._reported(block) and acknowledged
 
     def _reported(self, block: SpindleBlock) -> bool:
         match self.condition:
-            case Condition.SPEED:
-                return bool(block.speed_reached[-1])
-            case Condition.STANDSTILL:
-                return bool(block.speed_zero[-1])
-            case Condition.POSITION:
-                return bool(block.in_position[-1])
-            case Condition.GEAR:
-                return block.gear[-1] == self.value and not block.gear_change_active[-1]
+            case Condition.MASTER:
+                return self._coupled(block)
             case Condition.ALONE:
                 return not block.master
-        if block.master != self.value and not block.master_wanted:
-            raise CncError(NOT_COUPLED, f"spindle {self.spindle} was not coupled to {self.value}")
-        return block.master == self.value
+        if not carries_out(block, self.condition, self.value, self.turn):
+            if must_wait(block):
+                return False
+            told = TOLD[self.condition].format(value=self.value)
+            reason = f"spindle {self.spindle} does not {told} as it was told, {what_it_does(block)}"
+            raise CncError(NOT_CARRIED_OUT, f"{reason}; the path waited for it")
+        return is_there(block, self.condition) and not must_wait(block)
+
+    def _coupled(self, block: SpindleBlock) -> bool:
+        if block.master != self.master and not block.master_wanted:
+            raise CncError(NOT_COUPLED, f"spindle {self.spindle} was not coupled to {self.master}")
+        return block.master == self.master
+
+    def renew(self, newer: Wait, *, waits_too: bool) -> None:
+        """The spindle was told something else: a new speed is what the path waits for now, all else makes the report
+        of the older function meaningless. Before a gear change: what comes after it decides about the speed.
+        """
+        if self.condition is Condition.SPEED and newer.condition is Condition.GEAR:
+            return
+        if self.condition is newer.condition is Condition.SPEED and not waits_too:
+            self.value, self.sent_cycle = newer.value, None
+        else:
+            self.condition = Condition.NONE
 
     def text(self, open_requests: set[int]) -> str:
         """What is waited for; empty before the function has gone out."""
@@ -86,7 +95,7 @@ class Wait:
             return ""
         if self.request_id in open_requests:
             return f"the acknowledgement of request {self.request_id}"
-        return self.condition.value.format(spindle=self.spindle, value=self.value)
+        return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
 
 
 @dataclass(slots=True)
@@ -95,6 +104,7 @@ class Outputs:
 
     waits_machining   for the next G01, G02, G03 (MVS_SLM)
     waits_explicit    for the next #EXPL SYN (MVS_SLP)
+    told              what the spindles are to report, whether the path waits for it or not
     """
 
     commands: list[Command] = field(default_factory=list)
@@ -103,6 +113,7 @@ class Outputs:
     waits_after: list[Wait] = field(default_factory=list)
     waits_machining: list[Wait] = field(default_factory=list)
     waits_explicit: list[Wait] = field(default_factory=list)
+    told: list[Wait] = field(default_factory=list)
 
     def add_wait(self, synchronisation: Synchronisation, wait: Wait) -> None:
         """Files a wait under the moment at which its synchronisation type makes the path wait."""

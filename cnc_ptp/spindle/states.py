@@ -27,3 +27,5 @@ class SpindleBit(IntEnum):
     STOP_AT_PROGRAM_END = 1 << 5
     TOOL_LIMITS = 1 << 6
     JOB_ERROR = 1 << 7
+    ORDERS_WAIT = 1 << 8
+    """Commands wait for their turn."""

@@ -1,0 +1,213 @@
+"""A path that waits for a spindle which somebody else commands, too: it never starts on one that does something else."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from channel_spindle_support import (
+    MANUAL,
+    MOS,
+    MVS_SLM,
+    MVS_SLP,
+    MVS_SVS,
+    PLC_INFO,
+    channel_spindle,
+    machine_of,
+    moves,
+    run,
+    three,
+    told,
+    told_at,
+)
+from machine_support import MachineBench
+from spindle_support import two_gears
+
+from cnc_ptp.machine.blocks import ChannelStateCode as C
+from cnc_ptp.parameters import MachineParameters, Synchronisation
+
+LINK = "#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]\n"
+
+
+def mill(**types: Synchronisation) -> MachineParameters:
+    """One spindle with two gears and these types; what is not named is MOS."""
+    return machine_of(channel_spindle("S", "s", 4, MOS, **types), units={"s": two_gears()})
+
+
+def aborted(bench: MachineBench, does: str, line: int, text: str) -> None:
+    """The program was aborted because spindle s `does`; the path has not moved."""
+    assert bench.errors() == [
+        f"P-ERR-22021 channel channel: spindle s does not {does}; the path waited for it in line {line} '{text}'; "
+        "the path stops on its ramp and the program is aborted"
+    ]
+    assert moves(bench) == [] and bench.last("channel").state[-1] == C.ERROR
+
+
+def speed_at_the_move(bench: MachineBench, unit: str = "s", move: int = 0) -> float:
+    return float(bench.column(unit, "actual_speed_rpm")[moves(bench)[move][0]])
+
+
+# ---------------------------------------------------------------- in place of what the channel has commanded
+
+
+@pytest.mark.parametrize(
+    ("command", "does"),
+    [
+        ("do: stop", "it is in Stopping"),
+        ("do: reset", "it is in Stopping"),
+        ("do: start, direction: cw, speed_rpm: 300", "it was commanded to 300 rpm"),
+        ("do: start, direction: ccw, speed_rpm: 10000", "it was commanded to -10000 rpm"),
+        ("do: orient, position_deg: 10", "it is in DiscreteMotion"),
+        ("do: home", "it is in Homing"),
+    ],
+)
+def test_another_command_while_the_path_waits_for_a_speed(command: str, does: str) -> None:
+    bench = run("M3 S10000\nG01 X20 F6000\nM5", mill(m3=MVS_SVS), f"- {{at: 0.1, to: s, {command}}}")
+    aborted(bench, f"turn at 10000 rpm as it was told, {does}", 2, "M3 S10000")
+
+
+@pytest.mark.parametrize(
+    ("command", "does"),
+    [
+        ("do: stop", "it is in Standstill"),
+        ("do: orient, position_deg: 200", "it was commanded to -160 deg"),
+        ("do: start, direction: ccw, speed_rpm: 500", "it was commanded to -500 rpm"),
+    ],
+)
+def test_another_command_while_the_path_waits_for_a_position(command: str, does: str) -> None:
+    bench = run("M19 S50 S.POS=300\nG01 X20 F6000", mill(m19=MVS_SVS), f"- {{at: 0.05, to: s, {command}}}")
+    aborted(bench, f"go to 300 deg as it was told, {does}", 2, "M19 S50 S.POS=300")
+
+
+def test_another_command_while_the_path_waits_for_standstill() -> None:
+    bench = run(
+        "M3 S10000\nG04 X2\nM5\nG01 X20 F6000",
+        mill(m5=MVS_SVS),
+        "- {at: 2.1, to: s, do: start, direction: cw, speed_rpm: 300}",
+    )
+    aborted(bench, "stop as it was told, it was commanded to 300 rpm", 4, "M5")
+
+
+def test_a_gear_change_that_somebody_gives_up() -> None:
+    spindles = three(ranges=((50.0, 560.0), (400.0, 800.0)), automatic=False)
+    machine = machine_of(*spindles, units={"s": two_gears(change_position=180.0)}, gear_change=True)
+    bench = run("M41 S600 M3\nG01 X20 F6000", machine, "- {at: 0.1, to: s, do: stop}")
+    aborted(bench, "change to gear 2 as it was told, it is in Stopping", 2, "M41 S600 M3")
+
+
+def test_a_stop_while_the_plc_has_not_acknowledged() -> None:
+    scenario = MANUAL + "- {at: 0.1, to: s, do: stop}\n"
+    bench = run("M3 S1000\nG01 X20 F6000", mill(m3=MVS_SVS | PLC_INFO), scenario)
+    aborted(bench, "turn at 1000 rpm as it was told, it is in Stopping", 2, "M3 S1000")
+
+
+@pytest.mark.parametrize(
+    ("kind", "line", "text"), [(MVS_SLM, 4, "G01 X20 F6000"), (MVS_SLP, 4, "#EXPL SYN"), (MVS_SLP, 5, "M30")]
+)
+def test_a_stop_before_a_late_synchronisation(kind: Synchronisation, line: int, text: str) -> None:
+    """The path comes to the place where it would wait long after the stop."""
+    program = (
+        "M3 S1000\nG04 X1\n" + {"G01 X20 F6000": text, "#EXPL SYN": f"{text}\nG01 X20 F6000", "M30": "G04 X0.1"}[text]
+    )
+    bench = run(program, mill(m3=kind), "- {at: 0.5, to: s, do: stop}")
+    aborted(bench, "turn at 1000 rpm as it was told, it is in Standstill", line, text)
+
+
+def test_a_slave_that_somebody_stops() -> None:
+    bench = run(LINK + "M3 S10000\nG01 X20 F6000", machine_of(*three()), "- {at: 0.2, to: t, do: stop}")
+    assert bench.errors() == [
+        "P-ERR-22021 channel channel: spindle t does not turn at 10000 rpm as it was told, it is in Stopping; the path "
+        "waited for it in line 4 'M3 S10000'; the path stops on its ramp and the program is aborted"
+    ]
+    assert moves(bench) == []
+
+
+def test_a_slave_without_power() -> None:
+    scenario = "- {at: 0.1, to: t, do: power, on: off}"
+    bench = run(LINK + "G04 X0.3\nM3 S1000\nG01 X20 F6000", machine_of(*three()), scenario)
+    text = (
+        "P-ERR-24025 spindle t: cannot carry out 'start' of its master s: the spindle is in Disabled; give it power "
+        "first; nothing was changed"
+    )
+    assert bench.errors() == [
+        text,
+        f"P-ERR-22018 channel channel: t has refused a command, {text}; the path stops on its ramp and the program is "
+        "aborted",
+    ]
+    assert moves(bench) == [] and bench.last("s").set_speed_rpm[-1] == 0.0
+
+
+# ---------------------------------------------------------------- the path waits until it is the command's turn
+
+
+def test_m3_behind_a_gear_change_of_somebody_else() -> None:
+    scenario = MANUAL + "- {at: 0.3, to: s, do: select_gear, stage: 2}\n- {at: 3, to: s, do: gear_changed}"
+    bench = run("G04 X0.5\nM3 S1000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
+    assert bench.errors() == [] and moves(bench)[0][0] > told_at(bench, "gear_changed") == 3000
+    assert speed_at_the_move(bench) == pytest.approx(1000.0, rel=0.1)
+
+
+def test_a_gear_change_of_somebody_else_while_the_spindle_runs_up() -> None:
+    """Afterwards the spindle goes on with the speed of the channel."""
+    scenario = MANUAL + "- {at: 0.1, to: s, do: select_gear, stage: 2}\n- {at: 3, to: s, do: gear_changed}"
+    bench = run("M3 S10000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
+    assert bench.errors() == [] and moves(bench)[0][0] > 3000
+    assert speed_at_the_move(bench) == pytest.approx(10000.0, rel=0.1)
+
+
+def test_m19_behind_a_gear_change_of_somebody_else() -> None:
+    """At the change position the spindle is not in position for the channel."""
+    scenario = MANUAL + "- {at: 0.3, to: s, do: select_gear, stage: 2}\n- {at: 3, to: s, do: gear_changed}"
+    bench = run("G04 X0.5\nM19 S100 S.POS=90\nG01 X20 F6000", mill(m19=MVS_SVS), scenario)
+    assert bench.errors() == [] and moves(bench)[0][0] > 3000
+    assert bench.column("s", "actual_position_deg")[moves(bench)[0][0]] % 360.0 == pytest.approx(90.0, abs=0.2)
+
+
+def test_m3_behind_a_gear_change_and_commands_of_the_plc() -> None:
+    scenario = MANUAL + (
+        "- {at: 0.3, to: s, do: select_gear, stage: 2}\n"
+        "- {at: 0.4, to: s, do: start, direction: ccw, speed_rpm: 1000, source: plc}\n"
+        "- {at: 0.4, to: s, do: orient, position_deg: 90, source: plc}\n"
+        "- {at: 2, to: s, do: gear_changed}\n"
+    )
+    bench = run("G04 X0.5\nM3 S1000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
+    assert bench.errors() == [] and speed_at_the_move(bench) == pytest.approx(1000.0, rel=0.1)
+    assert bench.last("s").plc_acknowledged == 2
+
+
+def test_a_slave_in_a_gear_change_of_its_own() -> None:
+    machine = machine_of(*three(), units={"t": replace(two_gears(), name="t")})
+    scenario = MANUAL + "- {at: 0.02, to: t, do: select_gear, stage: 2}\n- {at: 2, to: t, do: gear_changed}"
+    bench = run(LINK + "G04 X0.3\nM3 S1000\nG01 X20 F6000", machine, scenario)
+    assert bench.errors() == [] and moves(bench)[0][0] > 2000
+    assert [speed_at_the_move(bench, unit) for unit in "st"] == [pytest.approx(1000.0, rel=0.1)] * 2
+
+
+def test_override_0_makes_the_path_wait() -> None:
+    scenario = "- {at: 0.1, to: s, do: set_override, percent: 0}\n- {at: 2, to: s, do: set_override, percent: 100}"
+    bench = run("M3 S10000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
+    assert bench.errors() == [] and moves(bench)[0][0] > 2000
+    assert speed_at_the_move(bench) == pytest.approx(10000.0, rel=0.1)
+
+
+# ---------------------------------------------------------------- what the channel itself commands anew
+
+
+def test_a_new_speed_is_what_a_late_synchronisation_waits_for() -> None:
+    """m3 is MVS_SLP, s is MOS."""
+    bench = run("M3 S1000\nG04 X1\nS9000\n#EXPL SYN\nG01 X20 F6000", mill(m3=MVS_SLP))
+    assert bench.errors() == [] and speed_at_the_move(bench) == pytest.approx(9000.0, rel=0.1)
+
+
+@pytest.mark.parametrize("newer", ["M5", "M19 S.POS=0", "G74 S1"])
+def test_after_another_function_nobody_waits_for_the_speed(newer: str) -> None:
+    bench = run(f"M3 S1000\nG04 X1\n{newer}\n#EXPL SYN\nG01 X20 F6000", mill(m3=MVS_SLP))
+    assert bench.errors() == [] and moves(bench)[0][0] < 1030
+
+
+def test_a_gear_change_of_the_channel_before_a_late_synchronisation() -> None:
+    spindles = three(m3=MVS_SLP, s=MOS, ranges=((50.0, 800.0), (400.0, 800.0)), automatic=False)
+    machine = machine_of(*spindles, units={"s": two_gears()}, gear_change=True)
+    bench = run("M40 S600 M3\nG04 X0.1\nM41\n#EXPL SYN\nG01 X20 F6000", machine)
+    assert bench.errors() == [] and [command for command, _ in told(bench)].count("select_gear") == 1
+    assert speed_at_the_move(bench) == pytest.approx(600.0, rel=0.1)
