@@ -6,7 +6,16 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
-from figures import circle, friction_curve, picture, spindle_curve, weights
+from figures import (
+    circle,
+    friction_curve,
+    gear_ranges,
+    picture,
+    spindle_and_path,
+    spindle_curve,
+    spindle_states,
+    weights,
+)
 from figures.run import FigureRun
 from figures.scenario_head import OVER_TIME, FigureError, FigureScenario
 
@@ -16,6 +25,9 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "weights": weights.draw,
     "circle": circle.draw,
     "spindle_curve": spindle_curve.draw,
+    "spindle_states": spindle_states.draw,
+    "spindle_and_path": spindle_and_path.draw,
+    "gear_ranges": gear_ranges.draw,
 }
 
 

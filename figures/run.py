@@ -106,8 +106,10 @@ def run_figure(figure: FigureScenario) -> FigureRun:
 def _collect(figure: FigureScenario, machine: MachineParameters, ticks: tuple[Outputs, ...]) -> FigureRun:
     outputs = [output for tick in ticks for output in tick.values()]
     records = [record for output in outputs for record in output.records]
-    refused = [f"P-ERR-{record.error_id} {record.message}" for record in records if not record.accepted]
     errors = [event for output in outputs for event in output.events if event.severity == Severity.ERROR]
+    shown = {event.error_id for event in errors} if figure.shows_errors else set()
+    refusals = [record for record in records if not record.accepted and record.error_id not in shown]
+    refused = [f"P-ERR-{record.error_id} {record.message}" for record in refusals]
     if refused or (errors and not figure.shows_errors):
         texts = [f"P-ERR-{event.error_id} {event.text}" for event in errors if not figure.shows_errors]
         raise FigureError(figure.path, (texts + refused)[0])

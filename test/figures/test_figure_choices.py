@@ -125,7 +125,8 @@ def test_program_that_cannot_be_read(tmp_path):
 
 
 def test_unknown_kind(tmp_path):
-    expected = "kind 'bars' does not exist, known are time, friction_curve, weights, circle, spindle_curve"
+    known = "time, friction_curve, weights, circle, spindle_curve, spindle_states, spindle_and_path, gear_ranges"
+    expected = f"kind 'bars' does not exist, known are {known}"
     assert refusal(written(tmp_path, kind="bars")) == expected
 
 
