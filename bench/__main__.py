@@ -18,7 +18,7 @@ from rich.console import Console
 
 from bench.figures import FULL, SHORT, Effort, Figure, Say, table
 
-TOPICS = ("interpreter", "motion", "control", "recording", "offline", "graph", "service", "slaves")
+TOPICS = ("interpreter", "motion", "control", "recording", "offline", "graph", "service", "slaves", "spindles")
 
 
 @contextmanager

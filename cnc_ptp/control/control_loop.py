@@ -25,6 +25,9 @@ State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""
 Row = tuple[float, float, float, float, float, float, float, float, float]
 """A ControlCycle without its names, which take their time."""
+Columns = tuple[Sequence[float], ...]
+"""The values of ControlCycle over many cycles."""
+NOTHING: Columns = ((),) * 9
 HISTORY = 16
 """Setpoints that are kept: 4 cycles of lead, 6 of delay, and their neighbours."""
 
@@ -56,7 +59,7 @@ class ControlLoop:
         self._virtual = drive if isinstance(drive, VirtualDrive) else None
         self.kv = parameters.kv
         self.monitor = LagMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
-        self.delay_cycles = _delay_cycles(parameters)
+        self.delay_cycles = parameters.delay_cycles
         scaling = parameters.scaling
         self.feedforward = Feedforward(
             parameters.feedforward,
@@ -132,8 +135,8 @@ class ControlLoop:
         """Closes the loop for one cycle; open, the drive is to have `open_velocity` and nothing is remembered."""
         return ControlCycle(*self._cycle(setpoint, closed, open_velocity))
 
-    def follow(self, setpoints: Sequence[State], closed: bool, *, watched: bool) -> list[Row]:
-        """`step` for many setpoints; if `watched`, up to one whose following error is too large."""
+    def follow(self, setpoints: Sequence[State], closed: bool, *, watched: bool) -> Columns:
+        """`step` for many setpoints, value by value; if `watched`, up to one whose following error is too large."""
         if closed and self._plain and not self.feedforward.active:
             return self._plain_cycles(setpoints, watched)
         rows = []
@@ -141,13 +144,14 @@ class ControlLoop:
             if watched and self.too_far(setpoint):
                 break
             rows.append(self._cycle(setpoint, closed))
-        return rows
+        return tuple(zip(*rows, strict=True)) or NOTHING
 
-    def _plain_cycles(self, setpoints: Sequence[State], watched: bool) -> list[Row]:
+    def _plain_cycles(self, setpoints: Sequence[State], watched: bool) -> Columns:
         """Position control with nothing beside it: v = Kv · following error."""
         drive, monitor, offset, kv = self.drive, self.monitor, self.offset, self.kv
         step, monitored = drive.step, monitor.on
-        rows = []
+        columns: tuple[list[float], ...] = [], [], [], [], []
+        positions, velocities, errors, commands, torques = columns
         for setpoint in setpoints:
             position = drive.position + offset
             following_error = setpoint[0] - position
@@ -156,12 +160,18 @@ class ControlLoop:
                     break
                 monitor.advance(following_error, setpoint[1])
             command = kv * following_error
-            rows.append((position, drive.velocity, following_error, command, 0.0, 0.0, 0.0, 0.0, drive.torque))
+            positions.append(position)
+            velocities.append(drive.velocity)
+            errors.append(following_error)
+            commands.append(command)
+            torques.append(drive.torque)
             step(command)
+        n = len(positions)
         if self.feedforward.mode:
-            for setpoint in setpoints[: len(rows)][-HISTORY:]:
+            for setpoint in setpoints[:n][-HISTORY:]:
                 self._remember(setpoint)
-        return rows
+        none = [0.0] * n
+        return positions, velocities, errors, commands, none, none, none, none, torques
 
     def _remember(self, setpoint: State) -> None:
         """Before the first setpoint the axis stood there."""
@@ -244,9 +254,3 @@ class ControlLoop:
             drive.step(controller.torque(velocity - drive.velocity) if velocity else controller.brake(drive.velocity))
         else:
             drive.step(velocity / self.kv + (drive.position if self._interface == "position" else 0.0))
-
-
-def _delay_cycles(parameters: ControlParameters) -> int:
-    """Cycles by which the position controller works behind the setpoint, so that others can look ahead."""
-    lead = parameters.feedforward.lead_cycles if parameters.feedforward.mode else 0
-    return max(lead, parameters.friction.reversal_lookahead if parameters.friction.permitted else 0)

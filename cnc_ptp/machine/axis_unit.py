@@ -155,16 +155,17 @@ class AxisUnit(Unit):
         """
         axis, loop = self._axis, self._loop
         closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
-        cycles = loop.follow(setpoints, closed, watched=closed and loop.monitor.on)
-        n = len(cycles)
+        control = loop.follow(setpoints, closed, watched=closed and loop.monitor.on)
+        actual_positions = control[0]
+        n = len(actual_positions)
         if n == 0:
             return 0
         setpoints = setpoints[:n]
         common = axis.common_bits(0)
-        bits = [common | axis.motion_bits(s, c[0]) for s, c in zip(setpoints, cycles, strict=True)]
+        bits = [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
         values: Columns = [
             *zip(*setpoints, strict=True),
-            *zip(*cycles, strict=True),
+            *control,
             [axis.override_percent] * n,
             [axis.state] * n,
             bits,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from cnc_ptp.axis.states import AxisStateCode as S
@@ -189,7 +190,8 @@ class SpindleCycles:
             return False
         if spindle.parameters.speed_time and not spindle.speed_was_reached:
             return False
-        return spindle.loop.undisturbed(spindle.motion(first_cycle)[1], spindle.motion(last_cycle)[1])
+        limit = spindle.loop.undisturbed_speed
+        return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
         """The same as `_cycle` for such cycles; up to a following error too large."""
@@ -201,7 +203,7 @@ class SpindleCycles:
         )
         n = len(actuals)
         positions, speeds, accelerations, _ = map(list, zip(*motions[:n], strict=True)) if n else ([], [], [], [])
-        targets = positions if spindle.target is None else [spindle.target] * n
+        target = spindle.target
         reached = self._speeds_reached(actual_speeds)
         columns = [
             [speed / DEG_S_PER_RPM for speed in speeds],
@@ -210,8 +212,8 @@ class SpindleCycles:
             accelerations,
             positions,
             actuals,
-            list(targets),
-            [target - position for target, position in zip(targets, positions, strict=True)],
+            [*positions] if target is None else [target] * n,
+            [0.0] * n if target is None else [target - position for position in positions],
             errors,
             [spindle.override_percent] * n,
             outputs,
@@ -219,7 +221,7 @@ class SpindleCycles:
             [gear.stage] * n,
             reached,
             [abs(speed) <= gear.zero_speed for speed in actual_speeds],
-            [False] * n if spindle.target is None else [self._in_position(position) for position in actuals],
+            [False] * n if target is None else [self._in_position(position) for position in actuals],
             [spindle.referenced] * n,
             [False] * n,
             [self._bits()] * n,

@@ -64,6 +64,15 @@ class SpeedTable:
             a = a * d + power
         return p, v, a
 
+    def states_at(self, times: Sequence[float]) -> list[Motion]:
+        """`state_at` for growing times >= 0; shorter where all are in one segment of constant acceleration."""
+        index = bisect_right(self._starts, times[0]) - 1
+        start, way, speed, rate = self._falling[index]
+        if len(speed) != 2 or bisect_right(self._starts, times[-1]) - 1 != index:
+            return [self.state_at(t) for t in times]
+        (p2, p1, p0), (v1, v0), a = way, speed, rate[0]
+        return [(p0 + d * (p1 + d * p2), v0 + d * v1, a) for d in [t - start for t in times]]
+
 
 def segment(start: float, position: float, powers: Sequence[float]) -> Segment:
     """One segment of the speed `powers`; way and acceleration are its integral and derivative."""

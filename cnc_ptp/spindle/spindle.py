@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import copysign
+from math import copysign, inf
 from typing import NoReturn
 
 from cnc_ptp.axis.states import AxisStateCode as S
@@ -49,7 +49,7 @@ class Spindle:
         self.has_tool_limits = False
         self.next_tool: ToolLimits | None = None
         """Counts when the spindle next leaves standstill."""
-        self.limits = SpindleLimits(self.gear, self.tool)
+        self.limits = self._limits()
         self.loop = PositionLoop(parameters, self.gear, drive, cycle_time=cycle_time)
         self._make_drive = make_drive
         self._table = plan_speed(parameters.start_position, 0.0, 0.0, self.limits.ramp)
@@ -87,16 +87,13 @@ class Spindle:
 
     def motions(self, first_cycle: int, count: int) -> list[State]:
         """`motion` of many cycles, as setpoints of the control loop (no jerk is fed forward)."""
-        state_at, origin, shift, cycle_time = self._table.state_at, self._origin, self._shift, self.cycle_time
+        cycle_time, shift, first = self.cycle_time, self._shift, first_cycle - self._origin
+        times = [cycle * cycle_time for cycle in range(first, first + count)]
         if not self.finished(first_cycle):
-            states = [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
-            return [(position + shift, speed, acceleration, 0.0) for position, speed, acceleration in states]
+            return [(p + shift, v, a, 0.0) for p, v, a in self._table.states_at(times)]
         end = self._table.segments[-1]
         start, (position, speed) = end.start, end.way
-        return [
-            (position + ((cycle - origin) * cycle_time - start) * speed + shift, speed, 0.0, 0.0)
-            for cycle in range(first_cycle, first_cycle + count)
-        ]
+        return [(position + (t - start) * speed + shift, speed, 0.0, 0.0) for t in times]
 
     def finished(self, cycle: int) -> bool:
         """The table has come to its end speed."""
@@ -168,7 +165,7 @@ class Spindle:
         if self.next_tool is not None and self.state == S.STANDSTILL and self.motion(cycle)[1] == 0.0:
             self.tool, self.next_tool = self.next_tool, None
             self.has_tool_limits = self.tool != ToolLimits()
-            self.limits = SpindleLimits(self.gear, self.tool)
+            self.limits = self._limits()
 
     def use_gear(self, cycle: int, stage: int) -> None:
         """Parameters of another gear; the spindle stands where the encoder shows it."""
@@ -176,9 +173,14 @@ class Spindle:
         self.gear = self.parameters.gears[stage]
         self.loop.use_gear(self.gear, self._make_drive(self.gear, self.loop.control.drive.position))
         self.loop.count_from(actual)
-        self.limits = SpindleLimits(self.gear, self.tool)
+        self.limits = self._limits()
         if self.parameters.has_position:
             self.place(cycle, actual)
+
+    def _limits(self) -> SpindleLimits:
+        """An open loop has no control limit."""
+        control_limit = inf if self.parameters.open_loop else self.gear.control_limit
+        return SpindleLimits(self.gear, self.tool, control_limit=control_limit)
 
     # position loop
 

@@ -105,7 +105,7 @@ def changed_control(control: ControlParameters, changes: dict[str, Any]) -> Cont
         plant["kv"] = changes["kv"]
     return replace(
         control,
-        **taken(kv="kv", modulo_error="modulo_error"),
+        **taken(kv="kv", modulo_error="modulo_error", feedforward="feedforward"),
         monitoring=monitoring,
         drive=replace(control.drive, **taken(reverse="reversed")),
         scaling=replace(control.scaling, **taken(analogue="digits_per_deg_s")),

@@ -1,0 +1,112 @@
+"""Spindles: 16 of them with two channels offline, at steady speeds and in ramps without an end."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from itertools import cycle, islice
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from bench.figures import Effort, Figure, Say, stopwatch
+from bench.jobs import MACHINE
+from cnc_ptp.machine.blocks import Command
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.scenario import Entry
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.parameters import MachineParameters, read_machine
+
+CHANNELS = {"one": "x", "two": "z"}
+SPINDLES = 16
+SECONDS = 10.0
+GOAL = 10.0
+STEADY, RAMPS = (500, 1500, 2500, 3500), (6000, 500)
+"""Speeds in rpm; from one to the other of the ramps takes 0.9 s."""
+
+
+def machine_file(path: Path) -> str:
+    """The mill with 16 spindles: two channels, each with an axis and eight spindles."""
+    source = yaml.load(Path(MACHINE).read_text(), yaml.BaseLoader)
+    own = {name: part["ros__parameters"] for name, part in source.items()}
+    names = [f"s{number}" for number in range(1, SPINDLES + 1)]
+    units = {"machine": own["/machine"] | {"channels": [*CHANNELS], "axes": [*CHANNELS.values()], "spindles": names}}
+    for index, (channel, axis) in enumerate(CHANNELS.items()):
+        units[channel] = own["/channel"] | channel_lists(axis, own[f"/{axis}"], range(8 * index + 1, 8 * index + 9))
+        units[axis] = own[f"/{axis}"]
+    units |= {name: own["/s"] | {"kopf": {"achs_nr": str(10 + n)}} for n, name in enumerate(names, 1)}
+    path.write_text(plain_yaml({f"/{name}": {"ros__parameters": part} for name, part in units.items()}))
+    return str(path)
+
+
+def channel_lists(name: str, axis: dict[str, Any], numbers: range) -> dict[str, Any]:
+    """An axis and the spindles of these numbers, the first of them the main spindle."""
+    axis_list = {"bezeichnung": name.upper(), "log_achs_nr": axis["kopf"]["achs_nr"]}
+    kinds = {"s_synch": "MOS", "m3_synch": "MOS", "m4_synch": "MOS"}
+    spindles = {
+        str(index): kinds | {"bezeichnung": f"S{number}", "log_achs_nr": str(10 + number)}
+        for index, number in enumerate(numbers)
+    }
+    return {
+        "gruppe": {"0": {"achs_anzahl": "1", "achse": {"0": axis_list}}},
+        "spdl_anzahl": str(len(numbers)),
+        "main_spindle_ax_nr": str(10 + numbers[0]),
+        "spindel": spindles,
+    }
+
+
+def plain_yaml(parts: dict[str, Any]) -> str:
+    """Numbers without quotes."""
+    return yaml.dump(parts, Dumper=NoAliases).replace("'", "")
+
+
+class NoAliases(yaml.SafeDumper):
+    """Writes what occurs twice twice."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def program(numbers: range, speeds: Sequence[int], hold: float, seconds: float) -> str:
+    """Every `hold` s all spindles get the next of `speeds`, every other one turns the other way round."""
+    names = ["S", *(f"S{number}" for number in numbers[1:])]
+    lines = []
+    for speed in islice(cycle(speeds), 2 + int(seconds / hold)):
+        words = [f"{name}[REV{speed + 10 * n} M{3 + n % 2}]" for n, name in enumerate(names)]
+        lines += [" ".join(words), f"G04 {hold}"]
+    return "\n".join(["%SPINDLES", *lines, "M30", ""])
+
+
+def entries(speeds: Sequence[int], hold: float, seconds: float) -> list[Entry]:
+    """Both programs, loaded and started."""
+    found = []
+    for index, channel in enumerate(CHANNELS):
+        text = program(range(8 * index + 1, 8 * index + 9), speeds, hold, seconds)
+        load = Command(channel, "load", {"program": "spindles.nc", "text": text})
+        found += [Entry(0.0, load), Entry(0.0, Command(channel, "start", {}))]
+    return found
+
+
+def times_real_time(machine: MachineParameters, scenario: Sequence[Entry], seconds: float) -> float:
+    """Machine time over the time of the processor; the first second, in which all spindles run up, is not counted."""
+    offline = OfflineMachine(machine, build_units(machine, scenario=scenario))
+    block = machine.block_cycles * machine.cycle_time_us * 1e-6
+    for _ in range(round(1.0 / block)):
+        offline.tick()
+    with stopwatch() as watch:
+        for _ in range(round(seconds / block)):
+            offline.tick()
+    return seconds / watch.cpu
+
+
+def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+    """Both rates, the best of several runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        machine = read_machine(machine_file(Path(folder) / "spindles.yaml"))
+    seconds = SECONDS * effort.size
+    for name, speeds, hold in (("at steady speeds", STEADY, 5.0), ("in ramps", RAMPS, 0.8)):
+        say(f"{SPINDLES} spindles {name}")
+        scenario = entries(speeds, hold, seconds)
+        rate = max(times_real_time(machine, scenario, seconds) for _ in range(effort.runs))
+        yield Figure(f"{SPINDLES} spindles and 2 channels offline, {name} (best)", rate, "x real time", goal=GOAL)
