@@ -1,0 +1,192 @@
+"""Position loop of a spindle: closed, opened at the control limit or by velocity control, or open for good.
+
+TF5200 spindle 2.2.4 (open position loop), 2.4.2 (control limit), P-AXIS-00265 and 00266 (velocity control). In the open
+loop the speed setpoint goes to the drive. Above the control limit the actual values are simulated: the following error
+is speed / Kv. Units: °, °/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+
+from cnc_ptp.control.control_loop import ControlLoop, State
+from cnc_ptp.control.drive_format import shown_velocity
+from cnc_ptp.control.drives import Drive
+from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
+from cnc_ptp.parameters import GearParameters, SpindleParameters
+
+Cycles = tuple[list[float], list[float], list[float], list[int]]
+"""Actual positions, actual speeds, following errors, drive outputs."""
+
+
+class PositionLoop:
+    """The control loop of the gear in work, where it is closed and where it is not; actual values, cycle by cycle."""
+
+    def __init__(self, parameters: SpindleParameters, gear: GearParameters, drive: Drive, *, cycle_time: float) -> None:
+        """`cycle_time` in s."""
+        self._parameters = parameters
+        self._cycle_time = cycle_time
+        self.beyond_limit = False
+        self.velocity_control = False
+        self.drive_output = 0
+        self._last_position: float | None = None
+        self._feedforward_on, self._weight_percent = False, 100.0
+        self.use_gear(gear, drive)
+
+    def use_gear(self, gear: GearParameters, drive: Drive) -> None:
+        """The parameters of a gear count from now on; `drive` has its measuring system."""
+        self._gear = gear
+        self.control = ControlLoop(
+            gear.control,
+            cycle_time=self._cycle_time,
+            limits=CouplingLimits(gear.max_speed, gear.max_acceleration, inf),
+            drive=drive,
+        )
+        self.control.select_feedforward(self._feedforward_on, self._weight_percent)
+        self._output = shown_velocity(gear.control.scaling, gear.control.drive)
+
+    @property
+    def feedforward(self) -> Feedforward:
+        return self.control.feedforward
+
+    def select_feedforward(self, on: bool, weight_percent: float) -> None:
+        """G135 or G137 with the weight of G136; it holds in all gears."""
+        self._feedforward_on, self._weight_percent = on, weight_percent
+        self.control.select_feedforward(on, weight_percent)
+
+    def count_from(self, position: float) -> None:
+        """The spindle stands at `position`, whatever the encoder shows."""
+        self.control.count_from(position)
+        self._last_position = None
+
+    def shift(self, distance: float) -> None:
+        """All coordinates grow by `distance`."""
+        self.control.shift(distance)
+        self._last_position = None if self._last_position is None else self._last_position + distance
+
+    @property
+    def encoder(self) -> float:
+        """Position as the encoder counts it."""
+        return self.control.encoder
+
+    @property
+    def position(self) -> float:
+        """Actual position as the encoder shows it."""
+        return self.control.position
+
+    @property
+    def closed(self) -> bool:
+        return not (self._parameters.open_loop or self.beyond_limit or self.velocity_control)
+
+    @property
+    def measures_position(self) -> bool:
+        """The actual position is a measured one."""
+        return self._parameters.has_position and not self.beyond_limit
+
+    @property
+    def measures_speed(self) -> bool:
+        """False: the speed is acknowledged by the setpoint."""
+        return self._parameters.feedback != "NONE" and not self.beyond_limit
+
+    def lag(self, speed: float) -> float:
+        """Following error of a closed loop at a constant speed."""
+        return speed / self.control.kv
+
+    def passes_limit(self, set_speed: float) -> bool:
+        """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
+        if self.beyond_limit or self._parameters.open_loop or abs(set_speed) <= self._gear.control_limit:
+            return False
+        self.beyond_limit = True
+        return True
+
+    def comes_back(self, set_speed: float) -> bool:
+        """True when the speed has come below the control limit: the measuring system counts again."""
+        if not self.beyond_limit or abs(set_speed) > self._gear.control_limit:
+            return False
+        self.beyond_limit = False
+        self._last_position = None
+        return True
+
+    def waits_to_close(self, set_speed: float, wanted_speed: float) -> bool:
+        """Under velocity control that is needed no more; only the drive must slow down yet."""
+        return (
+            self.velocity_control
+            and abs(wanted_speed) <= self._parameters.velocity_control_on
+            and abs(set_speed) <= self._parameters.velocity_control_off
+        )
+
+    def leaves_velocity_control(self, set_speed: float, wanted_speed: float) -> bool:
+        """True when no speed above P-AXIS-00265 is wanted and the spindle is down to P-AXIS-00266."""
+        if not self.waits_to_close(set_speed, wanted_speed):
+            return False
+        limit = self._parameters.velocity_control_off
+        if abs(self.control.drive.velocity) > limit + max(
+            self._gear.zero_speed, self._parameters.speed_reached_band * limit
+        ):
+            return False
+        self.velocity_control = False
+        return True
+
+    def actual_position(self, set_position: float, set_speed: float) -> float:
+        """Measured, or simulated where there is no measurement."""
+        if self.beyond_limit:
+            return set_position - self.lag(set_speed)
+        measured = self._parameters.has_position and not self.control.virtual
+        return self.control.position if measured else set_position
+
+    def actual_speed(self, set_speed: float) -> float:
+        """By what the drive sends; asked once a cycle, because an open loop takes it from two positions."""
+        if not self.measures_speed or self.control.virtual:
+            return set_speed
+        if self._parameters.open_loop and self._parameters.has_position:
+            last, self._last_position = self._last_position, self.position
+            return 0.0 if last is None else (self._last_position - last) / self._cycle_time
+        return self.control.drive.velocity
+
+    @property
+    def undisturbed_speed(self) -> float:
+        """Up to this amount of speed nothing opens or closes the loop, at none while it is open only for a while."""
+        if self.velocity_control or self.beyond_limit:
+            return -inf
+        return inf if self._parameters.open_loop else self._gear.control_limit
+
+    def watches(self, *, on: bool) -> bool:
+        """True while the following error is monitored; `on` is False without power."""
+        return on and self.closed and self.control.monitor.on
+
+    def cycles(self, setpoints: Sequence[State], *, on: bool, watched: bool) -> Cycles:
+        """Many cycles through which the loop stays as it is; if `watched`, up to a following error too large.
+
+        The same as actual_position, actual_speed and command, cycle by cycle.
+        """
+        if on and self.closed:
+            return self._closed_cycles(setpoints, watched)
+        cycles: Cycles = [], [], [], []
+        actuals, actual_speeds, errors, outputs = cycles
+        for setpoint in setpoints:
+            actual = self.actual_position(setpoint[0], setpoint[1])
+            actuals.append(actual)
+            actual_speeds.append(self.actual_speed(setpoint[1]))
+            errors.append(setpoint[0] - actual)
+            self.command(setpoint, on=on)
+            outputs.append(self.drive_output)
+        return cycles
+
+    def _closed_cycles(self, setpoints: Sequence[State], watched: bool) -> Cycles:
+        actuals, actual_speeds, errors, commands, *_ = self.control.follow(setpoints, True, watched=watched)
+        outputs = self._output.encode_all(commands)
+        if outputs:
+            self.drive_output = outputs[-1]
+        return list(actuals), list(actual_speeds), list(errors), outputs
+
+    def command(self, setpoint: State, *, on: bool) -> None:
+        """Moves the drive for one cycle. `on` is False without power.
+
+        A spindle that is never under position control turns as fast as the digits say that go out (spindle 2.2.4).
+        """
+        speed = setpoint[1] if on else 0.0
+        if self._parameters.open_loop:
+            speed = self._output.decode(self._output.encode(speed))
+        cycle = self.control.step(setpoint, on and self.closed, speed)
+        self.drive_output = self._output.encode(cycle.command_velocity)
