@@ -59,6 +59,12 @@ class AxisData:
         return self.axis.control.kv
 
     @property
+    def mean_velocity(self) -> bool:
+        """The telegram carries no actual velocity, so it is the way of the last cycle."""
+        drive = self.axis.control.drive
+        return not drive.ideal and "velocity" not in drive.feedback
+
+    @property
     def unit(self) -> str:
         return "deg" if self.axis.rotary else "mm"
 
@@ -112,16 +118,16 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
     return AxisData(parameters, text, parameters.axes[axis], recorded)
 
 
-def recorded_trace(axis: str, recorded: Recorded) -> AxisTrace:
+def recorded_trace(data: AxisData, recorded: Recorded) -> AxisTrace:
     """The axis in a recording. Raises CncError 27002 where it is not recorded."""
-    states = recorded.of_type(AXIS_STATE)
+    axis, states = data.axis.name, recorded.of_type(AXIS_STATE)
     if axis not in states:
         known = ", ".join(states) or "none"
         raise CncError(
             NOT_RECORDED,
             f"recording {recorded.path} holds no states of axis {axis}; nothing was made. Axes in it: {known}",
         )
-    return AxisTrace.of_rows(axis, recorded.cycle_time_ns * 1e-9, states[axis])
+    return AxisTrace.of_rows(axis, recorded.cycle_time_ns * 1e-9, states[axis], mean_velocity=data.mean_velocity)
 
 
 def drive(data: AxisData, motions: Sequence[Motion], *, label: str, record: str | None) -> tuple[Trial, AxisTrace]:
@@ -146,4 +152,5 @@ def drive(data: AxisData, motions: Sequence[Motion], *, label: str, record: str 
         machine_text=data.text,
     )
     columns = {**trial.columns[name], "cycle": trial.columns[name]["cycle"].astype(np.int64)}
-    return trial, AxisTrace.of_rows(name, data.machine.cycle_time_us * 1e-6, columns)
+    cycle_time = data.machine.cycle_time_us * 1e-6
+    return trial, AxisTrace.of_rows(name, cycle_time, columns, mean_velocity=data.mean_velocity)

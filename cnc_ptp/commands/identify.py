@@ -47,7 +47,7 @@ def identify_friction(
     check_files(output, record, machine, recording)
     timing = Timing(data.kv)
     if data.recorded is not None:
-        trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
+        trace, source = recorded_trace(data, data.recorded), f"from {recording}"
     else:
         room, steady = data.room, timing.steady
         speeds = check_speeds(room, velocities, steady) if velocities else speed_ladder(room, steady)
@@ -79,7 +79,7 @@ def identify_dynamics(
     check_files(output, record, machine, recording)
     require_velocity_command(data)
     if data.recorded is not None:
-        trace, source = recorded_trace(axis, data.recorded), f"from {recording}"
+        trace, source = recorded_trace(data, data.recorded), f"from {recording}"
     else:
         room = data.room
         speed_ladder(room, DYNAMIC_STEADY)  # there must be room to move

@@ -2,6 +2,8 @@
 
 Model, exact for a command that is held over a cycle: v[k+1] = g·u[k-d] + (v[k] - g·u[k-d])·exp(-T/Ta); T cycle time,
 u command velocity, d dead time in cycles, g gain (1 where the scaling is right). Source: TF5200 feedforward, figure 1.
+Where the telegram carries no velocity, the actual one is the way of a cycle by its time, m[k+1] = g·u[k-d] +
+(v[k] - g·u[k-d])·L/T with L = Ta·(1 - exp(-T/Ta)).
 The sum of the squares of (simulated - recorded velocity) is the smallest possible (output error), so that noise on the
 recorded velocity does not bend the result.
 """
@@ -70,10 +72,11 @@ class DriveFit:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """Command and actual velocity of a stretch without gaps."""
+    """Command and actual velocity of a stretch without gaps; whether the latter is the mean of the cycle before."""
 
     command: Array
     actual: Array
+    mean_velocity: bool
 
 
 def fit_drive(trace: AxisTrace) -> DriveFit:
@@ -132,7 +135,8 @@ def _pieces(trace: AxisTrace) -> list[_Piece]:
             "record starts and stops",
         )
     moving = [stretch for span in spans for stretch in _moving(trace, span)]
-    return [_Piece(command[first:end], trace.actual_velocity[first:end]) for first, end in _first_cycles(moving)]
+    actual, mean = trace.actual_velocity, trace.mean_velocity
+    return [_Piece(command[first:end], actual[first:end], mean) for first, end in _first_cycles(moving)]
 
 
 def _moving(trace: AxisTrace, span: Span) -> list[Span]:
@@ -179,18 +183,45 @@ def _fit(pieces: Sequence[_Piece], dead: int) -> tuple[float, float, int]:
 
 
 def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, float]:
-    """Sum of squared errors and the best gain: the simulated velocity is g · forced part + free part."""
+    """Sum of squared errors and the best gain."""
+    residuals, gain = _residuals(pieces, pole, dead)
+    return float(np.sum(residuals * residuals)), gain
+
+
+def _residuals(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[Array, float]:
+    """Simulated less recorded velocity of all pieces, and the best gain.
+
+    The simulated velocity is g · forced part + what is left of the velocity at the beginning of its piece, which is
+    unknown: its share p^k is taken out of both sides.
+    """
     forced, wanted = [np.zeros(0)], [np.zeros(0)]
     for piece in pieces:
         usable = len(piece.actual) - dead - 1
         if usable > 0:
-            rest = piece.actual[dead + 1 :].copy()
-            free = min(usable, 1 if pole < NEGLIGIBLE else math.ceil(math.log(NEGLIGIBLE) / math.log(pole)))
-            rest[:free] -= piece.actual[dead] * pole ** np.arange(1, free + 1)
-            forced.append(lfilter([1.0 - pole], [1.0, -pole], piece.command[:usable]))
-            wanted.append(rest)
+            free = pole ** np.arange(min(usable, _cycles_to_rest(pole)))
+            forced.append(_without(free, lfilter(_response(pole, piece), [1.0, -pole], piece.command[:usable])))
+            wanted.append(_without(free, piece.actual[dead + 1 :]))
     simulated, target = np.concatenate(forced), np.concatenate(wanted)
     # Not @: the threads of BLAS make sums of this size many times slower on a busy machine.
     power = float(np.sum(simulated * simulated))
     gain = float(np.sum(simulated * target)) / power if power > 0.0 else 0.0
-    return float(np.sum((gain * simulated - target) ** 2)), gain
+    return gain * simulated - target, gain
+
+
+def _response(pole: float, piece: _Piece) -> tuple[float, ...]:
+    """Numerator of the lag over 1 - p/z: 1 - p, or with the mean velocity 1 - q + (q - p)/z, q = (1 - p)·Ta/T."""
+    if not piece.mean_velocity:
+        return (1.0 - pole,)
+    mean = (1.0 - pole) / -math.log(pole) if pole > NO_LAG else 0.0
+    return 1.0 - mean, mean - pole
+
+
+def _cycles_to_rest(pole: float) -> int:
+    return 1 if pole < NEGLIGIBLE else math.ceil(math.log(NEGLIGIBLE) / math.log(pole))
+
+
+def _without(free: Array, velocity: Array) -> Array:
+    """The part of a velocity that no multiple of `free` at its beginning explains."""
+    rest = velocity.copy()
+    rest[: len(free)] -= free * (np.sum(free * rest[: len(free)]) / np.sum(free * free))
+    return rest

@@ -55,16 +55,23 @@ def fit_inertia(trace: AxisTrace) -> InertiaFit | None:
 def _windows(trace: AxisTrace, torque: Array) -> tuple[Array, Array]:
     """Rows (change of velocity, ± time, way, time) and impulses of all usable windows."""
     velocity, step = trace.actual_velocity, max(2, round(WINDOW / trace.cycle_time))
+    position = trace.actual_position
+    if trace.mean_velocity:  # half a cycle older than its row, so let all be that old
+        position, torque = _half_a_cycle_before(position), _half_a_cycle_before(torque)
     lowest = LOWEST_PART * float(np.max(np.abs(velocity)))
     rows, impulses = [], []
     for span_first, span_end in trace.unbroken():
-        for first in range(span_first, span_end - step, step):
+        for first in range(span_first + 1, span_end - step, step):
             end = first + step
             part = velocity[first : end + 1]
             if np.min(np.abs(part)) < lowest or part[0] * part[-1] < 0.0:
                 continue
             time = step * trace.cycle_time
-            way = float(trace.actual_position[end] - trace.actual_position[first])
+            way = float(position[end] - position[first])
             rows.append((float(part[-1] - part[0]), np.sign(part[0]) * time, way, time))
             impulses.append(float(np.sum(torque[first + 1 : end + 1])) * trace.cycle_time)
     return np.array(rows).reshape(-1, 4), np.array(impulses)
+
+
+def _half_a_cycle_before(values: Array) -> Array:
+    return 0.5 * (values + np.concatenate([values[:1], values[:-1]]))

@@ -32,9 +32,19 @@ class AxisTrace:
     command_velocity: Array
     additive_velocity: Array
     actual_torque: Array | None
+    mean_velocity: bool = False
+    """The actual velocity is not the momentary one but the way of the cycle that is over, by its time: so it is where
+    the telegram carries no velocity."""
 
     @classmethod
-    def of_rows(cls, axis: str, cycle_time: float, rows: Mapping[str, Any] | npt.NDArray[Any]) -> AxisTrace:
+    def of_rows(
+        cls,
+        axis: str,
+        cycle_time: float,
+        rows: Mapping[str, Any] | npt.NDArray[Any],
+        *,
+        mean_velocity: bool = False,
+    ) -> AxisTrace:
         """Of the fields of AxisState messages (a mapping, or a structured array (n,)), repeated cycles once."""
         names = rows.dtype.names or () if isinstance(rows, np.ndarray) else tuple(rows)
         cycle, order = np.unique(np.asarray(rows["cycle"]).astype(np.int64), return_index=True)
@@ -52,6 +62,7 @@ class AxisTrace:
             column("command_velocity"),
             column("additive_velocity"),
             column("actual_torque") if "actual_torque" in names else None,
+            mean_velocity,
         )
 
     def __len__(self) -> int:

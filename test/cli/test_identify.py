@@ -145,6 +145,24 @@ def test_the_drive_of_z_is_a_first_order_lag_of_3_ms(tmp_path):
     assert pasted.kv == 71.43 and pasted.feedforward.time_constant == 0.003
 
 
+@pytest.mark.parametrize("velocity", [[], ["S-0-0040"]])
+@pytest.mark.parametrize("torque", [[], ["S-0-0084"]])
+def test_whatever_the_telegram_carries_back_the_drive_is_the_same(velocity, torque, tmp_path):
+    """Without S-0-0040 the actual velocity is the way of the last cycle, half a cycle older."""
+    telegram = {"commands": ["S-0-0036"], "feedback": ["S-0-0051", *velocity, *torque]}
+    antr = {"telegram": telegram, "v_reso_num": 10000, "v_reso_denom": 10000}
+    machine = changed_mill(tmp_path / "sercos.yaml", "z", kenngr={"antr_typ": 2}, antr=antr)
+    path = tmp_path / "z.yaml"
+    result = call("identify", "dynamics", "z", "--machine", machine, "-o", path)
+    assert result.exit_code == 0, result.output
+    lines = {line[:20].strip(): line[20:] for line in result.stdout.splitlines()}
+    assert float(lines["time constant Ta"].split()[0]) == pytest.approx(3.0, abs=0.01)
+    assert lines["dead time"] == "0 cycles (0 ms)"
+    gear = yaml.safe_load(path.read_text())["/z"]["ros__parameters"]["getriebe"]["0"]
+    assert ("load" in gear) == bool(torque)
+    assert gear.get("load", 0.0015) == pytest.approx(0.0015, rel=0.005)
+
+
 def test_the_cascaded_drive_of_x_with_friction(tmp_path):
     path, recording = tmp_path / "x.yaml", tmp_path / "x.mcap"
     result = call("identify", "dynamics", "x", "--machine", MILL, "-o", path, "--record", recording)

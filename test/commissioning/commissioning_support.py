@@ -17,7 +17,7 @@ COLUMNS = (
 )
 
 
-def trace_of(axis="x", cycle=None, cycle_time=T, **columns):
+def trace_of(axis="x", cycle=None, cycle_time=T, mean_velocity=False, **columns):
     """A recording with the given columns; those that are left out are 0, actual values are the set ones."""
     length = len(next(iter(columns.values())))
     rows = {name: np.zeros(length) for name in COLUMNS} | {"cycle": np.arange(length)}
@@ -27,7 +27,8 @@ def trace_of(axis="x", cycle=None, cycle_time=T, **columns):
     rows |= columns
     if cycle is not None:
         rows["cycle"] = cycle
-    return AxisTrace.of_rows(axis, cycle_time, {name: row for name, row in rows.items() if row is not None})
+    given = {name: row for name, row in rows.items() if row is not None}
+    return AxisTrace.of_rows(axis, cycle_time, given, mean_velocity=mean_velocity)
 
 
 def stribeck(speed, *, coulomb=120.0, static=180.0, stribeck_velocity=4.0, viscous=0.3):

@@ -44,6 +44,36 @@ def test_time_constant_and_dead_time_come_back(time_constant, dead):
     assert fit.delay == pytest.approx(time_constant + dead * T, rel=1e-4, abs=2e-5)
 
 
+def way_of_a_cycle(command, time_constant, dead=0):
+    """Mean velocities of the cycles before, from the positions of the continuous lag before an integrator."""
+    late = np.concatenate([np.zeros(dead), command[: len(command) - dead]])
+    system = ([1.0], [time_constant, 1.0, 0.0] if time_constant else [1.0, 0.0])
+    position = lsim(system, late, np.arange(len(command)) * T, interp=False)[1]
+    return np.diff(position, prepend=0.0) / T
+
+
+@pytest.mark.parametrize("time_constant", [0.0, 0.0003, 0.001, 0.003, 0.0077, 0.05])
+@pytest.mark.parametrize("dead", [0, 1, 20])
+def test_a_velocity_that_is_the_way_of_the_last_cycle_gives_the_same(time_constant, dead):
+    """A telegram without actual velocity. Taken as momentary, 3 ms would be 3.5 ms."""
+    command = ramps()
+    actual = way_of_a_cycle(command, time_constant, dead)
+    fit = fit_drive(trace_of(set_velocity=command, actual_velocity=actual, mean_velocity=True))
+    assert fit.dead_cycles == dead
+    assert fit.time_constant == pytest.approx(time_constant, rel=1e-4, abs=2e-5)
+    assert (fit.gain, fit.misfit) == (pytest.approx(1.0, rel=1e-6), pytest.approx(0.0, abs=1e-5))
+
+
+@pytest.mark.parametrize("mean_velocity", [False, True])
+def test_a_recording_that_begins_in_motion(mean_velocity):
+    """The velocity at its beginning is unknown, and found with the lag."""
+    command = np.tile(ramps(), 2)
+    actual = (way_of_a_cycle if mean_velocity else response)(command, 0.004)
+    for first in (130, 410, 460):
+        trace = trace_of(set_velocity=command[first:], actual_velocity=actual[first:], mean_velocity=mean_velocity)
+        assert fit_drive(trace).time_constant == pytest.approx(0.004, rel=1e-4)
+
+
 def test_a_wrong_velocity_scaling_shows_as_gain():
     fit = fit_drive(recording(0.003, gain=0.95))
     assert (fit.gain, fit.time_constant) == (pytest.approx(0.95), pytest.approx(0.003, rel=1e-4))

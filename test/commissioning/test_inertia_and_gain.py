@@ -12,8 +12,11 @@ from cnc_ptp.commissioning.gain import propose_gain, spectral_radius, stability_
 from cnc_ptp.commissioning.inertia import fit_inertia
 
 
-def torque_run(k=0.05, load=0.0, noise=0.0, quantum=0.0, friction=stribeck):
-    """Smooth motions with M = k·a + friction(v) + load; the torque of a row is that of the cycle before it."""
+def torque_run(k=0.05, load=0.0, noise=0.0, quantum=0.0, friction=stribeck, mean_velocity=False):
+    """Smooth motions with M = k·a + friction(v) + load; the torque of a row is that of the cycle before it.
+
+    The velocity is the momentary one, or that of a telegram without it: the way of the cycle before it.
+    """
     fine = 20
     time = np.arange(3000 * fine) * T / fine
     velocity = 200.0 * np.sin(2 * np.pi * time) * np.sin(0.5 * np.pi * time) ** 2
@@ -22,16 +25,21 @@ def torque_run(k=0.05, load=0.0, noise=0.0, quantum=0.0, friction=stribeck):
     position = cumulative_trapezoid(velocity, time, initial=0.0)
     mean = np.concatenate([[0.0], torque.reshape(-1, fine).mean(axis=1)[:-1]])
     mean = mean + noise * np.random.default_rng(2).standard_normal(len(mean))
-    actual = velocity[::fine]
+    actual = np.diff(position[::fine], prepend=0.0) / T if mean_velocity else velocity[::fine]
     if quantum:
         actual = np.round(actual / quantum) * quantum
     return trace_of(
-        set_velocity=velocity[::fine], actual_velocity=actual, actual_position=position[::fine], actual_torque=mean
+        set_velocity=velocity[::fine],
+        actual_velocity=actual,
+        actual_position=position[::fine],
+        actual_torque=mean,
+        mean_velocity=mean_velocity,
     )
 
 
-def test_inertia_and_friction_come_back():
-    fit = fit_inertia(torque_run(friction=lambda v: 120.0 + 0.3 * v, load=-60.0))
+@pytest.mark.parametrize("mean_velocity", [False, True])
+def test_inertia_and_friction_come_back(mean_velocity):
+    fit = fit_inertia(torque_run(friction=lambda v: 120.0 + 0.3 * v, load=-60.0, mean_velocity=mean_velocity))
     assert fit.torque_per_acceleration == pytest.approx(0.05, rel=1e-3)
     assert fit.coulomb == pytest.approx(120.0, rel=1e-3)
     assert fit.viscous == pytest.approx(0.3, rel=1e-2)
