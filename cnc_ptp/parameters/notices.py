@@ -6,6 +6,7 @@ from cnc_ptp.parameters.control_notices import control_notices
 from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.spindle_view import control_limit, is_open_loop
 
 SERCOS = 2
 ANALOGUE_DRIVES = (1, 5, 6)
@@ -64,6 +65,7 @@ def corrected_resolution(parameters: ParameterSet) -> Iterator[str]:
 def spindle_notices(parameters: ParameterSet) -> Iterator[str]:
     if parameters.kind == "spindle":
         yield from homing_mode(parameters)
+        yield from rapid_traverse(parameters)
         yield from step_in_the_curve(parameters)
 
 
@@ -79,6 +81,19 @@ def homing_mode(parameters: ParameterSet) -> Iterator[str]:
     if drive in ANALOGUE_DRIVES and not parameters.number("P-AXIS-00156"):
         text = f"should be 1 for a spindle with the analogue drive type {drive}; it is homed without a cam"
         yield line(parameters, "P-AXIS-00156", (), text)
+
+
+def rapid_traverse(parameters: ParameterSet) -> Iterator[str]:
+    """The way to a position is measured, which ends at the control limit."""
+    for gear in parameters.used_indexes("getriebe"):
+        if is_open_loop(parameters) or parameters.kernel("P-AXIS-00209", gear) <= control_limit(parameters, gear):
+            continue
+        text = (
+            f"value {parameters.number('P-AXIS-00209', gear)} is above the control limit "
+            f"{parameters.number('P-AXIS-00220', gear)} (0.001°/s) of P-AXIS-00220 getriebe[{gear}].vb_regelgrenze; "
+            "positionings are that much slower"
+        )
+        yield line(parameters, "P-AXIS-00209", (gear,), text)
 
 
 def step_in_the_curve(parameters: ParameterSet) -> Iterator[str]:

@@ -54,7 +54,17 @@ class PositionCommands:
         speed = spindle.gear.positioning_speed if speed_rpm is None else speed_rpm * DEG_S_PER_RPM
         job = Job("orient", deque([Step.POSITION]), goal=float(position_deg), speed=speed, direction=direction)
         spindle.jobs.start(cycle, job)
-        return None
+        return self._slower(speed)
+
+    def _slower(self, speed: float) -> str | None:
+        """What people hear of a positioning speed in °/s that tool or control limit do not permit."""
+        limits = self._spindle.limits
+        used = limits.max_positioning_speed
+        if speed <= used:
+            return None
+        rpm, used_rpm = speed / DEG_S_PER_RPM, f"{used / DEG_S_PER_RPM:g} rpm"
+        bound = "maximum of the tool" if used == limits.max_speed else f"control limit {used_rpm} (P-AXIS-00220)"
+        return f"spindle {self._spindle.name}: speed {rpm:g} rpm is above the {bound}, {used_rpm} is used"
 
     def _require_position(self, command: str) -> None:
         if not self._spindle.parameters.has_position:
@@ -63,6 +73,7 @@ class PositionCommands:
 
     def _require_reference(self, command: str, cycle: int) -> None:
         spindle = self._spindle
+        spindle.watch_loop(cycle, spindle.motion(cycle)[1])
         if not (spindle.referenced or spindle.parameters.automatic_homing):
             spindle.fail(command, cycle, NO_REFERENCE, NEEDS_REFERENCE)
 
@@ -97,7 +108,7 @@ class PositionCommands:
             job.steps[0] = Step.POSITION
             job.goal, job.speed = spindle.gear.change_position, spindle.gear.positioning_speed
         spindle.jobs.start(cycle, job)
-        return None
+        return self._slower(job.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
         """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""

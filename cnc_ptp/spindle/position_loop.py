@@ -16,6 +16,8 @@ from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 
+ROUNDING = 1e-12
+"""Part of the control limit by which a speed that was cut to it may be above."""
 Cycles = tuple[list[float], list[float], list[float], list[int]]
 """Actual positions, actual speeds, following errors, drive outputs."""
 
@@ -37,6 +39,7 @@ class PositionLoop:
     def use_gear(self, gear: GearParameters, drive: Drive) -> None:
         """The parameters of a gear count from now on; `drive` has its measuring system."""
         self._gear = gear
+        self._control_limit = gear.control_limit * (1.0 + ROUNDING)
         self.control = ControlLoop(
             gear.control,
             cycle_time=self._cycle_time,
@@ -95,14 +98,14 @@ class PositionLoop:
 
     def passes_limit(self, set_speed: float) -> bool:
         """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
-        if self.beyond_limit or self._parameters.open_loop or abs(set_speed) <= self._gear.control_limit:
+        if self.beyond_limit or self._parameters.open_loop or abs(set_speed) <= self._control_limit:
             return False
         self.beyond_limit = True
         return True
 
     def comes_back(self, set_speed: float) -> bool:
         """True when the speed has come below the control limit: the measuring system counts again."""
-        if not self.beyond_limit or abs(set_speed) > self._gear.control_limit:
+        if not self.beyond_limit or abs(set_speed) > self._control_limit:
             return False
         self.beyond_limit = False
         self._last_position = None
@@ -149,7 +152,7 @@ class PositionLoop:
         """Up to this amount of speed nothing opens or closes the loop, at none while it is open only for a while."""
         if self.velocity_control or self.beyond_limit:
             return -inf
-        return inf if self._parameters.open_loop else self._gear.control_limit
+        return inf if self._parameters.open_loop else self._control_limit
 
     def watches(self, *, on: bool) -> bool:
         """True while the following error is monitored; `on` is False without power."""

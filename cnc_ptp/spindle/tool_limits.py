@@ -23,9 +23,11 @@ class ToolLimits:
 class SpindleLimits:
     """Speeds and ramps that count in one gear with one tool."""
 
-    def __init__(self, gear: GearParameters, tool: ToolLimits) -> None:
+    def __init__(self, gear: GearParameters, tool: ToolLimits, *, control_limit: float = inf) -> None:
+        """`control_limit` in °/s: above it there is no measured position to go to (2.4.2)."""
         self.gear = gear
         self.max_speed = min(gear.max_speed, tool.max_speed)
+        self.max_positioning_speed = min(self.max_speed, control_limit)
         self.min_speed = min(tool.min_speed, self.max_speed)
         self.acceleration = min(gear.acceleration, tool.max_acceleration)
         self.deceleration = min(gear.deceleration, tool.max_acceleration)
@@ -43,4 +45,5 @@ class SpindleLimits:
 
     def positioning(self, speed: float) -> PositioningLimits:
         """Limits of a positioning at `speed`; the minimum of the tool does not count there."""
-        return PositioningLimits(min(speed, self.max_speed), self.acceleration, self.deceleration, self.ramp)
+        used = min(speed, self.max_positioning_speed)
+        return PositioningLimits(used, self.acceleration, self.deceleration, self.ramp)

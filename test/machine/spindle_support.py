@@ -19,8 +19,8 @@ UP, DOWN = 36_000.0, 40_000.0
 """Acceleration and deceleration of the spindle of config/mill.yaml, °/s²."""
 
 
-def bench_of(parameters: SpindleParameters, **options: Any) -> UnitBench:
-    return UnitBench(SpindleUnit(parameters, cycle_time=CYCLE_TIME, **options))
+def bench_of(parameters: SpindleParameters, *, count: int = 10, **options: Any) -> UnitBench:
+    return UnitBench(SpindleUnit(parameters, cycle_time=CYCLE_TIME, **options), count=count)
 
 
 def two_gears(*, gear: int = 1, second: Mapping[str, Any] | None = None, **changes: Any) -> SpindleParameters:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from machine_support import UnitBench, spindle_bench, spindle_parameters
-from spindle_support import RPM, StuckDrive, bench_of, first_cycle, states
+from spindle_support import RPM, StuckDrive, bench_of, first_cycle, states, two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import SpindleBit, SpindleMode
@@ -174,6 +174,65 @@ def test_the_control_limit_opens_the_loop_and_loses_the_reference() -> None:
         for a, b in zip(column["actual_speed_rpm"][closed:], column["actual_speed_rpm"][closed + 1 :], strict=False)
     ]
     assert max(map(abs, steps)) < 10.0  # the loop closes without a jerk of the drive
+
+
+@pytest.mark.parametrize("limit", [400.0, 401.7, 433.3, 1234.567, 1799.999])
+@pytest.mark.parametrize("direction", ["cw", "ccw"])
+def test_a_positioning_stays_below_the_control_limit(limit: float, direction: str) -> None:
+    """Above it the measuring system fails: the spindle would not stop where it was told."""
+    bench = spindle_bench(control_limit=limit, homing_speed=100.0)
+    shown = f"{limit / RPM:g} rpm"
+    assert bench.accepted("orient", position_deg=90.0, speed_rpm=300.0, direction=direction) == (
+        f"spindle s: speed 300 rpm is above the control limit {shown} (P-AXIS-00220), {shown} is used"
+    )
+    bench.run(1500)
+    assert max(map(abs, bench.column("set_speed_rpm"))) == pytest.approx(limit / RPM)
+    assert set(bench.column("referenced")) == {True} and bench.column("in_position")[-1]
+    assert bench.unit.spindle.loop.encoder % 360.0 == pytest.approx(90.0, abs=0.06)
+
+
+def test_a_rapid_traverse_above_the_control_limit_and_an_override_above_100() -> None:
+    bench = spindle_bench(control_limit=600.0, homing_speed=100.0, positioning_speed=900.0, max_override_percent=200.0)
+    shown = "speed 150 rpm is above the control limit 100 rpm (P-AXIS-00220), 100 rpm is used"
+    assert bench.accepted("orient", position_deg=90.0) == f"spindle s: {shown}"
+    bench.accepted("set_override", percent=200.0)
+    bench.run(600)
+    assert bench.accepted("orient", position_deg=0.0, speed_rpm=90.0) == ""
+    bench.run(600)
+    assert max(map(abs, bench.column("set_speed_rpm"))) == pytest.approx(100.0)
+    assert set(bench.column("referenced")) == {True} and bench.column("in_position")[-1]
+
+
+def test_the_change_position_is_approached_below_the_control_limit() -> None:
+    bench = bench_of(two_gears(change_position=90.0, control_limit=400.0, homing_speed=100.0, positioning_speed=1800.0))
+    text = "speed 300 rpm is above the control limit 66.6667 rpm (P-AXIS-00220), 66.6667 rpm is used"
+    assert bench.accepted("select_gear", stage=2) == f"spindle s: {text}"
+    bench.run(800)
+    assert bench.last.gear_request == 2 and bench.last.referenced[-1]
+    assert bench.unit.spindle.loop.encoder == pytest.approx(90.0, abs=0.06)
+
+
+@pytest.mark.parametrize("command", ["orient", "select_gear"])
+def test_a_positioning_in_the_cycle_that_passes_the_control_limit_homes_first(command: str) -> None:
+    bench = bench_of(two_gears(control_limit=LIMIT, zero_pulse=33.25), count=1)
+    bench.accepted("start", direction="cw", speed_rpm=2000.0)
+    while bench.unit.spindle.motion(bench.cycle)[1] <= LIMIT:
+        bench.run(1)
+    assert bench.last.referenced[-1]
+    bench.accepted(command, **({"position_deg": 100.0, "speed_rpm": 200.0} if command == "orient" else {"stage": 2}))
+    bench.run(2500)
+    assert S.HOMING in states(bench) and bench.last.referenced[-1] and bench.state == S.STANDSTILL
+    assert bench.unit.spindle.loop.encoder % 360.0 == pytest.approx(133.25 if command == "orient" else 33.25, abs=0.06)
+
+
+def test_a_spindle_that_does_not_home_by_itself_has_lost_its_reference_in_that_cycle() -> None:
+    bench = spindle_bench(count=1, control_limit=LIMIT, automatic_homing=False)
+    bench.accepted("start", direction="cw", speed_rpm=2000.0)
+    while bench.unit.spindle.motion(bench.cycle)[1] <= LIMIT:
+        bench.run(1)
+    assert bench.refused("orient", position_deg=100.0) == (
+        f"P-ERR-24007 spindle s: orient refused: {NO_REFERENCE}; the spindle is in ErrorStop"
+    )
 
 
 def test_below_the_control_limit_m05_simply_stops() -> None:

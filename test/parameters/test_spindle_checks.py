@@ -128,6 +128,16 @@ def test_the_sign_of_b3_in_the_manuals_hyperbola_makes_a_step() -> None:
     )
 
 
+def test_a_rapid_traverse_above_the_control_limit() -> None:
+    (text,) = warnings("getriebe.0: {vb_eilgang: 250000, dynamik.vb_max: 48000000}")
+    assert text == (
+        "m.yaml:2:49: P-AXIS-00209 getriebe[0].vb_eilgang of /s: value 250000 is above the control limit 200000 (0.001°/s) "
+        "of P-AXIS-00220 getriebe[0].vb_regelgrenze; positionings are that much slower"
+    )
+    assert warnings("getriebe.0: {vb_eilgang: 250000, vb_regelgrenze: 250000, dynamik.vb_max: 48000000}") == ()
+    assert warnings("getriebe.0: {vb_eilgang: 250000, vb_regelgrenze: 0, dynamik.vb_max: 48000000}") == ()
+
+
 @pytest.mark.parametrize(
     ("parameters", "texts"),
     [
