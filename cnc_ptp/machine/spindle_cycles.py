@@ -188,10 +188,17 @@ class SpindleCycles:
             return False
         if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
             return False
-        if spindle.parameters.speed_time and not spindle.speed_was_reached:
+        if self._patience_ends(last_cycle):
             return False
         limit = spindle.loop.undisturbed_speed
         return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
+
+    def _patience_ends(self, last_cycle: int) -> bool:
+        """The time for reaching the speed (P-MACH-00050) is over until `last_cycle`, if it is not reached before."""
+        spindle = self._spindle
+        patience = spindle.parameters.speed_time / spindle.cycle_time
+        late = bool(patience) and spindle.cycles_since_end(last_cycle) >= patience
+        return late and not spindle.speed_was_reached and spindle.state == S.CONTINUOUS_MOTION
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
         """The same as `_cycle` for such cycles; up to a following error too large."""

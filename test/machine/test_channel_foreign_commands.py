@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -21,7 +22,7 @@ from channel_spindle_support import (
     told_at,
 )
 from machine_support import MachineBench
-from spindle_support import two_gears
+from spindle_support import RPM, UP, StuckDrive, two_gears
 
 from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.parameters import MachineParameters, Synchronisation
@@ -188,6 +189,20 @@ def test_override_0_makes_the_path_wait() -> None:
     bench = run("M3 S10000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
     assert bench.errors() == [] and moves(bench)[0][0] > 2000
     assert speed_at_the_move(bench) == pytest.approx(10000.0, rel=0.1)
+
+
+def test_a_speed_that_never_comes_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A drive that makes 400 rpm at most; 5 s (P-MACH-00050) after the setpoint has got to 1000 rpm."""
+    drive = StuckDrive(stuck=False, limit=400.0 * RPM)
+    monkeypatch.setattr("cnc_ptp.machine.spindle_unit.make_drive", lambda *_: drive)
+    bench = run("M3 S1000\nG01 X20 F6000", machine_of(channel_spindle("S", "s", 4, MVS_SVS)))
+    text = "spindle s: speed 1000 rpm was not reached 5 s after the setpoint got there (P-AXIS-00217, P-MACH-00050)"
+    assert bench.errors() == [
+        f"P-ERR-24013 {text}; the spindle stops on its ramp (ErrorStop)",
+        "P-ERR-22012 channel channel: s is in error P-ERR-24013; the path stops on its ramp and the program is aborted",
+    ]
+    up = 1000.0 * RPM / UP
+    assert bench.events[0].cycle == math.ceil(10 + (up + 5.0) * 1000.0 - 1e-6) and moves(bench) == []
 
 
 # ---------------------------------------------------------------- what the channel itself commands anew
