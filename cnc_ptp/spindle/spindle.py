@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import copysign
+from math import copysign, inf
 from typing import NoReturn
 
 from cnc_ptp.axis.states import AxisStateCode as S
@@ -49,7 +49,7 @@ class Spindle:
         self.has_tool_limits = False
         self.next_tool: ToolLimits | None = None
         """Counts when the spindle next leaves standstill."""
-        self.limits = SpindleLimits(self.gear, self.tool)
+        self.limits = self._limits()
         self.loop = PositionLoop(parameters, self.gear, drive, cycle_time=cycle_time)
         self._make_drive = make_drive
         self._table = plan_speed(parameters.start_position, 0.0, 0.0, self.limits.ramp)
@@ -165,7 +165,7 @@ class Spindle:
         if self.next_tool is not None and self.state == S.STANDSTILL and self.motion(cycle)[1] == 0.0:
             self.tool, self.next_tool = self.next_tool, None
             self.has_tool_limits = self.tool != ToolLimits()
-            self.limits = SpindleLimits(self.gear, self.tool)
+            self.limits = self._limits()
 
     def use_gear(self, cycle: int, stage: int) -> None:
         """Parameters of another gear; the spindle stands where the encoder shows it."""
@@ -173,9 +173,14 @@ class Spindle:
         self.gear = self.parameters.gears[stage]
         self.loop.use_gear(self.gear, self._make_drive(self.gear, self.loop.control.drive.position))
         self.loop.count_from(actual)
-        self.limits = SpindleLimits(self.gear, self.tool)
+        self.limits = self._limits()
         if self.parameters.has_position:
             self.place(cycle, actual)
+
+    def _limits(self) -> SpindleLimits:
+        """An open loop has no control limit."""
+        control_limit = inf if self.parameters.open_loop else self.gear.control_limit
+        return SpindleLimits(self.gear, self.tool, control_limit=control_limit)
 
     # position loop
 
