@@ -54,11 +54,11 @@ class CouplingCommands:
 
     # couple
 
-    def do_couple(self, cycle: int, *, master: str, factor: float, **group: Any) -> None:
+    def do_couple(self, cycle: int, *, master: str, factor: float, **group: Any) -> str | None:
         """Slave position = `factor` · master position + offset of the coupling positions. Refusals: 23041 – 23046."""
         self._check("couple", master, **group)
         self._check_factor("couple", factor)
-        self._couple(cycle, LinearCoupling(master, float(factor)))
+        return self._couple("couple", cycle, LinearCoupling(master, float(factor)))
 
     def do_couple_gantry(
         self,
@@ -67,18 +67,20 @@ class CouplingCommands:
         master: str,
         difference_limit: float,
         **group: Any,
-    ) -> None:
+    ) -> str | None:
         """Factor 1 with a limit (mm, deg) on how far the actual positions may leave their distance."""
         self._check("couple_gantry", master, **group)
         self._check_positive("couple_gantry", difference_limit=difference_limit)
-        self._couple(cycle, LinearCoupling(master, 1.0, difference_limit=float(difference_limit)))
+        coupling = LinearCoupling(master, 1.0, difference_limit=float(difference_limit))
+        return self._couple("couple_gantry", cycle, coupling)
 
-    def do_couple_cyclic(self, cycle: int, *, master: str, acc_bound: float, **group: Any) -> None:
+    def do_couple_cyclic(self, cycle: int, *, master: str, acc_bound: float, **group: Any) -> str | None:
         """The factor comes cyclically; the slave's acceleration stays within `acc_bound` (mm/s²)."""
         self._check("couple_cyclic", master, **group)
         if not acc_bound > 0.0:
             self._axis.refuse("couple_cyclic", BAD_ACC_BOUND, f"acc_bound = {acc_bound} must be greater than 0")
-        self._couple(cycle, CyclicCoupling(master, float(acc_bound), cycle_time=self._cycle_time))
+        coupling = CyclicCoupling(master, float(acc_bound), cycle_time=self._cycle_time)
+        return self._couple("couple_cyclic", cycle, coupling)
 
     def do_couple_flying_saw(
         self,
@@ -89,7 +91,7 @@ class CouplingCommands:
         master_position: float,
         slave_position: float,
         **others: Any,
-    ) -> None:
+    ) -> str | None:
         """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on."""
         command, axis = "couple_flying_saw", self._axis
         group = {name: others.pop(name) for name in GROUP if name in others}
@@ -98,7 +100,7 @@ class CouplingCommands:
         limits = axis.checks.dynamics(command, others)
         axis.checks.soft_limits(command, slave_position)
         positions = {"master_position": float(master_position), "slave_position": float(slave_position)}
-        self._couple(cycle, FlyingSaw(master, float(factor), limits=limits, **positions))
+        return self._couple(command, cycle, FlyingSaw(master, float(factor), limits=limits, **positions))
 
     def do_couple_cam(
         self,
@@ -113,7 +115,7 @@ class CouplingCommands:
         slave_offset: float | None = None,
         file: str = "",
         **group: Any,
-    ) -> None:
+    ) -> str | None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
         self._check(command, master, **group)
@@ -127,7 +129,7 @@ class CouplingCommands:
             slave_scaling=float(slave_scaling),
             slave_offset=slave_offset,
         )
-        self._couple(cycle, coupling)
+        return self._couple(command, cycle, coupling)
 
     def do_change_cam(self, cycle: int, *, table: Sequence[Sequence[float]], file: str = "") -> None:
         """A new table for a cyclic cam; it comes in when the master passes the seam of the one in work."""
@@ -180,12 +182,25 @@ class CouplingCommands:
             if not value > 0.0:
                 self._axis.refuse(command, BAD_COUPLING_VALUE, f"{name} = {value} must be greater than 0")
 
-    def _couple(self, cycle: int, coupling: Coupling) -> None:
+    def _couple(self, command: str, cycle: int, coupling: Coupling) -> str | None:
+        """A warning when slave and master are not equally late."""
         axis = self._axis
         axis.absorb(cycle)
         axis.coupling = coupling
         axis.has_been_stopped = False
         axis.state = S.SYNCHRONIZED_MOTION
+        return self._delay_warning(command, coupling.master)
+
+    def _delay_warning(self, command: str, master: str) -> str | None:
+        axis = self._axis
+        own, of_master = axis.parameters.control.delay_cycles, self._axes[master].control.delay_cycles
+        if own == of_master:
+            return None
+        apart = f"{abs(own - of_master) * self._cycle_time * 1000.0:g} ms · velocity"
+        return (
+            f"axis {axis.name}: {command}: its position controller works {own} cycles behind the setpoint, that of the "
+            f"master {master} {of_master} (P-COMP-00044, P-AXIS-00165); in motion they are {apart} apart"
+        )
 
     # factors
 

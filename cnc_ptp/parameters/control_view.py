@@ -152,6 +152,14 @@ class ControlParameters:
     friction: FrictionParameters
     modulo_error: ModuloError
     plant: PlantParameters
+    path_delay_cycles: int = 0
+    """What other axes of the same path need: this one is to be late by as much."""
+
+    @property
+    def delay_cycles(self) -> int:
+        """Cycles by which the position controller works behind the setpoint, so that others can look ahead."""
+        lead = self.feedforward.lead_cycles if self.feedforward.mode else 0
+        return max(lead, self.friction.reversal_lookahead if self.friction.permitted else 0, self.path_delay_cycles)
 
 
 def control_view(parameters: ParameterSet, gear: int, cycle_time: float) -> ControlParameters:

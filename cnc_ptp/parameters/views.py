@@ -1,8 +1,8 @@
 """The parameters as the kernel uses them: typed, in kernel units (mm, °, s), one frozen class a kind of unit."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from cnc_ptp.parameters import notices
 from cnc_ptp.parameters.channel_view import ChannelParameters, channel_view
@@ -94,18 +94,35 @@ class MachineParameters:
 def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> MachineParameters:
     of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
     cycle_time = machine.kernel("P-MACH-00001")
+    channels = {unit.node: channel_view(unit, sets) for unit in of_kind["channel"]}
+    axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
     return MachineParameters(
         cycle_time_us=int(machine.number("P-MACH-00001")),
         block_cycles=int(machine.number("P-MACH-00002")),
         watchdog_ms=int(machine.number("P-MACH-00003")),
         life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
         handshake_timeout_ms=int(machine.number("P-MACH-00060")),
-        channels={unit.node: channel_view(unit, sets) for unit in of_kind["channel"]},
-        axes={unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]},
+        channels=channels,
+        axes=equally_late(axes, channels.values()),
         spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
         warnings=tuple(notices.machine_warnings(sets, cycle_time)),
         sets={"machine": machine, **sets},
     )
+
+
+def equally_late(
+    axes: Mapping[str, AxisParameters], channels: Iterable[ChannelParameters]
+) -> dict[str, AxisParameters]:
+    """The axes, those of a channel behind delay lines of the same length: the longest that one of them needs.
+
+    Otherwise they would be off their path by v · T for each cycle between them.
+    """
+    late = dict(axes)
+    for channel in channels:
+        path = [axes[axis.node] for axis in channel.axes]
+        cycles = max((axis.control.delay_cycles for axis in path), default=0)
+        late |= {axis.name: replace(axis, control=replace(axis.control, path_delay_cycles=cycles)) for axis in path}
+    return late
 
 
 def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from machine_support import MILL, MachineBench
+from machine_support import MILL, ROOT, MachineBench
 
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.parameters import ChannelSpindle, MachineParameters, Synchronisation
+from cnc_ptp.parameters import ChannelSpindle, MachineParameters, Synchronisation, load_machine
 
 RESETS = [(unit, "reset_feedforward", {}) for unit in ("x", "y", "z", "s")]
 Sent = tuple[str, str, dict[str, object]]
@@ -68,6 +69,18 @@ def test_nothing_waits_for_feedforward() -> None:
     assert bench.column("channel", "path_velocity")[1] > 0.0
     on = [record.cycle for record in bench.records if record.command == "set_feedforward"]
     assert on == [10, 10, 10]
+
+
+def test_a_look_ahead_of_one_axis_does_not_bend_the_path() -> None:
+    """P-COMP-00044 = 4 on x alone: both axes are 4 cycles late, the circle stays round."""
+    text = (ROOT / "config" / "mill.yaml").read_text(encoding="utf-8")
+    text = text.replace("frict_comp:\n      mode: 3", "frict_comp:\n      reversal_lookahead: 4\n      mode: 3", 1)
+    program = "%P\nG135\nG04 0.1\nG02 X0 Y0 I25 J0 F2000\nM30"
+    bench = run(program, load_machine(text, "mill.yaml"))
+    x, y = (np.array(bench.column(axis, "actual_position")) for axis in "xy")
+    assert np.ptp(np.hypot(x - 25.0, y)) < 2e-3
+    late = np.array(bench.column("x", "following_error"))
+    assert np.abs(late).max() == pytest.approx(2000.0 / 60.0 * 0.004, rel=0.02)
 
 
 def test_selection_and_weights_of_one_block_are_one_command_an_axis() -> None:

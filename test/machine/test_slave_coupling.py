@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from itertools import permutations
 from typing import Any
 
@@ -54,6 +55,25 @@ def test_the_offset_is_that_of_the_coupling_positions() -> None:
     assert_linear(bench, "x", "y", 0.75, -105.0, begin=begin)
     assert bench.position("y") == pytest.approx(1395.0, abs=1e-9)
     assert bench.last("y").master == "x" and bench.last("x").master == ""
+
+
+def test_a_slave_that_is_not_as_late_as_its_master() -> None:
+    """P-COMP-00044 of the master alone: the slave is ahead by so many cycles, and says so; equally late it is silent."""
+    machine = axes_named("x", "y", "z")
+    friction = replace(machine.axes["x"].control.friction, permitted=True, reversal_lookahead=4)
+    for name in "xz":
+        control = replace(machine.axes[name].control, friction=friction)
+        machine = replace(machine, axes={**machine.axes, name: replace(machine.axes[name], control=control)})
+    bench = SlaveBench(machine=machine)
+    assert bench.do("z", "couple", master="x", factor=1.0) == ""
+    assert bench.do("y", "couple", master="x", factor=1.0) == (
+        "axis y: couple: its position controller works 0 cycles behind the setpoint, that of the master x 4 "
+        "(P-COMP-00044, P-AXIS-00165); in motion they are 4 ms · velocity apart"
+    )
+    bench.send_all([start()])
+    bench.run(1.0)
+    x, y = bench.values("x", "actual_position"), bench.values("y", "actual_position")
+    assert np.abs(y - x).max() == pytest.approx(0.004 * np.abs(bench.values("x", "set_velocity")).max(), rel=0.05)
 
 
 def test_the_slave_has_the_profile_of_the_closed_form() -> None:

@@ -108,6 +108,22 @@ def test_machine_of_defaults() -> None:
     )
 
 
+def test_axes_of_a_channel_are_equally_late() -> None:
+    """P-COMP-00044 of x, P-AXIS-00165 of y (a PROFIdrive with feedforward): the larger one for both; q is none of it."""
+    path = "'0': {log_achs_nr: 1}, '1': {log_achs_nr: 2}"
+    sections = (
+        f"/ch: {{ros__parameters: {{gruppe: {{'0': {{achs_anzahl: 2, achse: {{{path}}}}}}}}}}}",
+        "/x: {ros__parameters: {kopf: {achs_nr: 1}, lr_param: {frict_comp: 1}, frict_comp: {reversal_lookahead: 2}}}",
+        "/y: {ros__parameters: {kopf: {achs_nr: 2}, kenngr: {antr_typ: 3}, vorsteuer: {vorsteuerung: VEL, "
+        "shift_time: 3}}}",
+        "/q: {ros__parameters: {kopf: {achs_nr: 3}}}",
+    )
+    axes = load(*sections, channels=["ch"], axes=["x", "y", "q"]).axes
+    assert {name: view.control.delay_cycles for name, view in axes.items()} == {"x": 3, "y": 3, "q": 0}
+    alone = load(*sections[1:], axes=["x", "y", "q"]).axes
+    assert {name: view.control.delay_cycles for name, view in alone.items()} == {"x": 2, "y": 3, "q": 0}
+
+
 def test_resolution_of_the_feedforward_manual() -> None:
     """Page 20: 2^20 increments, gear 3, 5 mm a revolution: 62.91456 increments per 0.1 µm."""
     text = "antr.feed_const_num: 50000, getriebe.0: {incr_per_rev: 1048576, gear_fact_num: 3, gear_fact_denom: 1}"
