@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from statistics import mean
 
 import numpy as np
 
@@ -67,12 +68,20 @@ def resources(run: GraphRun) -> Iterator[Figure]:
     yield Figure(f"{len(nodes)} nodes together", sum(cores[name] for name in nodes), "cores", goal=1.0, at_most=True)
     for name in [*nodes, SUPERVISOR]:
         yield Figure(f"  {name}", cores[name], "cores")
+    yield from spindle_beside_axis({name: cores[name] for name in nodes})
     yield Figure("others on this computer meanwhile", run.others / run.wall, "cores")
     if not run.pss_mb:
         return
     yield Figure(f"memory of {len(nodes)} nodes (PSS)", sum(run.pss_mb[name] for name in nodes), "MB")
     for name in [*nodes, SUPERVISOR]:
         yield Figure(f"  {name}", run.pss_mb[name], "MB")
+
+
+def spindle_beside_axis(cores: Mapping[str, float]) -> Iterator[Figure]:
+    """Processor time of the spindle nodes over that of the axis nodes, means of the same run."""
+    spindles, axes = ([cores[name] for name in cores if name.startswith(kind)] for kind in ("spindle", "axis"))
+    if spindles and axes:
+        yield Figure("a spindle node, in axis nodes", mean(spindles) / mean(axes), "", goal=1.0, at_most=True)
 
 
 def failures(run: GraphRun) -> Iterator[Figure]:

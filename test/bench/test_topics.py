@@ -5,22 +5,24 @@ from pathlib import Path
 
 import pytest
 
-from bench import control, graph, interpreter, motion, offline, recording
+from bench import control, graph, interpreter, motion, offline, recording, spindles
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
 from bench.jobs import MACHINE, long_program
 from cnc_ptp.machine.job import check_program
+from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 
 SMALLEST = Effort(runs=1, size=0.002, graph_seconds=1.0)
 
 
-@pytest.mark.parametrize("topic", [interpreter, motion, control, recording, offline])
+@pytest.mark.parametrize("topic", [interpreter, motion, control, recording, offline, spindles])
 def test_topic_yields_figures(topic) -> None:
     said: list[str] = []
     figures = list(topic.figures(SMALLEST, said.append))
     assert said
-    assert len({figure.name for figure in figures}) == len(figures) >= 3
+    assert len({figure.name for figure in figures}) == len(figures) >= 2
     assert all(math.isfinite(figure.value) and figure.unit for figure in figures)
 
 
@@ -48,16 +50,32 @@ def test_figures_of_a_watched_run() -> None:
         startup=2.0,
         wall=10.0,
         cycles=10_000,
-        cpu={"axis x": 1.0, "clock": 0.5, SUPERVISOR: 4.0},
-        pss_mb={"axis x": 50.0, "clock": 40.0, SUPERVISOR: 60.0},
+        cpu={"axis x": 1.0, "axis y": 2.0, "spindle s": 1.2, "clock": 0.5, SUPERVISOR: 4.0},
+        pss_mb={"axis x": 50.0, "axis y": 50.0, "spindle s": 50.0, "clock": 40.0, SUPERVISOR: 60.0},
         blocks=3000,
         lateness_p99_ms=12.0,
     )
     figures = {(figure.name, figure.unit): figure for figure in [*graph.real_time(run), *graph.resources(run)]}
-    assert figures["2 nodes together", "cores"].value == pytest.approx(0.15)
-    assert figures["memory of 2 nodes (PSS)", "MB"].value == 90.0
+    assert figures["4 nodes together", "cores"].value == pytest.approx(0.47)
+    assert figures["memory of 4 nodes (PSS)", "MB"].value == 190.0
+    assert figures["a spindle node, in axis nodes", ""].value == pytest.approx(0.8)
     assert figures["block lateness p99", "ms"].met is False
-    assert [figure.value for figure in graph.rate("free run", run)] == [1000.0, pytest.approx(0.55)]
+    assert [figure.value for figure in graph.rate("free run", run)] == [1000.0, pytest.approx(0.87)]
+
+
+def test_without_spindles_nothing_is_set_beside_an_axis() -> None:
+    assert list(graph.spindle_beside_axis({"axis x": 1.0, "clock": 0.5})) == []
+
+
+def test_sixteen_spindles_turn_as_the_job_says(tmp_path: Path) -> None:
+    machine = read_machine(spindles.machine_file(tmp_path / "spindles.yaml"))
+    for speeds, hold in ((spindles.STEADY, 5.0), (spindles.RAMPS, 0.8)):
+        offline_machine = OfflineMachine(machine, build_units(machine, scenario=spindles.entries(speeds, hold, 1.0)))
+        for _ in range(50):
+            outputs = offline_machine.tick()
+        turning = [outputs[f"s{n}"].block.set_speed_rpm[-1] for n in range(1, spindles.SPINDLES + 1)]
+        assert min(map(abs, turning)) >= 500.0 and min(turning) < 0.0 < max(turning)
+        assert not any(event.severity for output in outputs.values() for event in output.events)
 
 
 def test_failures_are_told() -> None:
