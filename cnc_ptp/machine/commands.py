@@ -124,7 +124,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "home": {**FOR},
         "set_override": {"percent": NUMBER},
         "suppress_override": {"on": SWITCH},
-        "select_gear": {"stage": INTEGER, **FOR},
+        "select_gear": {"stage": INTEGER, "resume": OPTIONAL_SWITCH, **FOR},
         "gear_changed": {},
         "set_limits": {
             "max_speed_rpm": OPTIONAL_POSITIVE,

@@ -149,7 +149,10 @@ class SpindleOutput:
     # gears
 
     def gear_change(self, change: GearChange, feedback: Mapping[str, Block]) -> tuple[Command, Wait] | None:
-        """The command for another gear and the wait for it; None where the spindle is in that gear."""
+        """The command for another gear and the wait for it; None where the spindle is in that gear.
+
+        What was turning stays at rest then: the words of the block say what comes after.
+        """
         node = self[change.spindle].node
         block = feedback.get(node)
         if isinstance(block, SpindleBlock):
@@ -161,7 +164,7 @@ class SpindleOutput:
         if change.spindle in self._directions:
             self._standing_after_gear.add(change.spindle)
         wait = Wait(node, Condition.GEAR, change.stage)
-        return self._command(node, "select_gear", stage=change.stage), wait
+        return self._command(node, "select_gear", stage=change.stage, resume=False), wait
 
     # synchronous operation
 

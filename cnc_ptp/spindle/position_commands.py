@@ -89,9 +89,10 @@ class PositionCommands:
             spindle.refuse("home", HOMING_FROM_MOTION, reason)
         spindle.jobs.start(cycle, Job("home", deque([Step.SEARCH, Step.HALT])))
 
-    def do_select_gear(self, cycle: int, *, stage: int) -> str | None:
+    def do_select_gear(self, cycle: int, *, stage: int, resume: bool = True) -> str | None:
         """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear and says `gear_changed`.
 
+        An endless rotation goes on after that, unless `resume` is False: who commands says how it goes on.
         Nothing happens for the gear in use. Refused with 24003 and 24014; 24007 as for `orient`.
         """
         spindle = self._spindle
@@ -101,7 +102,7 @@ class PositionCommands:
             spindle.refuse("select_gear", NO_SUCH_GEAR, f"gear {stage} has no record getriebe[i]; there are {known}")
         if stage == spindle.gear.stage:
             return f"spindle {spindle.name}: gear {stage} is selected already"
-        rotation = spindle.programmed_speed if spindle.state == S.CONTINUOUS_MOTION else 0.0
+        rotation = spindle.programmed_speed if resume and spindle.state == S.CONTINUOUS_MOTION else 0.0
         job = Job("select_gear", deque([Step.HALT, Step.SHIFT]), stage=stage, resume=rotation)
         if spindle.parameters.has_position:
             self._require_reference("select_gear", cycle)

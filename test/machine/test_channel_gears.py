@@ -76,6 +76,16 @@ def test_a_gear_change_while_turning_goes_on_with_the_new_speed() -> None:
     assert min(bench.column("s", "set_speed_rpm")) == pytest.approx(-900.0)
 
 
+@pytest.mark.parametrize(
+    ("block", "highest"), [("M40 S50", 50.0), ("M40 M5", 0.0), ("M40 M19 S.POS=10 S20", 20.0), ("M40 M4 S60", 60.0)]
+)
+def test_after_the_gear_the_old_speed_is_never_taken_up_again(block: str, highest: float) -> None:
+    bench = run(f"M42 S3000 M3\nG04 0.5\n{block}\nG04 1", gear_machine(automatic=False))
+    assert bench.errors() == [] and stages(bench) == [3, 1]
+    back = bench.column("s", "gear").index(1, 1000)
+    assert max(map(abs, bench.column("s", "set_speed_rpm")[back:])) == pytest.approx(highest)
+
+
 def test_only_a_new_gear_while_turning_keeps_the_speed() -> None:
     bench = run("M41 S750 M03\nM42\nG04 0.5", gear_machine(automatic=False))
     assert stages(bench) == [2, 3] and told(bench)[-2] == ("start", {"direction": "cw", "speed_rpm": 750.0})

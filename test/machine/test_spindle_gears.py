@@ -91,6 +91,15 @@ def test_an_endless_rotation_goes_on_after_the_change() -> None:
     assert each.column("set_speed_rpm")[-1] == -1000.0 and each.column("gear")[-1] == 2
 
 
+def test_an_endless_rotation_that_is_not_to_go_on() -> None:
+    each = bench()
+    each.accepted("start", direction="ccw", speed_rpm=1000.0)
+    each.run(400)
+    each.accepted("select_gear", stage=2, resume=False)
+    each.run(500)
+    assert at_rest_in_the_new_gear(each)
+
+
 def test_a_rotation_that_is_too_fast_for_the_new_gear_does_not_go_on() -> None:
     each = bench()
     each.accepted("start", direction="cw", speed_rpm=9000.0)
