@@ -8,6 +8,7 @@ import pytest
 from channel_spindle_support import (
     MANUAL,
     MNE_SNS,
+    MNS_SNS,
     MOS,
     MVS_SLM,
     MVS_SLP,
@@ -40,6 +41,38 @@ def with_m(machine: MachineParameters = MILL, **types: Synchronisation) -> Machi
     channel = machine.channels["channel"]
     known = {**channel.m_functions, **{int(name[1:]): value for name, value in types.items()}}
     return replace(machine, channels={"channel": replace(channel, m_functions=known)})
+
+
+# ---------------------------------------------------------------- all types
+
+
+@pytest.mark.parametrize("acknowledged_at", [0.95, 0.953, 1.2])
+@pytest.mark.parametrize(
+    ("kind", "first_held"),
+    [(NO_SYNCH, 4), (MOS, 4), (MVS_SVS, 0), (MVS_SNS, 1), (MNS_SNS, 1), (MNE_SNS, 1), (MVS_SLM, 2), (MVS_SLP, 3)],
+)
+def test_the_path_moves_in_the_block_after_the_acknowledgement(
+    kind: Synchronisation, first_held: int, acknowledged_at: float
+) -> None:
+    """Of four motions of 10 mm, two in rapid traverse, one machining and one after #EXPL SYN, which is the first that
+    waits for a PLC that acknowledges late; the ones before are over, and no setpoint moves until then.
+    """
+    bench = MachineBench(
+        "%P\nG00 X10 M03 S600\nX20\nG01 X30 F9000\n#EXPL SYN\nG00 X40\nM30",
+        MANUAL + f"- {{at: {acknowledged_at}, to: plc, do: acknowledge, id: 1}}",
+        machine=mill(m3=kind | PLC_INFO),
+    ).run()
+    acknowledgement = told_at(bench, "acknowledge", "plc" if first_held == 4 else "channel")
+    x = bench.column("x", "set_position")
+    assert x[-1] == pytest.approx(40.0) and not bench.errors()
+    if first_held == 4:
+        assert x[acknowledgement] == pytest.approx(40.0)
+        return
+    still = first_held * 10.0
+    begin = x.index(x[acknowledgement])
+    assert x[begin] == pytest.approx(still) and begin <= acknowledgement - 100 * (first_held > 0)
+    assert set(x[begin : acknowledgement + 1]) == {x[begin]}
+    assert x[acknowledgement + 1] > x[acknowledgement]
 
 
 # ---------------------------------------------------------------- late synchronisation

@@ -40,6 +40,16 @@ def test_ramps_are_textbook_motion(speed: float, wanted: float) -> None:
     assert profile.state_at(10.0)[1] == wanted
 
 
+@pytest.mark.parametrize("wanted", [72_000.0, -72_000.0, 333.3])
+def test_every_cycle_of_a_long_ramp_is_exact(wanted: float) -> None:
+    """1e-9 relative, as along the curves, 80 s at 1 ms."""
+    profile = plan_speed(0.0, -0.5 * wanted, wanted, RAMP)
+    for k in range(0, 80_000, 7):
+        p, v, _ = profile.state_at(k * 0.001)
+        way, speed = expected(0.0, -0.5 * wanted, wanted, k * 0.001)
+        assert v == pytest.approx(speed, rel=1e-9, abs=1e-9) and p == pytest.approx(way, rel=1e-9, abs=1e-6)
+
+
 def test_the_end_speed_is_exact_and_a_speed_that_is_reached_makes_no_ramp() -> None:
     draw = random.Random(3)
     for _ in range(200):
