@@ -69,21 +69,34 @@ def velocity_loop(plant: PlantParameters, cycle_time: float) -> Loop:
 def torque_loop(control: ControlParameters, cycle_time: float) -> Loop:
     """Mechanics that take torques, with the velocity controller of the NC around them.
 
-    In accelerations: a = Kp (e + z'), z' = z + e T/Tn once a cycle, e = u - v.
+    In accelerations: a = Kp (e + z'), z' = z + e T/Tn once a cycle, e = u - v. Without an integral part (Tn = 0) there
+    is no z; where the telegram has no actual velocity, v is the way of the last cycle, and the position before a state.
     """
     plant, drive = control.plant, control.drive
     mechanics = part(velocity_controlled(plant, gain=0.0) * cycle_time, (X, V, M), I)
     gain = drive.velocity_gain * control.scaling.torque_per_acceleration / plant.torque_per_acceleration
     share = cycle_time / drive.velocity_integral_time if drive.velocity_integral_time else 0.0
     inner = delayed(mechanics, plant.bus_delay_cycles)
-    states = len(inner.held)
-    step, held = np.zeros((states + 1, states + 1)), np.zeros(states + 1)
-    step[:states, :states] = inner.step
-    step[:states, 1] -= gain * (1.0 + share) * inner.held
-    step[:states, states] = gain * inner.held
-    step[states, 1], step[states, states] = -share, 1.0
-    held[:states], held[states] = gain * (1.0 + share) * inner.held, share
-    return Loop(step, held)
+    velocity = np.eye(len(inner.held))[1]
+    if not (drive.ideal or "velocity" in drive.feedback):
+        inner = with_position_before(inner)
+        velocity = np.zeros(len(inner.held))
+        velocity[[0, -1]] = 1.0 / cycle_time, -1.0 / cycle_time
+    held = gain * (1.0 + share) * inner.held
+    step = inner.step - np.outer(held, velocity)
+    if share == 0.0:
+        return Loop(step, held)
+    integral = np.append(-share * velocity, 1.0)
+    return Loop(np.vstack((np.column_stack((step, gain * inner.held)), integral)), np.append(held, share))
+
+
+def with_position_before(loop: Loop) -> Loop:
+    """The same with the position of the cycle before as the last state."""
+    states = len(loop.held)
+    step = np.zeros((states + 1, states + 1))
+    step[:states, :states] = loop.step
+    step[states, 0] = 1.0
+    return Loop(step, np.append(loop.held, 0.0))
 
 
 def part(matrix: Matrix, states: tuple[int, ...], command: int) -> Loop:

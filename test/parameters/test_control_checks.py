@@ -232,6 +232,21 @@ def test_notice(section: str) -> None:
     assert notices(section) == [NOTICES[section]]
 
 
+def test_a_proportional_velocity_controller_in_the_nc_is_stable() -> None:
+    assert notices("antr: {telegram: {commands: [S-0-0080]}}, lr_param: {velocity_integral_time: 0}") == []
+
+
+def test_a_velocity_from_positions_makes_a_torque_loop_unstable_earlier() -> None:
+    """c = 1.995: the limit is 2000 · (2 - c)/(2 + c) = 2.503 1/s; with 606C it is 2000 1/s."""
+    section = 'kenngr: {{antr_typ: 8}}, antr: {{telegram: {{commands: ["6071"], feedback: ["6064"{}]}}}}, '
+    section += 'lr_param: {{velocity_gain: 1995, velocity_integral_time: 0}}, getriebe: {{"0": {{kv: 5000}}}}'
+    assert notices(section.format(", 606C")) == []
+    assert notices(section.format("")) == [
+        "P-AXIS-00099 getriebe[0].kv of /x: gain 50 1/s makes the position loop unstable, with this drive the limit is "
+        "2.503 1/s"
+    ]
+
+
 def test_a_torque_scaling_without_reference_does_not_matter_where_no_torque_goes_out() -> None:
     assert notices("antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: VEL | ACC}") == []
 
