@@ -45,21 +45,24 @@ class Orders:
         return self.taken - open_orders - (self.source == PLC)
 
     def check(self, command: str, source: str, master: str) -> None:
-        """Raises 24012 while the spindle is at work for another source, 24022 for a slave."""
+        """Raises 24012 while the spindle is at work for another source, 24022 for a slave.
+
+        What comes from the PLC waits for its turn, a stop not even that.
+        """
         if master and command != "stop":
             reason = f"the spindle is a slave of {master}; command {master} or decouple the spindle"
             self._spindle.refuse(command, SLAVE_LOCKED, reason)
-        if source and self.source and source != self.source:
+        if source and source != PLC and self.source and source != self.source:
             reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
             self._spindle.refuse(command, AT_WORK, reason)
 
     def must_wait(self, command: str, source: str) -> bool:
-        """During a gear change all commands wait; those of the PLC for each other, too. A stop never waits."""
+        """During a gear change all commands wait; those of the PLC for whatever is in work, too. A stop never waits."""
         if command == "stop":
             return False
         if self._spindle.jobs.changes_gear or (self.waiting and source != PLC and self.waiting[0].source != PLC):
             return True
-        return source == PLC and (bool(self.waiting) or self.source == PLC)
+        return source == PLC and bool(self.waiting or self.source)
 
     def add(self, order: Order) -> None:
         self.waiting.append(order)
@@ -74,7 +77,7 @@ class Orders:
         """The order whose turn it is."""
         if not self.waiting or self._spindle.jobs.changes_gear:
             return None
-        if self.waiting[0].source == PLC and self.source == PLC:
+        if self.waiting[0].source == PLC and self.source:
             return None
         return self.waiting.popleft()
 

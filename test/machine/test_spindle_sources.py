@@ -56,6 +56,42 @@ def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     bench.accepted(command, **arguments, source="two")
 
 
+@pytest.mark.parametrize("source", ["", "plc"])
+def test_a_stop_of_plc_and_people_is_never_refused(source: str) -> None:
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    bench.accepted("orient", position_deg=90.0, source="plc")
+    bench.run(50)
+    assert bench.accepted("stop", **({"source": source} if source else {})) == ""
+    bench.run(200)
+    assert bench.state == S.STANDSTILL and bench.last.source == "" and not any(bench.column("in_position"))
+    assert acknowledged(bench)[-1][0] == acknowledged(bench)[-1][1]
+
+
+def test_a_command_of_the_plc_takes_its_turn_after_the_channel() -> None:
+    """Page 11: sequentially; the channel has its speed first."""
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    waits = "spindle s: orient waits until what is in work is done"
+    assert bench.accepted("orient", position_deg=90.0, source="plc") == waits
+    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    bench.run(800)
+    reached = first_cycle(bench, "speed_reached", bool, 5)
+    assert bench.column("set_speed_rpm")[reached] == pytest.approx(1000.0, rel=0.05)
+    assert bench.column("state").index(S.DISCRETE_MOTION) == 10 * (reached // 10 + 1)
+    assert bench.column("in_position")[-1] and acknowledged(bench) == [(1, 0), (1, 1)]
+
+
+def test_a_channel_waits_for_nobody_behind_the_plc() -> None:
+    """What a channel says meanwhile is part of its own work; the PLC still comes after it."""
+    bench = spindle_bench()
+    bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
+    bench.accepted("start", direction="ccw", speed_rpm=300.0, source="plc")
+    assert bench.accepted("set_speed", speed_rpm=1500.0, source="one") == ""
+    bench.run(1000)
+    assert max(bench.column("set_speed_rpm")) == 1500.0 and bench.column("set_speed_rpm")[-1] == -300.0
+
+
 def test_the_same_channel_and_people_may_change_what_is_in_work() -> None:
     bench = spindle_bench()
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
