@@ -22,6 +22,13 @@ def check_output(output: str | None, **inputs: str | None) -> None:
             raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}; nothing was started")
 
 
+def check_page(output: str, **inputs: str | None) -> None:
+    """Raises CncError 27030 for a report that is no .html file or would overwrite an input: recording="…"."""
+    check_output(output, **inputs)
+    if Path(output).suffix.lower() != ".html":
+        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending; nothing was started")
+
+
 def write_output(output: str, content: str | bytes) -> None:
     """Writes a file. Raises CncError 27030."""
     data = content.encode() if isinstance(content, str) else content

@@ -6,12 +6,14 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
+from cnc_ptp.commands.output_file import check_page
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.report import write_report
 
 
 def report(recording: str, output: str) -> int:
     """Writes the page; tells when the recording was cut off."""
+    check_page(output, recording=recording)
     recorded = read_recording(recording)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
     write_report(recorded, output, program=program_of(recorded), date=made)

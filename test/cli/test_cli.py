@@ -233,6 +233,21 @@ def test_report_and_replay_of_a_cut_off_recording(program, tmp_path):
     assert "note: the file ends at offset" in replay.output
 
 
+def test_a_report_overwrites_neither_its_recording_nor_other_files(tmp_path):
+    recording = tmp_path / "a.mcap"
+    call("simulate", PTP, "--duration", "0.1", "--record", recording)
+    (tmp_path / "link.html").symlink_to(recording)
+    before = recording.read_bytes(), MILL.read_bytes()
+    own = f"P-ERR-27030 {{}} would overwrite the recording {recording}; nothing was started\n"
+    page = "P-ERR-27030 {}: a report is an .html page by its ending; nothing was started\n"
+    for output, text in ((tmp_path / "link.html", own), (recording, own), (MILL, page), (tmp_path / "a.htm", page)):
+        result = call("report", recording, "-o", output)
+        assert (result.exit_code, result.stderr, result.stdout) == (2, text.format(output), "")
+    assert (recording.read_bytes(), MILL.read_bytes()) == before
+    assert not (tmp_path / "a.htm").exists()
+    assert call("report", recording, "-o", tmp_path / "A.HTML").exit_code == 0
+
+
 def test_params_shows_one_or_all():
     assert "P-AXIS-00099  getriebe[i].kv" in call("params", "P-AXIS-00099").output
     assert "P-CHAN-00056" in call("params").output
