@@ -17,6 +17,7 @@ from cnc_ptp.parameters.control_view import (
 )
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.telegram import ANALOGUE
 
 MANUAL_POSITION_DELAY = 10
 MONITORING_TYPES = (1, 2, 4)
@@ -88,21 +89,35 @@ def following_error(parameters: ParameterSet) -> Iterator[str]:
 
 
 def open_loop(parameters: ParameterSet) -> Iterator[str]:
+    """The open position loop is for spindles (TF5200 spindle 2.2.4)."""
     mode = parameters.text("P-AXIS-00320")
-    if mode.startswith("OPEN_POSITION_LOOP"):
+    if mode.startswith("OPEN_POSITION_LOOP") and parameters.kind != "spindle":
         yield line(parameters, "P-AXIS-00320", (), f"mode {mode} is accepted, but the position loop stays closed")
 
 
+def used_gears(parameters: ParameterSet) -> list[int]:
+    """Records that can be in work: of an axis the one after start-up, of a spindle all that there are."""
+    start = int(parameters.number("P-AXIS-00079")) - 1
+    return sorted({start, *parameters.used_indexes("getriebe")}) if parameters.kind == "spindle" else [start]
+
+
 def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
-    """A velocity command that is too short for the largest velocity of the axis."""
-    gear = int(parameters.number("P-AXIS-00079")) - 1
+    """A velocity command that is too short for the largest velocity; a DA word has a scale in each gear."""
+    gears = used_gears(parameters)
+    if int(parameters.number("P-AXIS-00020")) not in ANALOGUE:
+        gears = [max(gears, key=lambda gear: parameters.kernel("P-AXIS-00212", gear))]
+    for gear in gears:
+        yield from velocity_range_of(parameters, gear, cycle_time)
+
+
+def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[str]:
     control = control_view(parameters, gear, cycle_time)
     drive, scaling = control.drive, control.scaling
     if drive.ideal or drive.interface != "velocity":
         return
     scale, number = (scaling.analogue, "P-AXIS-00129") if drive.analogue else (scaling.velocity, "P-AXIS-00206")
     bits = drive.command_bits["velocity"]
-    limit = (2 ** (bits - 1) - 1) / scale if scale else 0.0
+    limit = largest_digit(bits) / scale if scale else 0.0
     largest = parameters.kernel("P-AXIS-00212", gear)
     if largest > limit:
         unit = "mm/s" if parameters.axis_type == "T" else "°/s"
@@ -112,9 +127,18 @@ def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]
         yield line(parameters, number, (gear,) if drive.analogue else (), text)
 
 
+def largest_digit(bits: int) -> int:
+    return 2 ** (bits - 1) - 1
+
+
 def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """Unstable position loops; a gain of the drive (P-SIM-00019) is told once."""
+    lines = (text for gear in used_gears(parameters) for text in gain_of(parameters, gear, cycle_time))
+    yield from dict.fromkeys(lines)
+
+
+def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[str]:
     """An unstable position loop, of the NC or of the drive (P-SIM-00019)."""
-    gear = int(parameters.number("P-AXIS-00079")) - 1
     control = control_view(parameters, gear, cycle_time)
     interface = control.drive.interface
     in_drive = interface in ("position", "lag")

@@ -232,6 +232,43 @@ def test_notice(section: str) -> None:
     assert notices(section) == [NOTICES[section]]
 
 
+def spindle_notices(s: str) -> list[str]:
+    text = f"/machine: {{ros__parameters: {{spindles: [s]}}}}\n/s: {{ros__parameters: {{{s}}}}}\n"
+    return [warning.split(": ", 1)[1] for warning in load_machine(text, "m.yaml").warnings]
+
+
+def test_all_gears_of_a_spindle_are_looked_at() -> None:
+    """The second one is unstable, and too fast for the DA word."""
+    gears = 'getriebe: {"0": {kv: 5000}, "1": {kv: 300000}}'
+    assert spindle_notices(gears) == [
+        "P-AXIS-00099 getriebe[1].kv of /s: gain 3000 1/s makes the position loop unstable, with this drive the limit "
+        "is 2000 1/s"
+    ]
+    drive = "kenngr: {antr_typ: 1, achs_mode: 4, ref_ohne_nocken: 1}"
+    speeds = 'getriebe: {"0": {dynamik: {vb_max: 200000}}, "1": {dynamik: {vb_max: 300000}}}'
+    assert spindle_notices(f"{drive}, {speeds}") == [
+        "P-AXIS-00129 getriebe[1].multi_gain_z of /s: the 16 bits of the command carry 273.058 °/s, less than the 300 "
+        "°/s of P-AXIS-00212"
+    ]
+
+
+def test_a_gain_of_the_drive_is_told_once() -> None:
+    assert spindle_notices(
+        'kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}, getriebe: {"0": {}, "1": {kv: 9}}'
+    ) == [
+        "P-SIM-00019 simulation.drive_kv of /s: gain 3000 1/s makes the position loop unstable, with this drive the "
+        "limit is 2000 1/s"
+    ]
+
+
+def test_a_bus_has_one_velocity_scale_for_all_gears() -> None:
+    speeds = 'getriebe: {"0": {dynamik: {vb_max: 300000}}, "1": {dynamik: {vb_max: 200000}}}'
+    assert spindle_notices(f"kenngr: {{antr_typ: 8}}, antr: {{v_reso_num: 0}}, {speeds}") == [
+        "P-AXIS-00206 antr.v_reso_num of /s: the 32 bits of the command carry 0 °/s, less than the 300 °/s of "
+        "P-AXIS-00212"
+    ]
+
+
 def test_a_proportional_velocity_controller_in_the_nc_is_stable() -> None:
     assert notices("antr: {telegram: {commands: [S-0-0080]}}, lr_param: {velocity_integral_time: 0}") == []
 
