@@ -19,14 +19,13 @@ from cnc_ptp.commissioning.friction import friction_curve
 from cnc_ptp.commissioning.friction_table import friction_table
 from cnc_ptp.commissioning.gain import propose_gain
 from cnc_ptp.commissioning.inertia import fit_inertia
-from cnc_ptp.commissioning.timing import Timing, always
+from cnc_ptp.commissioning.timing import DYNAMIC_STEADY, Timing
 from cnc_ptp.commissioning.trace import AxisTrace
 
 REST = 0.4
 """Seconds of rest before each motion."""
 DYNAMIC_SPEEDS = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Parts of the highest velocity: ramps of different length."""
-DYNAMIC_STEADY = always(0.05)
 OWN_POSITION_LOOP = {
     "none": "is virtual, there is no drive to identify (P-AXIS-00020)",
     "position": "its drive closes the position loop itself and is commanded positions (P-AXIS-00020)",

@@ -38,6 +38,8 @@ NEGLIGIBLE = 1e-12
 AFTERWARDS = 0.1
 """Seconds after the end of a motion that still belong to it."""
 MOST_CYCLES = 20_000
+CORRELATED = 0.02
+"""Seconds after which what the model does not explain is taken for independent."""
 LARGEST_MISFIT = 0.2
 """Misfit above which the drive is no first-order lag at all."""
 LEAST_CHANGE = 0.05
@@ -48,6 +50,7 @@ LEAST_CHANGE = 0.05
 class DriveFit:
     """What was found. Times in s.
 
+    `deviation`: two standard deviations of Ta with this dead time. `speed`: the highest, mm/s (deg/s).
     `misfit`: root mean square of (simulated - recorded velocity) over that of (velocity - its mean).
     `alternatives`: (Ta, dead cycles) that fit nearly as well, as lag and dead time look alike in smooth motions.
     """
@@ -59,6 +62,8 @@ class DriveFit:
     cycles: int
     cycle_time: float
     alternatives: tuple[tuple[float, int], ...] = ()
+    deviation: float = 0.0
+    speed: float = 0.0
 
     @property
     def dead_time(self) -> float:
@@ -102,8 +107,30 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
             "the torque limit in the recording",
         )
     gain = _errors(pieces, pole, dead)[1]
-    time_constant = _time_constant(pole, trace.cycle_time)
-    return DriveFit(time_constant, dead, gain, misfit, len(actual), trace.cycle_time, alternatives)
+    cycle_time, time_constant = trace.cycle_time, _time_constant(pole, trace.cycle_time)
+    deviation = _deviation(pieces, time_constant, dead, cycle_time)
+    speed = float(np.max(np.abs(actual)))
+    return DriveFit(time_constant, dead, gain, misfit, len(actual), cycle_time, alternatives, deviation, speed)
+
+
+def _deviation(pieces: Sequence[_Piece], time_constant: float, dead: int, cycle_time: float) -> float:
+    """Two standard deviations of Ta, s, from residuals r and their slopes d = dr/dTa: 2·sqrt(Σ(Σrd)²) / Σd².
+
+    The inner sum is over CORRELATED seconds, in which neighbouring residuals may be alike (sandwich estimator of Newey
+    and West for blocks): friction leaves residuals that are no noise.
+    """
+    step = max(0.01 * time_constant, 0.5 * cycle_time if time_constant < cycle_time else 0.0)
+    residuals, more = (
+        _residuals(pieces, _pole(lag, cycle_time), dead)[0] for lag in (time_constant, time_constant + step)
+    )
+    slopes = (more - residuals) / step
+    blocks = np.arange(0, len(residuals), max(1, round(CORRELATED / cycle_time)))
+    scores = np.add.reduceat(residuals * slopes, blocks)
+    return 2.0 * math.sqrt(float(np.sum(scores * scores))) / float(np.sum(slopes * slopes))
+
+
+def _pole(time_constant: float, cycle_time: float) -> float:
+    return math.exp(-cycle_time / time_constant) if time_constant > 0.0 else 0.0
 
 
 def _time_constant(pole: float, cycle_time: float) -> float:
@@ -198,7 +225,7 @@ def _residuals(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[Array,
     for piece in pieces:
         usable = len(piece.actual) - dead - 1
         if usable > 0:
-            free = pole ** np.arange(min(usable, _cycles_to_rest(pole)))
+            free: Array = np.power(pole, np.arange(min(usable, _cycles_to_rest(pole))), dtype=np.float64)
             forced.append(_without(free, lfilter(_response(pole, piece), [1.0, -pole], piece.command[:usable])))
             wanted.append(_without(free, piece.actual[dead + 1 :]))
     simulated, target = np.concatenate(forced), np.concatenate(wanted)

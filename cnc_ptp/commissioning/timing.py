@@ -33,3 +33,7 @@ class Timing:
 def always(seconds: float) -> Seconds:
     """The same for all speeds."""
     return lambda _speed: seconds
+
+
+DYNAMIC_STEADY = always(0.05)
+"""Of motions that show the dynamics of a drive."""

@@ -1,5 +1,6 @@
 """The command line as users and scripts meet it: help, exit statuses, refusals word for word."""
 
+import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -64,6 +65,29 @@ def test_wrong_usage_is_status_2(arguments):
     result = call(*arguments)
     assert result.exit_code == 2
     assert "Usage:" in result.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "option"),
+    [
+        (["simulate", MILL, "--duration"], "duration"),
+        (["run", MILL, "--duration"], "duration"),
+        (["replay", "a.mcap", "--rate"], "rate"),
+    ],
+)
+def test_what_is_no_number_is_wrong_usage(arguments, option):
+    for value in ("nan", "-NaN"):
+        result = call(*arguments, value)
+        assert result.exit_code == 2
+        assert result.stderr.endswith(f"\nError: Invalid value for '--{option}': {value} is not a number.\n")
+
+
+@pytest.mark.parametrize(("node", "option"), [("clock", "duration"), ("player", "rate")])
+def test_what_is_no_number_is_wrong_usage_of_a_node(node, option):
+    command = importlib.import_module(f"cnc_ptp.nodes.{node}").command
+    result = CliRunner().invoke(command, [str(MILL), f"--{option}", "nan"])
+    assert result.exit_code == 2
+    assert result.stderr.endswith(f"\nError: Invalid value for '--{option}': nan is not a number.\n")
 
 
 def test_simulate_tells_a_summary(program, tmp_path):

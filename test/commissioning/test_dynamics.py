@@ -86,6 +86,29 @@ def test_noise_on_the_velocity_does_not_bend_the_result(noise):
     assert fit.delay == pytest.approx(0.010, abs=0.1e-3 * noise)
 
 
+def test_the_deviation_is_twice_the_least_that_noise_allows():
+    """Cramér-Rao: the standard deviation of Ta under white noise s is s / |dv/dTa|, the norm over all cycles."""
+    noise, command = 2.0, np.tile(ramps(), 4)
+    fit = fit_drive(recording(0.010, noise=noise, command=command))
+    slope = (response(command, 0.0101) - response(command, 0.0099)) / 0.0002
+    assert fit.deviation == pytest.approx(2.0 * noise / np.linalg.norm(slope), rel=0.3)
+
+
+def test_nineteen_of_twenty_results_are_within_their_deviation():
+    command, inside = np.tile(ramps(), 2), 0
+    actual = response(command, 0.010)
+    for seed in range(20):
+        noise = np.random.default_rng(seed).standard_normal(len(command))
+        fit = fit_drive(trace_of(set_velocity=command, actual_velocity=actual + noise))
+        inside += abs(fit.delay - 0.010) <= fit.deviation + 1e-9
+    assert inside >= 18
+
+
+@pytest.mark.parametrize("time_constant", [0.0, 0.0003, 0.02])
+def test_a_perfect_fit_has_no_deviation(time_constant):
+    assert fit_drive(recording(time_constant)).deviation < 1e-5
+
+
 def test_the_additive_velocity_is_part_of_the_command():
     command = ramps()
     actual = response(command, 0.004)
