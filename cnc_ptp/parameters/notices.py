@@ -6,7 +6,7 @@ from cnc_ptp.parameters.control_notices import control_notices
 from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
-from cnc_ptp.parameters.spindle_view import control_limit, is_open_loop
+from cnc_ptp.parameters.spindle_view import control_limit, feedback, is_open_loop
 
 SERCOS = 2
 ANALOGUE_DRIVES = (1, 5, 6)
@@ -78,9 +78,14 @@ def homing_mode(parameters: ParameterSet) -> Iterator[str]:
     elif drive in ANALOGUE_DRIVES and no_automatic:
         text = f"0x100 (no automatic homing) should not be set for the analogue drive type {drive}"
         yield line(parameters, "P-AXIS-00015", (), text)
-    if drive in ANALOGUE_DRIVES and not parameters.number("P-AXIS-00156"):
+    if drive in ANALOGUE_DRIVES and has_position(parameters) and not parameters.number("P-AXIS-00156"):
         text = f"should be 1 for a spindle with the analogue drive type {drive}; it is homed without a cam"
         yield line(parameters, "P-AXIS-00156", (), text)
+
+
+def has_position(parameters: ParameterSet) -> bool:
+    """False: the spindle cannot be homed."""
+    return feedback(parameters) == "POSITION"
 
 
 def rapid_traverse(parameters: ParameterSet) -> Iterator[str]:

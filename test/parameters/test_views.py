@@ -250,6 +250,14 @@ def test_warnings() -> None:
     )
 
 
+def test_preferred_direction_is_for_spindles() -> None:
+    text = "/c: {ros__parameters: {kenngr: {achs_typ: ACHSTYP_ROTATOR, vorz_richtung: 1}}}"
+    assert load(text, axes=["c"]).warnings == (
+        "m.yaml:2:75: P-AXIS-00224 kenngr.vorz_richtung of /c: accepted, but without effect in this version",
+    )
+    assert load(text.replace("/c", "/s").replace("ROTATOR", "SPINDEL"), spindles=["s"]).warnings == ()
+
+
 def test_a_machine_can_go_to_another_process() -> None:
     machine = load("/x: {ros__parameters: {getriebe.0.kv: 5}}", channels=["ch"], axes=["x"], spindles=["s"])
     copy = pickle.loads(pickle.dumps(machine))

@@ -439,6 +439,12 @@ def test_stop_takes_the_way_of_its_deceleration() -> None:
     assert (stood - stop) * CYCLE_TIME == pytest.approx(sqrt(2.0 * 1000.0 / UP), abs=CYCLE_TIME)
 
 
+def test_machine_files_of_the_examples_warn_of_nothing() -> None:
+    machines = [file for file in EXAMPLES.iterdir() if "/machine:" in file.read_text(encoding="utf-8")]
+    assert len(machines) == 16
+    assert {warning for file in machines for warning in read_machine(file).warnings} == set()
+
+
 def test_every_example_is_run() -> None:
     here = Path(__file__)
     texts = [file.read_text(encoding="utf-8") for file in (here, *(here.parents[1] / "figures").glob("*spindle*.py"))]
