@@ -10,9 +10,8 @@ import click
 
 from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
+from cnc_ptp.number_range import DURATION, RATE
 
-LONGEST_RUN = 1e7
-DURATION = click.FloatRange(0.0, LONGEST_RUN)
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
 
@@ -81,9 +80,7 @@ def check_command(**options: Any) -> None:
 @RECORDING
 @click.option("--verify", is_flag=True, help="Re-run the kernel and compare every setpoint to the bit (the default).")
 @click.option("--publish", is_flag=True, help="Put the recorded topics back on the graph.")
-@click.option(
-    "--rate", type=click.FloatRange(min=0.0, min_open=True), default=1.0, show_default=True, help="Speed of --publish."
-)
+@click.option("--rate", type=RATE, default=1.0, show_default=True, help="Speed of --publish.")
 def replay_command(**options: Any) -> None:
     """Re-run the kernel from a recording, or publish the recording again."""
     from cnc_ptp.commands.replay import replay

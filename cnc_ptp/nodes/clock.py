@@ -15,6 +15,7 @@ from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
+from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 POLL = 0.02
@@ -171,7 +172,7 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 
 @click.command()
 @arguments.MACHINE
-@click.option("--duration", type=click.FloatRange(0.0, 1e7), help="Seconds; without it the run ends by itself.")
+@click.option("--duration", type=DURATION, help="Seconds; without it the run ends by itself.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @click.option("--free-run", is_flag=True, help="As fast as all nodes report their blocks.")
 def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:

@@ -13,6 +13,7 @@ from rclpy.node import Node
 
 from cnc_ptp.nodes import arguments, process
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, EVENT, EVENTS
+from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.reader import RawMessage, Recorded, iter_messages, read_recording
 
 DISCOVERY = 1.0
@@ -89,9 +90,7 @@ def publish_recording(path: str, *, rate: float) -> int:
 
 @click.command()
 @click.argument("recording", type=click.Path(dir_okay=False))
-@click.option(
-    "--rate", type=click.FloatRange(min=0.0, min_open=True), default=1.0, show_default=True, help="2 = twice as fast."
-)
+@click.option("--rate", type=RATE, default=1.0, show_default=True, help="2 = twice as fast.")
 def command(recording: str, rate: float) -> None:
     """Publishes RECORDING again."""
     sys.exit(publish_recording(recording, rate=rate))

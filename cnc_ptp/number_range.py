@@ -1,0 +1,25 @@
+"""Numbers on the command line: between limits, and a number at all."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import click
+
+LONGEST_RUN = 1e7
+"""Seconds of machine time."""
+
+
+class NumberRange(click.FloatRange):
+    """A FloatRange that refuses `nan` too: no comparison with it is true, so click lets it through."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        number = super().convert(value, param, ctx)
+        if math.isnan(number):
+            self.fail(f"{value} is not a number.", param, ctx)
+        return number
+
+
+DURATION = NumberRange(0.0, LONGEST_RUN)
+RATE = NumberRange(min=0.0, min_open=True)
