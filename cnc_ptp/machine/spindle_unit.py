@@ -66,6 +66,9 @@ class SpindleUnit(Unit):
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
         self._cycles = SpindleCycles(self.spindle, self._orders, self._rotation)
+        self.next_order = 1
+        """Number of the next motion command."""
+        self._turned_down: tuple[int, CncError | None] = 0, None
         self._passed_on: list[Command] = []
         self._refused: list[str] = []
 
@@ -103,17 +106,23 @@ class SpindleUnit(Unit):
 
     def _ordered(self, command: str, cycle: int, *, source: str = "", **arguments: Any) -> str | None:
         self._orders.check(command, source, self._coupling.master)
+        order = Order(command, arguments, source, self.next_order)
+        self.next_order += 1
         if self._orders.must_wait(command, source):
             self.spindle.require_ready(command)
-            self._orders.add(Order(command, arguments, source))
+            self._orders.add(order)
             message: str | None = f"spindle {self.name}: {command} waits until what is in work is done"
         else:
-            message = self._carry_out(cycle, Order(command, arguments, source))
+            message = self._carry_out(cycle, order)
         self._orders.taken += source == PLC
         return message
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
+        jobs = self.spindle.jobs
+        before = jobs.job
         message = self._group_handler(order.command)(cycle, **order.arguments)
+        if jobs.job is not None and jobs.job is not before:
+            jobs.job.number = order.number
         if order.command == "stop":
             self._orders.clear()
         self._orders.begin(order.source)
@@ -128,9 +137,23 @@ class SpindleUnit(Unit):
             try:
                 self._carry_out(cycle, order)
             except CncError as error:
+                self._turned_down = order.number, error
                 self.event(cycle, Severity.WARNING, error.error_id, error.message)
                 if order.source:
                     self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
+
+    def outcome(self, number: int) -> bool | None:
+        """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
+        job = self.spindle.jobs.job
+        in_work = job is not None and job.number == number
+        if in_work or any(order.number == number for order in self._orders.waiting):
+            return None
+        return self.spindle.jobs.last_done == number
+
+    def refusal(self, number: int) -> CncError | None:
+        """Why the last order that was refused in its turn was so, if it is this one."""
+        refused, error = self._turned_down
+        return error if refused == number else None
 
     def do_power(self, cycle: int, *, on: bool) -> str | None:
         """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from cnc_ptp import action
-from cnc_ptp.machine.blocks import AxisStateCode, Block, Command, SpindleBlock
+from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
+from cnc_ptp.machine.spindle_unit import SpindleUnit
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments
 from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
-
-AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
 
 
 class SpindleNode(UnitNode):
@@ -25,26 +25,50 @@ class SpindleNode(UnitNode):
         arguments.require_unit(machine, name, ["spindle"])
         super().__init__(machine, build_unit(machine, name), **options)
         stop = Command(name, "stop", {})
+        self._numbers: dict[str, int] = {}
         self._jobs = (
             JobServer(
                 self,
                 action.OrientSpindle,
                 f"/{name}/position",
-                start=lambda goal: [Command(name, "orient", self.arguments("orient", goal))],
+                start=lambda goal: self._begin("orient", self.arguments("orient", goal)),
                 halt=stop,
                 feedback=positioning_feedback,
-                result=positioning_result,
+                result=partial(self._result, "orient"),
             ),
             JobServer(
                 self,
                 action.Home,
                 f"/{name}/homing",
-                start=lambda goal: [Command(name, "home", {})],
+                start=lambda goal: self._begin("home", {}),
                 halt=stop,
                 feedback=homing_feedback,
-                result=homing_result,
+                result=partial(self._result, "home"),
             ),
         )
+
+    @property
+    def spindle(self) -> SpindleUnit:
+        assert isinstance(self.unit, SpindleUnit)
+        return self.unit
+
+    def _begin(self, command: str, arguments: dict[str, Any]) -> list[Command]:
+        self._numbers[command] = self.spindle.next_order
+        return [Command(self.spindle.name, command, arguments)]
+
+    def _result(self, command: str, block: Block, result: Any) -> bool | None:
+        """In full when the job has come to its end; not when something else has taken its place, or it was refused."""
+        number = self._numbers[command]
+        done = self.spindle.outcome(number)
+        if done is None or not isinstance(block, SpindleBlock):
+            return None
+        refusal = self.spindle.refusal(number)
+        result.error_id = refusal.error_id if refusal else block.error_id[-1]
+        if command == "orient":
+            result.position_deg = block.actual_position_deg[-1]
+        if not done:
+            result.message = refusal.message if refusal else ENDED[command](block)
+        return done
 
     def run_ended(self) -> None:
         for job in self._jobs:
@@ -61,29 +85,23 @@ def positioning_feedback(block: Block, feedback: Any) -> None:
         feedback.actual_speed_rpm = block.actual_speed_rpm[-1]
 
 
-def positioning_result(block: Block, result: Any) -> bool | None:
-    """In full when the spindle has come into position; not when something else has ended the motion."""
-    if not isinstance(block, SpindleBlock) or block.state[-1] in AT_WORK:
-        return None
-    result.position_deg, result.error_id = block.actual_position_deg[-1], block.error_id[-1]
-    done = bool(block.in_position[-1])
-    result.message = "" if done else f"the positioning has ended at {result.position_deg} deg"
-    return done
-
-
 def homing_feedback(block: Block, feedback: Any) -> None:
     if isinstance(block, SpindleBlock):
         feedback.state = block.state[-1]
 
 
-def homing_result(block: Block, result: Any) -> bool | None:
-    if not isinstance(block, SpindleBlock) or block.state[-1] in AT_WORK:
-        return None
-    result.error_id = block.error_id[-1]
-    done = bool(block.referenced[-1]) and not result.error_id
-    result.message = "" if done else "the homing has ended without a reference"
-    return done
+def positioning_ended(block: SpindleBlock) -> str:
+    return f"the positioning has ended at {block.actual_position_deg[-1]} deg"
 
+
+def homing_ended(block: SpindleBlock) -> str:
+    if block.referenced[-1]:
+        return "the homing was given up, the reference point of before counts"
+    return "the homing has ended without a reference"
+
+
+ENDED = {"orient": positioning_ended, "home": homing_ended}
+"""What people hear of a job that something else has ended."""
 
 main = arguments.unit_main(SpindleNode, "spindle")
 

@@ -50,6 +50,8 @@ class Job:
     stage: int = 0
     resume: float = 0.0
     """Speed of endless rotation that the gear change has interrupted, °/s."""
+    number: int = 0
+    """Of the order for which it is done."""
 
 
 class Jobs:
@@ -65,6 +67,8 @@ class Jobs:
         self.job: Job | None = None
         self.done = True
         """The last job came to its end."""
+        self.last_done = 0
+        """Number of the last order whose job came to its end."""
 
     @property
     def step(self) -> Step | None:
@@ -280,6 +284,7 @@ class Jobs:
         spindle, job = self._spindle, self._current()
         self.job = None
         self.done = True
+        self.last_done = job.number
         spindle.programmed_speed = 0.0
         spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
         if job.name in ("home", "stop"):

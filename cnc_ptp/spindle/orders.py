@@ -25,6 +25,8 @@ class Order(NamedTuple):
     command: str
     arguments: Mapping[str, Any]
     source: str
+    number: int = 0
+    """By which its outcome is asked for."""
 
 
 class Orders:

@@ -117,6 +117,42 @@ def test_positioning_and_homing_as_actions(client):
     assert client.wait_last("t", lambda block: True, "a block").referenced[-1]
 
 
+def test_a_homing_that_is_overtaken_is_no_success(client):
+    """The spindle has its reference point already."""
+    goal, _ = client.action(action.Home, "/t/homing")
+    client.done("t", "stop", source="")
+    status, result = client.result_of(goal)
+    assert (status, result.success) == (GoalStatus.STATUS_ABORTED, False)
+    assert result.message == "the homing was given up, the reference point of before counts"
+
+
+def test_actions_wait_for_the_gear_and_a_cancel_forgets_them(client):
+    gear = client.wait_last("s", lambda block: block.speed_zero[-1], "at rest").gear[-1]
+    client.done("plc", "auto_acknowledge", on=False)
+    goals = [
+        (3 - gear, action.OrientSpindle, "/s/position", {"position_deg": 111.0, "speed_rpm": 120.0}),
+        (gear, action.Home, "/s/homing", {}),
+        (3 - gear, action.OrientSpindle, "/s/position", {"position_deg": 10.0, "speed_rpm": 120.0}),
+    ]
+    results = []
+    for cancelled, (stage, kind, name, words) in enumerate(goals, start=-2):
+        client.done("s", "select_gear", stage=stage, source="")
+        client.wait_last("s", lambda block: block.gear_request, "the request")
+        goal, _ = client.action(kind, name, **words)
+        if not cancelled:
+            goal.cancel_goal_async()
+            results.append(client.result_of(goal))
+        client.done("s", "gear_changed")
+        if cancelled:
+            results.append(client.result_of(goal))
+    client.done("plc", "auto_acknowledge", on=True)
+    statuses = [(status, result.success) for status, result in results]
+    assert statuses == [(GoalStatus.STATUS_SUCCEEDED, True)] * 2 + [(GoalStatus.STATUS_CANCELED, False)]
+    assert results[0][1].position_deg % 360.0 == pytest.approx(111.0, abs=0.06)
+    end = client.wait_last("s", lambda block: block.gear[-1] == 3 - gear, "the gear")
+    assert end.set_speed_rpm[-1] == 0.0 and not end.in_position[-1]
+
+
 def test_a_cancelled_positioning_stops(client):
     goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=10.0, speed_rpm=1.0, direction="ccw")
     client.wait_last("s", lambda block: block.set_speed_rpm[-1] == -1.0, "1 rpm")
