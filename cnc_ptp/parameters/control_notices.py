@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from cnc_ptp.parameters.control_view import (
+    ACC,
     ADD_ACC,
     ADD_JERK,
+    ADD_VEL,
     DEFAULT_JERK_DENOMINATOR,
     DELAY_CYCLES,
+    JERK,
+    VEL,
+    ControlParameters,
     PlantParameters,
     control_view,
     feedforward_mode,
     friction_parameters,
     permitted_delay,
+    torque_per_acceleration,
 )
+from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.telegram import ANALOGUE
 
 MANUAL_POSITION_DELAY = 10
 MONITORING_TYPES = (1, 2, 4)
+PARTS = ((VEL, ADD_VEL), (ACC, ADD_ACC), (JERK, ADD_JERK))
+"""Bits of P-AXIS-00223: a part, and that it goes out additively."""
+ADDITIVE = "a_max and the friction table"
 DELAYS = {"P-AXIS-00389": 70349, "P-AXIS-00390": 70348}
 
 
@@ -30,9 +41,12 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str
     yield from denominators(parameters)
     yield from weight(parameters)
     yield from position_delay(parameters)
+    yield from monitoring_type(parameters)
     yield from following_error(parameters)
     yield from open_loop(parameters)
     yield from velocity_range(parameters, cycle_time)
+    yield from torque_range(parameters, cycle_time)
+    yield from drive_gain(parameters, cycle_time)
     yield from gain(parameters, cycle_time)
 
 
@@ -66,6 +80,12 @@ def weight(parameters: ParameterSet) -> Iterator[str]:
     if value > denominator:
         text = f"weight {value / denominator:g} of the feedforward is above 1, the axis leads its setpoint"
         yield line(parameters, "P-AXIS-00228", (), text)
+    own = parameters.number("P-AXIS-00514") / parameters.number("P-AXIS-00515")
+    if own > 1 and own * value > denominator:
+        text = (
+            f"weight {own * value / denominator:g} of the velocity feedforward is above 1, the axis leads its setpoint"
+        )
+        yield line(parameters, "P-AXIS-00514", (), text)
 
 
 def position_delay(parameters: ParameterSet) -> Iterator[str]:
@@ -73,6 +93,16 @@ def position_delay(parameters: ParameterSet) -> Iterator[str]:
     if value > MANUAL_POSITION_DELAY:
         text = f"value {value} is above the {MANUAL_POSITION_DELAY} of the manual, accepted"
         yield line(parameters, "P-COMP-00043", (), text)
+
+
+def monitoring_type(parameters: ParameterSet) -> Iterator[str]:
+    """A kind of monitoring that there is none of, and that is not 0 either."""
+    for gear in used_gears(parameters):
+        kind = parameters.number("P-AXIS-00172", gear)
+        if kind not in (0, *MONITORING_TYPES):
+            known = ", ".join(map(str, MONITORING_TYPES))
+            text = f"type {kind} is none of {known}, the following error is not monitored"
+            yield line(parameters, "P-AXIS-00172", (gear,), text)
 
 
 def following_error(parameters: ParameterSet) -> Iterator[str]:
@@ -125,6 +155,68 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
             f"the {bits} bits of the command carry {limit:g} {unit}, less than the {largest:g} {unit} of P-AXIS-00212"
         )
         yield line(parameters, number, (gear,) if drive.analogue else (), text)
+
+
+def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """Torque words of a telegram that are too short for what goes over them."""
+    control = control_view(parameters, used_gears(parameters)[0], cycle_time)
+    drive, scale = control.drive, control.scaling.torque
+    if drive.ideal or not scale:
+        return
+    commands, feedback = drive.command_bits, drive.feedback_bits
+    additive, any_torque = additive_torque(parameters, control), largest_torque(parameters, control)
+    unit = "N" if parameters.axis_type == "T" and not uses_feed_constant(parameters) else "Nm"
+    for word, is_used, bits, (needed, cause) in (
+        ("additive torque command", "additive_torque" in drive.commands, commands["additive_torque"], additive),
+        ("torque command", drive.interface == "torque", commands["torque"], any_torque),
+        ("actual torque", "torque" in drive.feedback, feedback["torque"], any_torque),
+    ):
+        limit = largest_digit(bits) / scale
+        if is_used and needed > limit:
+            carries = f"the {bits} bits of the {word} carry {limit:g} {unit}"
+            text = f"{carries}, less than the {needed:g} {unit} of {cause}, what is above is cut off"
+            yield line(parameters, "P-AXIS-00325", (), text)
+
+
+def additive_torque(parameters: ParameterSet, control: ControlParameters) -> tuple[float, str]:
+    """The most that feedforward and friction compensation put out, Nm (N), and what it is made of."""
+    feedforward = control.feedforward
+    weight = feedforward.weight * feedforward.torque_weight if feedforward.mode & ADD_ACC else 0.0
+    return weight * accelerating_torque(parameters) + friction_torque(control), ADDITIVE
+
+
+def largest_torque(parameters: ParameterSet, control: ControlParameters) -> tuple[float, str]:
+    """What the drive can give, Nm (N); where it has no limit, what the motion may need."""
+    if math.isfinite(control.plant.torque_limit):
+        return control.plant.torque_limit, "the torque limit P-SIM-00011"
+    return accelerating_torque(parameters) + friction_torque(control), ADDITIVE
+
+
+def accelerating_torque(parameters: ParameterSet) -> float:
+    """For the largest acceleration (P-AXIS-00008) in the gear that needs most, Nm (N)."""
+    return max(
+        torque_per_acceleration(parameters, gear, parameters.number("P-AXIS-00391", gear))
+        * parameters.kernel("P-AXIS-00008", gear)
+        for gear in used_gears(parameters)
+    )
+
+
+def friction_torque(control: ControlParameters) -> float:
+    """The largest entry of the friction table that is in use, Nm (N)."""
+    return max(map(abs, control.friction.currents), default=0.0) / control.scaling.torque * control.friction.active
+
+
+def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+    """Conventional feedforward goes to a position loop in the drive as v/Kv of position, with the Kv of the NC."""
+    for gear in used_gears(parameters):
+        control = control_view(parameters, gear, cycle_time)
+        conventional = any(control.feedforward.mode & (own | additive) == own for own, additive in PARTS)
+        if conventional and control.drive.interface in ("position", "lag") and control.plant.kv != control.kv:
+            text = (
+                f"gain {control.plant.kv:g} 1/s of the drive is not the {control.kv:g} 1/s of P-AXIS-00099 by which "
+                "feedforward becomes a position; a lag stays"
+            )
+            yield line(parameters, "P-SIM-00019", (), text)
 
 
 def largest_digit(bits: int) -> int:

@@ -193,6 +193,18 @@ NOTICES = {
     "vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}": (
         "P-AXIS-00228 vorsteuer.vs_v_faktor of /x: weight 1.2 of the feedforward is above 1, the axis leads its setpoint"
     ),
+    "vorsteuer: {feedforward_v_add_num: 2}": (
+        "P-AXIS-00514 vorsteuer.feedforward_v_add_num of /x: weight 2 of the velocity feedforward is above 1, the axis "
+        "leads its setpoint"
+    ),
+    'getriebe: {"0": {slep_ueberw_typ: 3}}': (
+        "P-AXIS-00172 getriebe[0].slep_ueberw_typ of /x: type 3 is none of 1, 2, 4, the following error is not monitored"
+    ),
+    "kenngr: {antr_typ: 3}, vorsteuer: {vorsteuerung: VEL | ADD_ACC}, simulation: {drive_kv: 900}, "
+    "antr: {telegram: {commands: [XERR, M_ADD1]}}": (
+        "P-SIM-00019 simulation.drive_kv of /x: gain 9 1/s of the drive is not the 10 1/s of P-AXIS-00099 by which "
+        "feedforward becomes a position; a lag stays"
+    ),
     "frict_comp: {position_delay: 30}": (
         "P-COMP-00043 frict_comp.position_delay of /x: value 30 is above the 10 of the manual, accepted"
     ),
@@ -232,6 +244,58 @@ def test_notice(section: str) -> None:
     assert notices(section) == [NOTICES[section]]
 
 
+FINE = "antr: {acc_reference_value: 4, torque_scale_num: 100000"
+"""100000 digits are 4 Nm: 16 bits carry 1.31068 Nm."""
+AXIS_WITH_INERTIA = 'getriebe: {"0": {load: 1, dynamik: {a_max: 2000}}}'
+"""1 kg at 2 m/s²: 2 N."""
+TORQUE_WORDS = {
+    "commands: [S-0-0036, S-0-0081]": (
+        "vorsteuer: {vorsteuerung: ADD_ACC}",
+        ["additive torque command carry 1.31068 N, less than the 2 N of a_max and the friction table"],
+    ),
+    "commands: [S-0-0036, S-0-0081], feedback: [S-0-0051]": ("vorsteuer: {vorsteuerung: VEL}", []),
+    "commands: [S-0-0036, S-0-0081], feedback: []": (
+        "lr_param: {frict_comp: 1}, frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: -40000}}}",
+        ["additive torque command carry 1.31068 N, less than the 1.6 N of a_max and the friction table"],
+    ),
+    "feedback: [S-0-0051, S-0-0084]": (
+        "simulation: {model: CASCADED}",
+        ["actual torque carry 1.31068 N, less than the 2 N of a_max and the friction table"],
+    ),
+    "feedback: [S-0-0084, S-0-0051]": (
+        "simulation: {model: CASCADED, torque_limit: 3}",
+        ["actual torque carry 1.31068 N, less than the 3 N of the torque limit P-SIM-00011"],
+    ),
+    "commands: [S-0-0080], feedback: [S-0-0051, S-0-0040]": (
+        "simulation: {torque_limit: 0}",
+        ["torque command carry 1.31068 N, less than the 2 N of a_max and the friction table"],
+    ),
+    "commands: [S-0-0080], feedback: [S-0-0040, S-0-0051]": ("simulation: {torque_limit: 1}", []),
+}
+
+
+@pytest.mark.parametrize("telegram", TORQUE_WORDS)
+def test_torque_words_that_are_too_short(telegram: str) -> None:
+    more, texts = TORQUE_WORDS[telegram]
+    scale = "v_reso_num: 10000, v_reso_denom: 10000"
+    section = f"{SERCOS}, {FINE}, {scale}, telegram: {{{telegram}}}}}, {AXIS_WITH_INERTIA}, {more}"
+    start = "P-AXIS-00325 antr.torque_scale_num of /x: the 16 bits of the "
+    assert notices(section) == [f"{start}{text}, what is above is cut off" for text in texts]
+
+
+def test_torque_words_that_are_long_enough() -> None:
+    """32 bits; no format at all on the simulated drive; torque of a motor behind a feed constant in Nm."""
+    objects = 'sercos: {mdt: {"0": {ident_nr: 36}, "1": {ident_nr: 81, ident_len: 4}}}, v_reso_denom: 10'
+    more = f"{AXIS_WITH_INERTIA}, vorsteuer: {{vorsteuerung: ADD_ACC}}"
+    assert notices(f"{SERCOS}, {FINE}, {objects}}}, {more}") == []
+    assert notices(f"{FINE}}}, {more}") == []
+    motor = "feed_const_num: 100000, telegram: {commands: [S-0-0081]}, v_reso_denom: 10"
+    assert notices(f"{SERCOS}, {FINE}, {motor}}}, {more}".replace("load: 1,", "load: 0.002,")) == [
+        "P-AXIS-00325 antr.torque_scale_num of /x: the 16 bits of the additive torque command carry 1.31068 Nm, less "
+        "than the 2.51327 Nm of a_max and the friction table, what is above is cut off"
+    ]
+
+
 def spindle_notices(s: str) -> list[str]:
     text = f"/machine: {{ros__parameters: {{spindles: [s]}}}}\n/s: {{ros__parameters: {{{s}}}}}\n"
     return [warning.split(": ", 1)[1] for warning in load_machine(text, "m.yaml").warnings]
@@ -244,7 +308,7 @@ def test_all_gears_of_a_spindle_are_looked_at() -> None:
         "P-AXIS-00099 getriebe[1].kv of /s: gain 3000 1/s makes the position loop unstable, with this drive the limit "
         "is 2000 1/s"
     ]
-    drive = "kenngr: {antr_typ: 1, achs_mode: 4, ref_ohne_nocken: 1}"
+    drive = "kenngr: {antr_typ: 1, achs_mode: 4, ref_ohne_nocken: 1, ref_ohne_rev: 1}"
     speeds = 'getriebe: {"0": {dynamik: {vb_max: 200000}}, "1": {dynamik: {vb_max: 300000}}}'
     assert spindle_notices(f"{drive}, {speeds}") == [
         "P-AXIS-00129 getriebe[1].multi_gain_z of /s: the 16 bits of the command carry 273.058 °/s, less than the 300 "
@@ -286,6 +350,21 @@ def test_a_velocity_from_positions_makes_a_torque_loop_unstable_earlier() -> Non
 
 def test_a_torque_scaling_without_reference_does_not_matter_where_no_torque_goes_out() -> None:
     assert notices("antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: VEL | ACC}") == []
+
+
+@pytest.mark.parametrize(
+    "section",
+    [
+        "vorsteuer: {feedforward_v_add_num: 2, vs_v_nenner: 2}",
+        'getriebe: {"0": {slep_ueberw_typ: 0}}',
+        "kenngr: {antr_typ: 3}, vorsteuer: {vorsteuerung: ADD_VEL}, simulation: {drive_kv: 900}",
+        "kenngr: {antr_typ: 3}, simulation: {drive_kv: 900}",
+        "kenngr: {antr_typ: 3}, vorsteuer: {vorsteuerung: VEL}, simulation: {drive_kv: 1000}",
+        "vorsteuer: {vorsteuerung: VEL}, simulation: {drive_kv: 900}",
+    ],
+)
+def test_nothing_to_notice(section: str) -> None:
+    assert notices(section) == []
 
 
 def test_what_is_corrected() -> None:
