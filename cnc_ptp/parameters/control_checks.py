@@ -6,6 +6,7 @@ Error numbers of the manuals: TF5200 feedforward 4.1, 4.2, 5.2; friction 2.2.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations, groupby
 
 from cnc_ptp.parameters import errors, telegram
 from cnc_ptp.parameters.control_view import ADD_ACC, ADD_JERK, ADD_VEL, flag_bits
@@ -32,6 +33,8 @@ def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
         inertia,
         velocity_controller,
         known_objects,
+        objects_once,
+        names_and_numbers,
         operation_mode,
         additive_objects,
         friction,
@@ -89,6 +92,32 @@ def known_objects(parameters: ParameterSet) -> Iterator[Problem]:
                 yield problem(parameters, errors.TELEGRAM, number, (), text)
 
 
+def objects_once(parameters: ParameterSet) -> Iterator[Problem]:
+    """A telegram has one object for each quantity."""
+    for names, number, known in (
+        (telegram.command_objects(parameters), "P-MACH-00020", telegram.COMMAND_OBJECTS),
+        (telegram.feedback_objects(parameters), "P-MACH-00021", telegram.FEEDBACK_OBJECTS),
+    ):
+        for first, second in combinations([name for name in names if name in known], 2):
+            quantity = known[first].replace("_", " ")
+            if first == second:
+                text = f"object {first} is in the telegram twice"
+                yield problem(parameters, errors.TELEGRAM, number, (), text)
+            elif known[first] == known[second]:
+                text = f"objects {first} and {second} both carry the {quantity}"
+                yield problem(parameters, errors.TELEGRAM, number, (), text)
+
+
+def names_and_numbers(parameters: ParameterSet) -> Iterator[Problem]:
+    """An object that has a name and a number has them of the same object."""
+    for array, name_of, number_of in (("mdt", "P-MACH-00022", "P-MACH-00023"), ("at", "P-MACH-00025", "P-MACH-00026")):
+        for index in parameters.used_indexes(f"antr.sercos.{array}"):
+            name, number = parameters.text(name_of, index).replace("_", "-"), parameters.number(number_of, index)
+            if name and number and int(name[-4:]) != number:
+                text = f"value {number} is not the number of {name}, which {name_of} names"
+                yield problem(parameters, errors.TELEGRAM, number_of, (index,), text)
+
+
 def operation_mode(parameters: ParameterSet) -> Iterator[Problem]:
     """The quantity that P-AXIS-00320 commands is in the telegram."""
     mode = parameters.text("P-AXIS-00320")
@@ -137,16 +166,29 @@ def friction(parameters: ParameterSet) -> Iterator[Problem]:
     permitted = parameters.axis_type != "S" and parameters.number("P-AXIS-00522")
     takes_torque = {"additive_torque"} & telegram.commands(parameters) or telegram.interface(parameters) == "torque"
     if permitted and mode and not takes_torque:
-        text = f"friction compensation needs an additive torque command (S-0-0081, 60B2), {carried(parameters)}"
+        text = f"friction compensation needs an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
         yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00522", (), text)
 
 
 def ascending(parameters: ParameterSet, entries: int) -> Iterator[Problem]:
-    before = -1
-    for index in range(entries):
+    """Velocities that do not ascend; those that were not given at all in one line (entry 0 may be left out)."""
+    missing = [index for index in range(1, entries) if not parameters.is_given("P-COMP-00046", index)]
+    if missing:
+        which = f"entries {spans(missing)}" if len(missing) > 1 else f"entry {missing[0]}"
+        verb = "are" if len(missing) > 1 else "is"
+        text = f"{which} of the {entries} that P-COMP-00042 names {verb} not given, velocities ascend"
+        yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00046", (missing[0],), text)
+    last, before = -1, -1
+    for index in (index for index in range(entries) if index not in missing):
         value = parameters.number("P-COMP-00046", index)
         if value <= before or value < 0:
-            wanted = "not negative" if value < 0 else f"above the {before} of entry {index - 1}"
+            wanted = "not negative" if value < 0 else f"above the {before} of entry {last}"
             text = f"value {value} must be {wanted}, velocities ascend"
             yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00046", (index,), text)
-        before = max(before, int(value))
+        last, before = index, max(before, int(value))
+
+
+def spans(indexes: list[int]) -> str:
+    """[1, 2, 3, 7] as '1 ... 3, 7'."""
+    runs = [[run for _, run in group] for _, group in groupby(enumerate(indexes), lambda pair: pair[1] - pair[0])]
+    return ", ".join(f"{run[0]} ... {run[-1]}" if len(run) > 1 else f"{run[0]}" for run in runs)

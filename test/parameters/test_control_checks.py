@@ -92,9 +92,21 @@ PROBLEMS = {
         "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[0].in of /x: value -1 must be not negative, "
         "velocities ascend"
     ),
+    'frict_comp: {mode: 3, table_entries: 20, table: {"0": {in: 5}}}': (
+        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[1].in of /x: entries 1 ... 19 of the 20 that "
+        "P-COMP-00042 names are not given, velocities ascend"
+    ),
+    'frict_comp: {mode: 3, table_entries: 8, table: {"1": {in: 5}, "3": {in: 6}, "4": {in: 7}}}': (
+        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[2].in of /x: entries 2, 5 ... 7 of the 8 that "
+        "P-COMP-00042 names are not given, velocities ascend"
+    ),
+    'frict_comp: {mode: 3, table_entries: 3, table: {"0": {in: 5}, "2": {in: 6}}}': (
+        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[1].in of /x: entry 1 of the 3 that P-COMP-00042 "
+        "names is not given, velocities ascend"
+    ),
     f'{SERCOS}, lr_param: {{frict_comp: 1}}, frict_comp: {{mode: 3, table_entries: 1, table: {{"0": {{out: 5}}}}}}': (
         "P-ERR-70351 axis list, P-AXIS-00522 lr_param.frict_comp of /x: friction compensation needs an additive torque "
-        f"command (S-0-0081, 60B2), {CARRIES}"
+        f"command (S-0-0081, 60B2, M_ADD1), {CARRIES}"
     ),
     'simulation: {model: CASCADED}, getriebe: {"0": {load: 0}}': (
         "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for P-SIM-00006 "
@@ -107,6 +119,24 @@ PROBLEMS = {
     'antr: {telegram: {commands: [S-0-0080]}}, getriebe: {"0": {load: 0}}': (
         "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for a torque command, "
         "P-SIM-00007 simulation.inertia is 0 too"
+    ),
+    f'{SERCOS}, antr: {{sercos: {{mdt: {{"0": {{nc_ref: S_0_0036, ident_nr: 37}}}}}}}}': (
+        "P-ERR-25020 machine list, P-MACH-00023 antr.sercos.mdt[0].ident_nr of /x: value 37 is not the number of "
+        "S-0-0036, which P-MACH-00022 names"
+    ),
+    f'{SERCOS}, antr: {{sercos: {{at: {{"0": {{ident_nr: 51}}, "1": {{nc_ref: S-0-0084, ident_nr: 40}}}}}}}}': (
+        "P-ERR-25020 machine list, P-MACH-00026 antr.sercos.at[1].ident_nr of /x: value 40 is not the number of "
+        "S-0-0084, which P-MACH-00025 names"
+    ),
+    f"{SERCOS}, antr: {{telegram: {{commands: [S-0-0036, S-0-0037, S-0-0036]}}}}": (
+        "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: object S-0-0036 is in the telegram twice"
+    ),
+    f'{SERCOS}, antr: {{telegram: {{feedback: [S-0-0051]}}, sercos: {{at: {{"0": {{ident_nr: 51}}}}}}}}': (
+        "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object S-0-0051 is in the telegram twice"
+    ),
+    "antr: {telegram: {commands: [S-0-0036, 60FF]}}": (
+        "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: objects S-0-0036 and 60FF both carry the "
+        "velocity"
     ),
     'kenngr: {antr_typ: 2}, antr: {sercos: {at: {"0": {ident_nr: 37}}}}': (
         "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object S-0-0037 cannot be exchanged with "
@@ -126,6 +156,11 @@ def test_objects_by_number_and_by_name_make_additive_commands_possible() -> None
     drive = machine.axes["x"].control.drive
     assert drive.commands == {"velocity", "additive_velocity", "additive_torque"}
     assert drive.interface == "velocity"
+
+
+def test_an_object_by_number_and_name_alike() -> None:
+    objects = 'sercos: {mdt: {"0": {nc_ref: S_0_0036, ident_nr: 36}}}'
+    assert load(f"{SERCOS}, antr: {{{objects}}}").axes["x"].control.drive.commands == {"velocity"}
 
 
 def test_an_additive_object_alone_comes_beside_the_command_of_the_drive_type() -> None:
