@@ -8,8 +8,8 @@ def range_text(declaration: Declaration) -> str:
     if declaration.choices:
         text = choices_text(declaration)
     elif declaration.type == "string":
-        text = f"at most {declaration.max_length} characters"
-        text += f", {declaration.form_text}" if declaration.form else ""
+        length = f"at most {declaration.max_length} characters" if declaration.max_length else ""
+        text = ", ".join(part for part in (length, declaration.form_text if declaration.form else "") if part)
     else:
         text = limits_text(declaration)
     return text if declaration.unset is None else f"{text}; {default_text(declaration.unset)} not configured"

@@ -70,6 +70,7 @@ def test_forms_of_ranges() -> None:
         "P-AXIS-00223": "range    flags NONE 0x0, VEL 0x1, ACC 0x2, JERK 0x4, ADD_VEL 0x101, ADD_ACC 0x202, "
         "ADD_JERK 0x804",
         "P-CHAN-00005": "range    at most 16 characters",
+        "P-MACH-00022": 'range    S_0_ and four digits; "" not configured',
         "P-CHAN-00053": "range    at most 16 characters, a capital S, then capital letters, digits and _; "
         '"" not configured',
     }
