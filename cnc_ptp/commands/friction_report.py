@@ -38,15 +38,15 @@ def curve_lines(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
 
 def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
     if curve.one_way:
-        yield f"left out, driven in one direction only: {_speeds(curve.one_way)} {data.unit}/s"
+        yield f"left out, driven in one direction only: {speeds_shown(curve.one_way)} {data.unit}/s"
     if curve.uneven:
-        yield f"left out, uneven motion (stick-slip, or not settled): {_speeds(curve.uneven)} {data.unit}/s"
+        yield f"left out, uneven motion (stick-slip, or not settled): {speeds_shown(curve.uneven)} {data.unit}/s"
     doubtful = [point.speed for point in curve.points if point.scatter > LARGE_SCATTER * abs(point.friction)]
     if doubtful:
-        yield f"doubtful, scatter above 5 % of the friction: {_speeds(doubtful)} {data.unit}/s"
+        yield f"doubtful, scatter above 5 % of the friction: {speeds_shown(doubtful)} {data.unit}/s"
 
 
-def _speeds(values: Sequence[float]) -> str:
+def speeds_shown(values: Sequence[float]) -> str:
     return ", ".join(f"{value:.4g}" for value in values)
 
 

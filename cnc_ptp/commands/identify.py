@@ -9,7 +9,7 @@ from rich.console import Console
 from cnc_ptp.commands.axis_data import AxisData, drive, open_axis, recorded_trace
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.commands.dynamics_report import dynamics_yaml, found_lines
-from cnc_ptp.commands.friction_report import curve_lines, friction_yaml, max_points, scaling_of
+from cnc_ptp.commands.friction_report import curve_lines, friction_yaml, max_points, scaling_of, speeds_shown
 from cnc_ptp.commands.output_file import check_output, deliver
 from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
 from cnc_ptp.commissioning.dynamics import fit_drive
@@ -63,6 +63,8 @@ def identify_friction(
     if data.recorded is not None:
         for line in coverage_lines(data, [point.speed for point in curve.points], timing):
             console.print(line, markup=False)
+    if table.without_friction:
+        console.print(f"left out, no friction there (0 or less): {speeds_shown(table.without_friction)} {data.unit}/s")
     if table.dropped:
         kept = f"{len(table.entries)} of {len(curve.points)} points"
         console.print(f"{kept} are in the table (P-COMP-00062); between them the curve is straight")

@@ -50,7 +50,9 @@ class FrictionTable:
     scaling_factor: int
     entries: tuple[TableEntry, ...]
     dropped: int
-    """Measured points that the table does not hold, because the curve runs straight there."""
+    """Measured points that the table does not hold, because the curve runs straight there …"""
+    without_friction: tuple[float, ...] = ()
+    """… and speeds at which there is none: 0 or less."""
 
 
 def friction_table(curve: FrictionCurve, scaling: Scaling, *, max_points: int) -> FrictionTable:
@@ -61,14 +63,9 @@ def friction_table(curve: FrictionCurve, scaling: Scaling, *, max_points: int) -
     """
     _require_scale(curve.axis, scaling)
     points = [point for point in curve.points if round(point.speed * FROM_MM_S) > 0]
-    largest = max((abs(point.friction) for point in points), default=0.0)
-    if not any(point.friction > max(point.scatter, 1e-9 * largest) for point in points):
-        raise refusal(
-            NO_FRICTION,
-            curve.axis,
-            f"no friction was found: the largest torque at constant velocity is {largest:.3g}, within its "
-            "scatter; no table was made",
-        )
+    _require_friction(curve.axis, points, scaling.digits)
+    without = tuple(point.speed for point in points if point.friction <= 0.0)
+    points = [point for point in points if point.friction > 0.0]
     kept = _thin(_distinct(points), max_points)
     factor = _scaling_factor([point.friction for point in kept], scaling.digits)
     per_torque = scaling.digits * 1000.0 / factor
@@ -76,7 +73,24 @@ def friction_table(curve: FrictionCurve, scaling: Scaling, *, max_points: int) -
         TableEntry(round(point.speed * FROM_MM_S), _whole(curve.axis, point.friction * per_torque), point)
         for point in kept
     )
-    return FrictionTable(factor, entries, len(curve.points) - len(entries))
+    return FrictionTable(factor, entries, len(curve.points) - len(without) - len(entries), without)
+
+
+def _require_friction(axis: str, points: Sequence[FrictionPoint], digits: float) -> None:
+    """Raises CncError 27008 unless some point is against the motion, above its scatter and half a digit of a table."""
+    largest = max((point.friction for point in points), default=0.0)
+    least = 0.5 * SCALES[-1] / 1000.0 / digits
+    torque, remedy = f"the largest torque at constant velocity is {largest:.3g}", ""
+    if points and all(point.friction < -point.scatter for point in points):
+        reason = f"the torque at constant velocity acts in the direction of the motion (largest {largest:.3g})"
+        remedy = ", check the sign of the torque"
+    elif not any(point.friction > max(point.scatter, 1e-9 * largest) for point in points):
+        reason = f"{torque}, within its scatter"
+    elif largest < least:
+        reason = f"{torque}, below half a digit of the finest table ({least:.3g} with P-COMP-00045 = {SCALES[-1]})"
+    else:
+        return
+    raise refusal(NO_FRICTION, axis, f"no friction was found: {reason}; no table was made{remedy}")
 
 
 def _require_scale(axis: str, scaling: Scaling) -> None:

@@ -61,6 +61,19 @@ def test_a_thinned_table_has_the_ends_and_misses_little(most):
         assert misses.max() < 0.02
 
 
+def test_speeds_without_friction_are_left_out_and_named():
+    points = [(1.0, -0.2), (2.0, 0.0), (3.0, 5.0), (4.0, 6.0)]
+    table = friction_table(curve(points), Scaling(1000, 1, 1), max_points=20)
+    assert [entry.velocity for entry in table.entries] == [3000, 4000]
+    assert (table.without_friction, table.dropped) == ((1.0, 2.0), 0)
+
+
+@pytest.mark.parametrize(("friction", "current"), [(0.0006, 1), (0.0014, 1), (0.0016, 2)])
+def test_the_least_friction_of_a_table_is_half_a_digit_of_it(friction, current):
+    table = friction_table(curve([(1.0, friction)]), Scaling(1, 1, 1), max_points=20)
+    assert (table.scaling_factor, table.entries[0].current) == (1, current)
+
+
 def test_speeds_that_are_one_whole_number_are_one_entry():
     table = friction_table(
         curve([(0.0003, 5.0), (0.0101, 5.0), (0.0102, 6.0), (0.02, 7.0)]), Scaling(1000, 1, 1), max_points=20
@@ -77,6 +90,20 @@ def test_speeds_that_are_one_whole_number_are_one_entry():
             Scaling(1, 1, 1),
             "P-ERR-27008 axis x: no friction was found: the largest torque at constant velocity is 1e-15, within its "
             "scatter; no table was made",
+        ),
+        (
+            [(1.0, 0.4e-6), (2.0, -0.3e-6)],
+            1e-9,
+            Scaling(1000, 1, 1),
+            "P-ERR-27008 axis x: no friction was found: the largest torque at constant velocity is 4e-07, below half a digit "
+            "of the finest table (5e-07 with P-COMP-00045 = 1); no table was made",
+        ),
+        (
+            [(1.0, -5.0), (2.0, -6.0)],
+            0.1,
+            Scaling(1, 1, 1),
+            "P-ERR-27008 axis x: no friction was found: the torque at constant velocity acts in the direction of the motion "
+            "(largest -5); no table was made, check the sign of the torque",
         ),
         (
             [(1.0, 5.0)],
