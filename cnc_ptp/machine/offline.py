@@ -151,8 +151,20 @@ def spindle_wait(block: SpindleBlock, name: str) -> str:
     """What a spindle waits for that does not come with time alone."""
     if block.gear_request:
         return f"spindle {name} waits for the PLC to change to gear {block.gear_request}"
-    held = block.state[-1] == AxisStateCode.DISCRETE_MOTION and block.override_percent[-1] == 0.0
-    return f"spindle {name} is held by override 0" if held and block.set_speed_rpm[-1] == 0.0 else ""
+    reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
+    if reason and open_orders:
+        return f"spindle {name} still has {open_orders} of the PLC's commands to do: {reason}"
+    held = reason and block.state[-1] == AxisStateCode.DISCRETE_MOTION
+    return f"spindle {name} is held by override 0" if held else ""
+
+
+def why_it_stays(block: SpindleBlock) -> str:
+    """Why a spindle on its way does not get there; empty while it goes on by itself."""
+    moves = block.state[-1] in (AxisStateCode.CONTINUOUS_MOTION, AxisStateCode.DISCRETE_MOTION)
+    if moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0:
+        return "it is held by override 0"
+    steady = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION and block.set_acceleration_deg_s2[-1] == 0.0
+    return "its speed is not reached" if steady and not block.speed_reached[-1] else ""
 
 
 def on_path(block: Block) -> bool:

@@ -117,6 +117,36 @@ def test_a_program_that_nobody_will_help_is_aborted(program: str, scenario: str,
 
 
 @pytest.mark.parametrize(
+    ("override", "orders", "reason"),
+    [
+        (0, "start, direction: cw, speed_rpm: 500", "1 of the PLC's commands to do: it is held by override 0"),
+        (0, "orient, position_deg: 90", "1 of the PLC's commands to do: it is held by override 0"),
+        (
+            100,
+            "start, direction: cw, speed_rpm: 123.4567, source: plc}\n- {at: 0.1, to: s, do: orient, position_deg: 90",
+            "2 of the PLC's commands to do: its speed is not reached",
+        ),
+    ],
+)
+def test_a_run_with_open_commands_of_the_plc_is_no_success(override: int, orders: str, reason: str) -> None:
+    spindle = replace(MILL.spindles["s"], speed_reached_band=0.0, speed_time=0.0, feedback="SPEED", open_loop=True)
+    machine = replace(MILL, spindles={"s": spindle if override else MILL.spindles["s"]})
+    percent = f"- {{at: 0, to: s, do: set_override, percent: {override}}}"
+    scenario = f"{percent}\n- {{at: 0.1, to: s, do: {orders}, source: plc}}"
+    bench = MachineBench(None, scenario, machine=machine).run()
+    text = f"plc plc: spindle s still has {reason}, but the scenario is through; everything is stopped and the run ends"
+    assert bench.errors() == [f"P-ERR-22014 {text}"] and bench.failed
+    assert bench.last("s").set_speed_rpm[-1] == 0.0
+
+
+def test_the_end_of_a_run_comes_after_the_commands_of_the_plc() -> None:
+    scenario = "- {at: 0, to: s, do: start, direction: cw, speed_rpm: 500, source: plc}\n"
+    bench = MachineBench(None, f"{scenario}- {{at: 0, to: s, do: orient, position_deg: 100, source: plc}}").run()
+    assert not bench.failed and bench.errors() == []
+    assert bench.last("s").plc_acknowledged == 2 and bench.last("s").in_position[-1]
+
+
+@pytest.mark.parametrize(
     ("program", "scenario"),
     [
         ("%P\nG04 25\nG01 X5 F3000\nM30", ""),
