@@ -43,7 +43,6 @@ NO_TEXT = 22009
 MEMBER_IN_ERROR = 22012
 AXIS_NOT_FOLLOWING = 22015
 NOT_ACKNOWLEDGED = 22016
-NO_MEASURING_EVENT = 22017
 SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
 
@@ -267,17 +266,18 @@ class ChannelUnit(Unit):
 
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
-            return self._sequence.go_on(first_cycle, self._feedback)
+            goes_on = self._sequence.go_on(first_cycle)
         except CncError as error:
             source = self._sequence.source
             self._fault(cycle, error.error_id, f"{error.message} in line {source.line} '{source.text}'")
             return True
+        self._warn(cycle)
+        return goes_on
 
     def _warn(self, cycle: int) -> None:
         notes, self._sequence.notes = self._sequence.notes, []
-        for note in notes:
-            text = f"channel {self.name}: {note}"
-            self.event(cycle, Severity.WARNING, NO_MEASURING_EVENT, text, self._sequence.source.line)
+        for number, note in notes:
+            self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", self._sequence.source.line)
 
     def _add(self, rows: Rows, points: Sequence[PathPoint]) -> None:
         """Adds the cycles of `points`, all of the same phase and program line."""
@@ -347,6 +347,8 @@ class ChannelUnit(Unit):
         if self._had_axes or self._sequence.phase is not Phase.IDLE:
             for node, block in inputs.items():
                 self._check_member(first_cycle, node, block)
+        self._sequence.read(first_cycle, inputs)
+        self._warn(first_cycle)
 
     def _check_member(self, first_cycle: int, node: str, block: Block) -> None:
         """Axes and spindles must be without error, and axes on the path that the block before gave them."""

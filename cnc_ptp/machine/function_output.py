@@ -8,7 +8,7 @@ before M3, M4, M5, and these before S.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Collection, Container, Iterator, Mapping
 from enum import Enum
 
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBit, SpindleBlock
@@ -86,12 +86,18 @@ class FunctionOutput:
             for node, block in feedback.items()
             if isinstance(block, SpindleBlock) and block.status_bits[-1] & SpindleBit.STOP_AT_PROGRAM_END
         ]
-        return Outputs(commands=self.spindles.stop(wanted))
+        return self._stop(wanted)
 
     def at_abort(self, keep: Container[str] = ()) -> Outputs:
         """M05 for every spindle that the channel has set turning, except the nodes in `keep`; couplings end."""
         turning = [node for node in self.spindles.turning if node not in keep]
-        return Outputs(commands=self.spindles.stop(turning) + self.spindles.decouple_all())
+        outputs = self._stop(turning)
+        outputs.commands += self.spindles.decouple_all()
+        return outputs
+
+    def _stop(self, nodes: Collection[str]) -> Outputs:
+        commands = self.spindles.stop(nodes)
+        return Outputs(commands=commands, told=[Wait(command.target) for command in commands])
 
     def _synchronisation(self, function: Function) -> Synchronisation:
         match function:
@@ -133,6 +139,7 @@ class FunctionOutput:
         acts = self.spindles.acts(function)
         outputs.commands += self.spindles.commands(function)
         if not acts:
+            outputs.stored += self.spindles.stored(function)
             return
         wait = self.spindles.wait(function)
         outputs.told.append(wait)

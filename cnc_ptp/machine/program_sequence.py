@@ -13,12 +13,17 @@ from enum import Enum, auto
 from cnc_ptp.machine.blocks import Block, HandshakeRequest
 from cnc_ptp.machine.function_output import FunctionOutput, Moment
 from cnc_ptp.machine.path_motion import PathMotion
+from cnc_ptp.machine.spindle_reports import Condition
+from cnc_ptp.machine.spindle_watch import SpindleWatch
 from cnc_ptp.machine.waits import Outputs, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 
 ENDS = ("stop", "decouple")
 """Commands that go out although the program was aborted."""
 NO_SOURCE = Source("", 0, 0, "")
+NO_MEASURING_EVENT = 22017
+COMMANDED_BY_OTHERS = 22022
+SPEED_WITHOUT_EFFECT = 22023
 
 
 class Phase(Enum):
@@ -68,8 +73,10 @@ class ProgramSequence:
         self.open_requests: set[int] = set()
         """Numbers of the handshake requests that the PLC has not acknowledged."""
         self._asked: dict[int, HandshakeRequest] = {}
-        self.notes: list[str] = []
-        """What the channel is to warn of."""
+        self._watch = SpindleWatch()
+        self._feedback: Mapping[str, Block] = {}
+        self.notes: list[tuple[int, str]] = []
+        """What the channel is to warn of: number and text."""
 
     # from outside
 
@@ -77,6 +84,7 @@ class ProgramSequence:
         """Starts from the first block; a `program` begins with feedforward off, MDI blocks with what is set."""
         if program:
             self._outputs.commands += self._functions.at_program_start()
+            self._watch.forget()
         self.blocks = blocks
         self.blocks_done = 0
         self.phase = Phase.NEXT
@@ -142,7 +150,16 @@ class ProgramSequence:
         for wait in self._unsent:
             wait.sent_cycle = first_cycle
         self._unsent = []
+        self._watch.note(outputs.told, first_cycle)
         return outputs
+
+    def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
+        """Blocks that the spindles have reported for the cycles before `cycle`."""
+        self._feedback = feedback
+        if self.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
+            waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
+            lost = self._watch.lost(cycle, feedback, waited_for)
+            self.notes += [(COMMANDED_BY_OTHERS, f"{text}; the program goes on") for text in lost]
 
     def waits_for(self) -> str:
         """What the program waits for that does not come with time alone; empty when it goes on by itself."""
@@ -157,18 +174,18 @@ class ProgramSequence:
 
     # from block to block
 
-    def go_on(self, first_cycle: int, feedback: Mapping[str, Block]) -> bool:
+    def go_on(self, first_cycle: int) -> bool:
         """One step forward between motions; False when the path has to wait.
 
-        Raises CncError of PathMotion.start, and 22019 for a coupling that did not come about.
-        `feedback`: blocks that the spindles have reported for the cycles before `first_cycle`.
+        Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
-            self._begin_block(feedback)
+            self._begin_block()
             return True
         if self.phase not in WAITING:
             return False
-        self._waits = [wait for wait in self._waits if not wait.fulfilled(first_cycle, feedback, self.open_requests)]
+        spindles, requests = self._feedback, self.open_requests
+        self._waits = [wait for wait in self._waits if not wait.fulfilled(first_cycle, spindles, requests)]
         if self._waits:
             return False
         if self.phase is Phase.WAIT_GEAR:
@@ -178,7 +195,7 @@ class ProgramSequence:
         elif self.phase is Phase.WAIT_END:
             self._end_program()
         else:
-            self._end_block(feedback)
+            self._end_block()
         return True
 
     def motion_ended(self) -> None:
@@ -190,21 +207,22 @@ class ProgramSequence:
             return
         self._motion.finish()
         if self._awaits_event:
-            self.notes.append("no measuring event has come in the block; its functions go out after the motion")
+            text = "no measuring event has come in the block; its functions go out after the motion"
+            self.notes.append((NO_MEASURING_EVENT, text))
             self.measuring_event()
         outputs = self._functions.of_block(self._block, Moment.AFTER) if self._block else Outputs()
         self._queue(outputs)
         self._waits, self._waits_after = self._waits_after + outputs.waits_after, []
         self.phase = Phase.WAIT_AFTER
 
-    def _begin_block(self, feedback: Mapping[str, Block]) -> None:
+    def _begin_block(self) -> None:
         if self.blocks_done >= len(self.blocks):
             self._waits = self._late_waits(machining=True, explicit=True)
             self.phase = Phase.WAIT_END
             return
         self._block = block = self.blocks[self.blocks_done]
         self.source = block.source
-        gear = self._functions.gear_change(block, feedback)
+        gear = self._functions.gear_change(block, self._feedback)
         if not gear.commands:
             self._functions_before()
             return
@@ -247,11 +265,11 @@ class ProgramSequence:
         self._motion.start(motion)
         self.phase = Phase.MOTION
 
-    def _end_block(self, feedback: Mapping[str, Block]) -> None:
+    def _end_block(self) -> None:
         stop = self._block.stop if self._block else ""
         self.blocks_done += 1
         if stop == "end":
-            self._queue(self._functions.at_program_end(feedback))
+            self._queue(self._functions.at_program_end(self._feedback))
             self._end_program()
         elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED
@@ -275,7 +293,10 @@ class ProgramSequence:
         """Functions go out with the next block; the path waits for them if their synchronisation type says so."""
         self._outputs.commands += outputs.commands
         self._outputs.requests += outputs.requests
+        self._outputs.told += outputs.told
         self._unsent += outputs.waits
+        notes = [stored.note(self._feedback) for stored in outputs.stored]
+        self.notes += [(SPEED_WITHOUT_EFFECT, note) for note in notes if note]
         self._renew_old_waits(outputs)
         self._waits_machining += outputs.waits_machining
         self._waits_explicit += outputs.waits_explicit

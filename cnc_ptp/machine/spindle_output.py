@@ -13,7 +13,7 @@ from typing import Any
 from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.spindle_reports import Condition
-from cnc_ptp.machine.waits import Wait
+from cnc_ptp.machine.waits import StoredSpeed, Wait
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
 from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
 
@@ -81,6 +81,14 @@ class SpindleOutput:
         if function.m is None:
             return function.spindle in self._directions and function.speed_rpm is not None
         return True
+
+    def stored(self, function: SpindleFunction) -> list[StoredSpeed]:
+        """The speed of a function that does not act; of a slave only where its master turns."""
+        master = self._masters.get(function.spindle, "")
+        all_stand = master and master not in self._directions
+        if function.speed_rpm is None or all_stand or self[function.spindle].plc_control:
+            return []
+        return [StoredSpeed(self[function.spindle].node, function.speed_rpm, self[master].node if master else "")]
 
     def commands(self, function: SpindleFunction) -> list[Command]:
         """For the unit of the spindle; a slave gets none, it does what its master is told (2.8.3)."""
@@ -186,12 +194,12 @@ class SpindleOutput:
         return [self._command(self[slave].node, "decouple") for slave in slaves]
 
     def stop(self, nodes: Collection[str]) -> list[Command]:
-        """M05 for those of `nodes` that the channel has set turning."""
+        """M05 for those of `nodes` that the channel has set turning and nobody else has commanded since."""
         stopped = [name for name in self._directions if self[name].node in nodes]
         for name in stopped:
             del self._directions[name]
         self._standing_after_gear -= set(stopped)
-        return [self._command(self[name].node, "stop") for name in stopped]
+        return [self._command(self[name].node, "stop", own=True) for name in stopped]
 
     @property
     def turning(self) -> set[str]:

@@ -77,8 +77,18 @@ def is_there(block: SpindleBlock, condition: Condition) -> bool:
     return True
 
 
+def turns(block: SpindleBlock) -> bool:
+    """In endless rotation."""
+    return block.state[-1] == S.CONTINUOUS_MOTION
+
+
+def what_it_was_told(spindle: str, condition: Condition, value: float) -> str:
+    """For the text of an error or a warning."""
+    return f"spindle {spindle} does not {TOLD[condition].format(value=value)} as it was told"
+
+
 def what_it_does(block: SpindleBlock) -> str:
-    """For the text of an error."""
+    """What it does instead."""
     state = block.state[-1]
     if state == S.CONTINUOUS_MOTION:
         return f"it was commanded to {block.programmed_speed_rpm[-1]:g} rpm"

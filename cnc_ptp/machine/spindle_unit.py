@@ -104,7 +104,16 @@ class SpindleUnit(Unit):
         handler: Handler = getattr(group, f"do_{command}")
         return handler
 
-    def _ordered(self, command: str, cycle: int, *, source: str = "", **arguments: Any) -> str | None:
+    def _ordered(
+        self, command: str, cycle: int, *, source: str = "", own: bool = False, **arguments: Any
+    ) -> str | None:
+        """`own`: a stop that counts only while nobody else has commanded the spindle since."""
+        commander = self._orders.commander
+        if own and commander and commander != source:
+            self._orders.forget(source)
+            return (
+                f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
+            )
         self._orders.check(command, source, self._coupling.master)
         order = Order(command, arguments, source, self.next_order)
         self.next_order += 1
@@ -220,12 +229,13 @@ class SpindleUnit(Unit):
         A stop forgets what waits.
         """
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
-        arguments.pop("source", None)
+        source = arguments.pop("source", "")
         if self._orders.must_wait(name, ""):
             self._orders.add(Order(name, arguments, ""))
             return
         if name == "stop":
             self._orders.clear()
+        self._orders.commander = source
         try:
             self._group_handler(name)(cycle, **arguments)
         except CncError as error:

@@ -7,10 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBlock
-from cnc_ptp.machine.spindle_reports import TOLD, Condition, carries_out, is_there, must_wait, what_it_does
+from cnc_ptp.machine.spindle_reports import (
+    Condition,
+    carries_out,
+    is_there,
+    must_wait,
+    turns,
+    what_it_does,
+    what_it_was_told,
+)
 from cnc_ptp.parameters import Synchronisation
 
 NOT_COUPLED = 22019
@@ -51,13 +60,17 @@ class Wait:
 
         A spindle that does something else is found out while the PLC has not acknowledged, too.
         """
-        if self.sent_cycle is None or cycle <= self.sent_cycle:
+        if not self.sent_before(cycle):
             return False
         acknowledged = self.request_id not in open_requests
         if self.condition is Condition.NONE:
             return acknowledged
         block = spindles.get(self.spindle)
         return isinstance(block, SpindleBlock) and self._reported(block) and acknowledged
+
+    def sent_before(self, cycle: int) -> bool:
+        """The spindle has reported since then."""
+        return self.sent_cycle is not None and cycle > self.sent_cycle
 
     def _reported(self, block: SpindleBlock) -> bool:
         match self.condition:
@@ -68,9 +81,8 @@ class Wait:
         if not carries_out(block, self.condition, self.value, self.turn):
             if must_wait(block):
                 return False
-            told = TOLD[self.condition].format(value=self.value)
-            reason = f"spindle {self.spindle} does not {told} as it was told, {what_it_does(block)}"
-            raise CncError(NOT_CARRIED_OUT, f"{reason}; the path waited for it")
+            told = what_it_was_told(self.spindle, self.condition, self.value)
+            raise CncError(NOT_CARRIED_OUT, f"{told}, {what_it_does(block)}; the path waited for it")
         return is_there(block, self.condition) and not must_wait(block)
 
     def _coupled(self, block: SpindleBlock) -> bool:
@@ -98,6 +110,27 @@ class Wait:
         return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
 
 
+class StoredSpeed(NamedTuple):
+    """An S word for a spindle (node) that the channel has not set turning.
+
+    `master`: node of its master if that one turns.
+    """
+
+    spindle: str
+    speed_rpm: float
+    master: str
+
+    def note(self, spindles: Mapping[str, Block]) -> str:
+        """What people should hear of it; empty where the next M03 or M04 is simply to come."""
+        words = f"S{self.speed_rpm:g} is without effect on spindle {self.spindle}"
+        block = spindles.get(self.spindle)
+        if self.master:
+            return f"{words}, which stands; M03 or M04 of its master {self.master} sets it turning"
+        if isinstance(block, SpindleBlock) and turns(block):
+            return f"{words}, which this channel has not set turning; it counts for its next M03 or M04"
+        return ""
+
+
 @dataclass(slots=True)
 class Outputs:
     """What is to go out at one moment of a block, and the waits that belong to it.
@@ -105,6 +138,7 @@ class Outputs:
     waits_machining   for the next G01, G02, G03 (MVS_SLM)
     waits_explicit    for the next #EXPL SYN (MVS_SLP)
     told              what the spindles are to report, whether the path waits for it or not
+    stored            speeds that command nothing now
     """
 
     commands: list[Command] = field(default_factory=list)
@@ -114,6 +148,7 @@ class Outputs:
     waits_machining: list[Wait] = field(default_factory=list)
     waits_explicit: list[Wait] = field(default_factory=list)
     told: list[Wait] = field(default_factory=list)
+    stored: list[StoredSpeed] = field(default_factory=list)
 
     def add_wait(self, synchronisation: Synchronisation, wait: Wait) -> None:
         """Files a wait under the moment at which its synchronisation type makes the path wait."""

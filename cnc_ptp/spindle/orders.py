@@ -37,6 +37,8 @@ class Orders:
         self.waiting: deque[Order] = deque()
         self.source = ""
         """For whom the spindle is at work: until its speed, position, reference or gear is there."""
+        self.commander = ""
+        """Who has commanded the spindle last, itself or as a slave; empty for people."""
         self.taken = 0
         """Commands of the PLC so far."""
 
@@ -72,7 +74,7 @@ class Orders:
 
     def begin(self, source: str) -> None:
         """The spindle works for `source` from now on."""
-        self.source = source
+        self.source = self.commander = source
         self._spindle.unsettled = True
 
     def next(self) -> Order | None:
@@ -82,6 +84,10 @@ class Orders:
         if self.waiting[0].source == PLC and self.source:
             return None
         return self.waiting.popleft()
+
+    def forget(self, source: str) -> None:
+        """What waits for `source` is not carried out."""
+        self.waiting = deque(order for order in self.waiting if order.source != source)
 
     def clear(self) -> None:
         """A stop, a reset or an error: nothing that waits is carried out."""

@@ -20,6 +20,7 @@ from channel_spindle_support import (
     three,
     told,
     told_at,
+    two_channels,
 )
 from machine_support import MachineBench
 from spindle_support import RPM, UP, StuckDrive, two_gears
@@ -226,3 +227,151 @@ def test_a_gear_change_of_the_channel_before_a_late_synchronisation() -> None:
     bench = run("M40 S600 M3\nG04 X0.1\nM41\n#EXPL SYN\nG01 X20 F6000", machine)
     assert bench.errors() == [] and [command for command, _ in told(bench)].count("select_gear") == 1
     assert speed_at_the_move(bench) == pytest.approx(600.0, rel=0.1)
+
+
+# ---------------------------------------------------------------- who has commanded the spindle last
+
+
+def two(scenario: str) -> MachineBench:
+    """Manual blocks of two channels for the same spindles: {at: s, to: channel or second, do: mdi, text: ...}."""
+    return MachineBench(None, scenario, machine=two_channels(), end_when_idle=False)
+
+
+def notes(bench: MachineBench) -> list[str]:
+    """Warnings of channels, and with what commands of spindles were carried out."""
+    events = [f"P-WARN-{event.error_id} {event.text}, line {event.line}" for event in bench.events]
+    return events + [record.message for record in bench.records if record.target in "stu" and record.message]
+
+
+TAKEN = """
+- {at: 0, to: channel, do: mdi, text: "M3 S1000"}
+- {at: 0.5, to: second, do: mdi, text: "M4 S2000"}
+- {at: 1, to: second, do: mdi, text: "G1 Y50 F600"}
+"""
+
+
+def test_a_reset_does_not_stop_what_another_channel_has_taken_over() -> None:
+    bench = two(TAKEN + "- {at: 1.5, to: channel, do: reset}").run(3.0)
+    assert bench.column("s", "set_speed_rpm")[-1] == -2000.0 and bench.errors() == []
+    assert notes(bench) == [
+        "spindle s: stop of 'channel' without effect, 'second' has commanded the spindle since",
+    ]
+
+
+def test_what_the_reset_channel_has_waiting_is_forgotten() -> None:
+    """The second channel changes the gear; the order of the first one waits when that is reset."""
+    bench = MachineBench(
+        None,
+        MANUAL
+        + """
+- {at: 0.1, to: s, do: select_gear, stage: 2, source: second}
+- {at: 0.5, to: channel, do: mdi, text: "M3 S1000"}
+- {at: 1, to: channel, do: reset}
+- {at: 1.5, to: s, do: gear_changed}
+""",
+        machine=mill(m3=MVS_SVS),
+        end_when_idle=False,
+    ).run(3.0)
+    assert bench.last("s").gear[-1] == 2 and set(bench.column("s", "set_speed_rpm")[1000:]) == {0.0}
+
+
+def test_the_program_end_does_not_stop_what_another_channel_has_taken_over() -> None:
+    scenario = """
+- {at: 0, to: s, do: stop_at_program_end, on: on}
+- {at: 0, to: channel, do: mdi, text: "M3 S1000"}
+- {at: 0.5, to: second, do: mdi, text: "M4 S2000"}
+- {at: 1, to: channel, do: mdi, text: "G04 X0.1 M30"}
+"""
+    bench = two(scenario).run(3.0)
+    assert bench.column("s", "set_speed_rpm")[-1] == -2000.0 and bench.errors() == []
+
+
+def test_m5_of_another_channel_counts_and_its_user_hears_of_it() -> None:
+    """The other channel hears of what has happened to its M3 when its next block begins."""
+    bench = two(TAKEN + '- {at: 1.5, to: channel, do: mdi, text: "M5"}').run(3.0)
+    assert bench.column("s", "set_speed_rpm")[-1] == 0.0 and bench.errors() == []
+    assert notes(bench) == [
+        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as it was told, it was commanded to -2000 rpm; "
+        "the program goes on, line 1",
+        "P-WARN-22022 channel second: spindle s does not turn at -2000 rpm as it was told, it is in Stopping; "
+        "the program goes on, line 1",
+    ]
+
+
+def test_the_user_of_a_slave_hears_what_another_channel_tells_its_master() -> None:
+    """A reset of the channel that has coupled the slave, and commanded it last, stops it."""
+    scenario = """
+- {at: 0, to: second, do: mdi, text: "S2[M3 REV2000]"}
+- {at: 0.5, to: second, do: mdi, text: "G1 Y50 F600"}
+- {at: 1, to: channel, do: mdi, text: "#SET AX LINK[1,S2=S]"}
+- {at: 1.1, to: channel, do: mdi, text: "#ENABLE AX LINK[1]"}
+- {at: 1.2, to: channel, do: mdi, text: "M3 S500"}
+- {at: 2, to: channel, do: reset}
+"""
+    bench = two(scenario).run(3.0)
+    assert notes(bench) == [
+        "P-WARN-22022 channel second: spindle t does not turn at 2000 rpm as it was told, it was commanded to 500 rpm; "
+        "the program goes on, line 1"
+    ]
+    assert bench.column("t", "set_speed_rpm")[1990] == 500.0 and bench.last("t").set_speed_rpm[-1] == 0.0
+
+
+def test_a_reset_leaves_a_slave_alone_that_it_has_not_commanded() -> None:
+    scenario = """
+- {at: 0, to: second, do: mdi, text: "S2[M3 REV2000]"}
+- {at: 1, to: channel, do: mdi, text: "#SET AX LINK[1,S2=S]"}
+- {at: 1.1, to: channel, do: mdi, text: "#ENABLE AX LINK[1]"}
+- {at: 2, to: channel, do: reset}
+"""
+    bench = two(scenario).run(3.0)
+    assert bench.last("t").set_speed_rpm[-1] == 2000.0 and bench.last("t").master == "" and notes(bench) == []
+
+
+def test_a_stop_of_the_plc_is_told_to_a_program_that_does_not_wait() -> None:
+    program = "M3 S1000\nG04 X1\nG01 X20 F6000\nM5"
+    bench = run(program, mill(m3=MVS_SVS), "- {at: 0.5, to: s, do: stop}")
+    assert bench.errors() == [] and bench.position("x") == 20.0
+    assert notes(bench) == [
+        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as it was told, it is in Stopping; "
+        "the program goes on, line 3"
+    ]
+
+
+def test_a_spindle_that_was_stopped_between_two_programs_is_of_no_concern() -> None:
+    bench = MachineBench("%P\nM3 S1000\nM30", machine=mill(m3=MVS_SVS), end_when_idle=False).run(1.0)
+    bench.give("s", "stop")
+    bench.run(0.5)
+    bench.give("channel", "load", program="b.nc", text="%B\nG01 X1 F6000\nM30")
+    assert bench.give("channel", "start").accepted
+    bench.run(1.0)
+    assert bench.position("x") == 1.0 and notes(bench) == []
+
+
+def test_a_speed_for_what_another_channel_has_set_turning() -> None:
+    scenario = """
+- {at: 0, to: channel, do: mdi, text: "M3 S1000"}
+- {at: 0.5, to: second, do: mdi, text: "S2000"}
+- {at: 1, to: second, do: mdi, text: "M3"}
+"""
+    bench = two(scenario).run(2.0)
+    assert bench.column("s", "set_speed_rpm")[990] == 1000.0 and bench.column("s", "set_speed_rpm")[-1] == 2000.0
+    assert notes(bench) == [
+        "P-WARN-22023 channel second: S2000 is without effect on spindle s, which this channel has not set turning; "
+        "it counts for its next M03 or M04, line 1"
+    ]
+
+
+def test_a_speed_before_m3_is_nothing_to_warn_of() -> None:
+    bench = run(LINK + "S1000\nM3", machine_of(*three()))
+    assert notes(bench) == [] and max(bench.column("t", "set_speed_rpm")) > 900.0
+
+
+def test_a_speed_for_a_slave_that_was_coupled_at_rest() -> None:
+    program = f"M3 S1000\n{LINK}S2000\nG01 X10 F3000\nM3\nG01 X20\nM5"
+    bench = run(program, machine_of(*three(s=MVS_SVS)))
+    assert bench.errors() == [] and notes(bench) == [
+        "P-WARN-22023 channel channel: S2000 is without effect on spindle t, which stands; M03 or M04 of its master s "
+        "sets it turning, line 5"
+    ]
+    assert speed_at_the_move(bench, "t", 0) == 0.0
+    assert speed_at_the_move(bench, "t", 1) == pytest.approx(2000.0, rel=0.1)
