@@ -25,9 +25,8 @@ State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""
 Row = tuple[float, float, float, float, float, float, float, float, float]
 """A ControlCycle without its names, which take their time."""
-Columns = tuple[Sequence[float], ...]
+Columns = Sequence[list[float]]
 """The values of ControlCycle over many cycles."""
-NOTHING: Columns = ((),) * 9
 HISTORY = 16
 """Setpoints that are kept: 4 cycles of lead, 6 of delay, and their neighbours."""
 
@@ -144,7 +143,7 @@ class ControlLoop:
             if watched and self.too_far(setpoint):
                 break
             rows.append(self._cycle(setpoint, closed))
-        return tuple(zip(*rows, strict=True)) or NOTHING
+        return [*map(list, zip(*rows, strict=True))] if rows else [[] for _ in ControlCycle._fields]
 
     def _plain_cycles(self, setpoints: Sequence[State], watched: bool) -> Columns:
         """Position control with nothing beside it: v = Kv · following error."""

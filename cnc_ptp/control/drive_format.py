@@ -30,8 +30,9 @@ class Digits(NamedTuple):
         """`encode` of many values."""
         scale, highest = self.scale, (1 << (self.bits - 1)) - 1
         digits = [round(value * scale) for value in values]
-        fits = -highest - 1 <= min(digits, default=0) and max(digits, default=0) <= highest
-        return digits if fits else [self.encode(value) for value in values]
+        if digits and not (-highest - 1 <= min(digits) and max(digits) <= highest):
+            return [self.encode(value) for value in values]
+        return digits
 
     def decode(self, digits: int) -> float:
         """The value of an integer in kernel units."""

@@ -30,12 +30,14 @@ class LagMonitor:
         "_rest",
         "_settling",
         "_standing",
+        "on",
     )
 
     def __init__(self, parameters: LagMonitoring, *, kv: float, cycle_time: float) -> None:
         """`kv` in 1/s, `cycle_time` in s."""
         off = parameters.kind in (ESTIMATED, LINEAR) and parameters.dynamic >= SCALE
         self._kind = 0 if off else parameters.kind
+        self.on = self._kind in (ESTIMATED, LINEAR, FIXED)
         self._moving, self._standing = parameters.moving_limit, parameters.standstill_limit
         self._cycle_time = cycle_time
         self._factor = parameters.dynamic / SCALE
@@ -45,10 +47,6 @@ class LagMonitor:
         self._above = self._rest = 0
         self._settling = ceil(SETTLING / kv / cycle_time)
         self._needed = round(parameters.filter_time / cycle_time)
-
-    @property
-    def on(self) -> bool:
-        return self._kind in (ESTIMATED, LINEAR, FIXED)
 
     def source(self, velocity: float) -> str:
         """The parameter that sets `limit`, for messages."""

@@ -156,7 +156,7 @@ class PositionLoop:
 
     def watches(self, *, on: bool) -> bool:
         """True while the following error is monitored; `on` is False without power."""
-        return on and self.closed and self.control.monitor.on
+        return self.control.monitor.on and on and self.closed
 
     def cycles(self, setpoints: Sequence[State], *, on: bool, watched: bool) -> Cycles:
         """Many cycles through which the loop stays as it is; if `watched`, up to a following error too large.
@@ -181,7 +181,7 @@ class PositionLoop:
         outputs = self._output.encode_all(commands)
         if outputs:
             self.drive_output = outputs[-1]
-        return list(actuals), list(actual_speeds), list(errors), outputs
+        return actuals, actual_speeds, errors, outputs
 
     def command(self, setpoint: State, *, on: bool) -> None:
         """Moves the drive for one cycle. `on` is False without power.
