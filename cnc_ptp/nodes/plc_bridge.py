@@ -19,12 +19,14 @@ from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
+from cnc_ptp.nodes.silence import SilentTopics
 from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118
+OVERRIDE_STALE = 26119
 FULL_OVERRIDE = 100.0
 
 
@@ -34,8 +36,8 @@ class PlcBridgeNode(UnitNode):
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of
     overrides and switches a value counts when it changes; the last one holds when messages stop; `valid` = false means
-    100 %, no feed hold, enabled. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms
-    sets feed hold on all channels.
+    100 %, no feed hold, enabled. An override of a spindle that came in a rhythm and falls silent is an event. A life
+    sign that was seen once and then stays away for P-MACH life_sign_timeout_ms sets feed hold on all channels.
     """
 
     def __init__(
@@ -52,6 +54,9 @@ class PlcBridgeNode(UnitNode):
         self._channels = list(machine.channels)
         units = {**machine.channels, **machine.axes, **machine.spindles}
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
+        self._spindles = list(machine.spindles)
+        self._overrides = SilentTopics(self._life_sign_timeout)
+        self.create_timer(self._life_sign_timeout / 4.0, self._watch_overrides)
         for unit in (*machine.channels, *machine.axes, *machine.spindles):
             self._listen(msg.Override, unit, "override", self._override)
         for unit in machine.channels:
@@ -87,6 +92,8 @@ class PlcBridgeNode(UnitNode):
         self.create_subscription(message_type, topic, received, PLC_INPUT)
 
     def _override(self, unit: str, message: msg.Override) -> Command:
+        if unit in self._spindles:
+            self._overrides.heard(f"/{unit}/override", time.monotonic())
         full = min(FULL_OVERRIDE, self._highest_override[unit])
         return Command(unit, "set_override", {"percent": message.percent if message.valid else full})
 
@@ -118,6 +125,12 @@ class PlcBridgeNode(UnitNode):
                 del self._factors[topic]
                 silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
                 self._warn(FACTOR_STALE, f"plc: no message on {topic} for {silence}; the factor stays as it is")
+
+    def _watch_overrides(self) -> None:
+        """The last override of a spindle holds when its topic falls silent, and people are told."""
+        for topic in self._overrides.fallen_silent(time.monotonic()):
+            silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
+            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {silence}; the override stays as it is")
 
     def _on_external_setpoint(self, axis: str, message: msg.ExternalSetpoint) -> None:
         """With a cycle it counts for that one, without (0) for the next block; `valid` = false ends the motion."""

@@ -106,6 +106,23 @@ def test_coupling_by_service(client):
     client.wait_last("t", lambda block: block.master == "", "free")
 
 
+def test_an_override_that_falls_silent_stays_as_it_is(client):
+    """One message is no rhythm: somebody has given an override by hand."""
+    client.done("s", "start", direction="cw", speed_rpm=400.0, source="")
+    client.override("t", 50.0)
+    for _ in range(2):
+        client.override("s", 50.0)
+    client.spin_until(lambda: any(event.error_id == 26119 for event in client.events), "the event")
+    client.wait_blocks("plc", 100)
+    texts = [event.text for event in client.events if event.error_id == 26119]
+    assert texts == ["plc: no message on /s/override for 1000 ms; the override stays as it is"]
+    client.shows("s", "set_speed_rpm", 200.0)
+    client.override("s", 100.0)
+    client.shows("s", "set_speed_rpm", 400.0)
+    client.override("t", 100.0)
+    client.done("s", "stop", source="")
+
+
 def test_positioning_and_homing_as_actions(client):
     goal, _ = client.action(action.OrientSpindle, "/s/position", position_deg=222.0, speed_rpm=120.0, direction="cw")
     status, result = client.result_of(goal)
