@@ -18,9 +18,10 @@ from axis_control_support import (
     plain_control,
 )
 from loop_support import KV, PLANT, TA, feedforward
-from machine_support import UnitBench
+from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
 from cnc_ptp.axis.axis import Axis
+from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.parameters.control_view import ControlParameters, LagMonitoring
@@ -57,6 +58,25 @@ def test_lags_of_a_ptp_motion() -> None:
         bench.run(450)
         assert bench.column("set_acceleration")[-1] == 1000.0
         assert bench.column("following_error")[-1] == pytest.approx(lag, abs=1e-6)
+
+
+@pytest.mark.parametrize("target", [-100.0, -37.7, -3.3, -0.5])
+def test_what_velocity_and_acceleration_feedforward_leave_of_a_whole_motion(target: float) -> None:
+    """z of the mill without encoder: j T²/(12 Kv) of a held command, and Ta j T²/2 where the jerk changes in a cycle.
+
+    Not below 1e-6 mm: that holds at constant velocity and acceleration (test_control_loop_lags.py).
+    """
+    z = changed(MILL.axes["z"], encoder_increment=0.0)
+    bench = UnitBench(AxisUnit(z, cycle_time=CYCLE_TIME))
+    bench.accepted("set_feedforward", on=True)
+    bench.accepted(
+        "move_absolute", target=target, velocity=200.0, acceleration=1500.0, deceleration=1700.0, jerk=z.jerk
+    )
+    bench.run(2500)
+    error = np.abs(bench.column("following_error"))
+    jerk_in_a_cycle = z.jerk * CYCLE_TIME**2
+    assert 5e-5 < error.max() < jerk_in_a_cycle * (1.0 / (12.0 * KV) + TA / 2.0) < 1.2e-4
+    assert error[-1] < 1e-6 and bench.column("set_position")[-1] == target
 
 
 def test_refusals_and_warnings_of_the_unit() -> None:
