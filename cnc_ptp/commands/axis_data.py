@@ -65,6 +65,12 @@ class AxisData:
         return not drive.ideal and "velocity" not in drive.feedback
 
     @property
+    def half_digit(self) -> float:
+        """Half a digit of the actual torque, Nm (N); 0.0 where it comes in no digits."""
+        control = self.axis.control
+        return 0.0 if control.drive.ideal or not control.scaling.torque else 0.5 / abs(control.scaling.torque)
+
+    @property
     def unit(self) -> str:
         return "deg" if self.axis.rotary else "mm"
 

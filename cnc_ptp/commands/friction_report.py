@@ -8,8 +8,8 @@ from cnc_ptp.commands.axis_data import AxisData
 from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
 from cnc_ptp.commissioning.friction_table import MODE, FrictionTable, Scaling
 
-LARGE_SCATTER = 0.05
-"""Scatter over friction, above which a point is doubtful."""
+LARGE_SCATTER = 0.03
+"""Scatter over friction that is warned about."""
 
 
 def scaling_of(data: AxisData) -> Scaling:
@@ -41,25 +41,44 @@ def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
         yield f"left out, driven in one direction only: {speeds_shown(curve.one_way)} {data.unit}/s"
     if curve.uneven:
         yield f"left out, uneven motion (stick-slip, or not settled): {speeds_shown(curve.uneven)} {data.unit}/s"
-    doubtful = [point.speed for point in curve.points if point.scatter > LARGE_SCATTER * abs(point.friction)]
-    if doubtful:
-        yield f"doubtful, scatter above 5 % of the friction: {speeds_shown(doubtful)} {data.unit}/s"
+    doubt = doubtful(data, curve)
+    if doubt is not None:
+        yield f"warning: {doubt}"
+
+
+def doubtful(data: AxisData, curve: FrictionCurve) -> str | None:
+    """At which speeds the scatter is large, and why; None where it is not."""
+    points = [point for point in curve.points if point.scatter > LARGE_SCATTER * abs(point.friction)]
+    if not points:
+        return None
+    speeds = [point.speed for point in points]
+    where = (
+        f"axis {data.axis.name}: scatter above {100.0 * LARGE_SCATTER:g} % of the friction at {speeds_shown(speeds)}"
+    )
+    if all(data.half_digit <= LARGE_SCATTER * abs(point.friction) for point in points):
+        return f"{where} {data.unit}/s; measure longer, or without disturbances"
+    return (
+        f"{where} {data.unit}/s; half a digit of the torque, which counts as scatter, is {data.half_digit:.3g} "
+        f"{data.effort} there: more digits a {data.effort} in drive and P-AXIS-00325, 00326, 00392"
+    )
 
 
 def speeds_shown(values: Sequence[float]) -> str:
     return ", ".join(f"{value:.4g}" for value in values)
 
 
-def friction_yaml(data: AxisData, table: FrictionTable, source: str) -> str:
+def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, source: str) -> str:
     """The lines to paste into the machine file; what the table does not say stays as the machine has it."""
     raw, effort = data.raw, data.effort
     scaling = scaling_of(data)
     way = "0.001 deg/s" if data.axis.rotary else "µm/s"
     digits = f"{scaling.numerator:g}/{scaling.denominator:g} digits are {scaling.reference:g} {effort}"
+    doubt = doubtful(data, curve)
     lines = [
         f"# Friction of axis {data.axis.name}, {source}.",
         "# Replaces lr_param.frict_comp and frict_comp. Behind each entry: velocity, mean of both directions, scatter.",
         f"# in: {way}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
+        *([f"# warning: {doubt}"] if doubt is not None else []),
         f"/{data.axis.name}:",
         "  ros__parameters:",
         "    lr_param: {frict_comp: 1}",

@@ -55,11 +55,11 @@ def identify_friction(
         if driven is None:
             return RUN_FAILED
         trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
-    curve = friction_curve(trace, settling=timing.settling)
+    curve = friction_curve(trace, settling=timing.settling, half_digit=data.half_digit)
     table = friction_table(curve, scaling_of(data), max_points=max_points(data))
     console = Console(highlight=False, soft_wrap=True)
     for line in curve_lines(data, curve):
-        console.print(line, markup=False)
+        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
     if data.recorded is not None:
         for line in coverage_lines(data, [point.speed for point in curve.points], timing):
             console.print(line, markup=False)
@@ -68,7 +68,7 @@ def identify_friction(
     if table.dropped:
         kept = f"{len(table.entries)} of {len(curve.points)} points"
         console.print(f"{kept} are in the table (P-COMP-00062); between them the curve is straight")
-    deliver(console, output, friction_yaml(data, table, source))
+    deliver(console, output, friction_yaml(data, curve, table, source))
     return 0
 
 

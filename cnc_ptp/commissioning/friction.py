@@ -5,6 +5,7 @@ Source: TF5200 friction 3.1 (torque read off during a motion at constant speed),
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -33,7 +34,7 @@ class FrictionPoint:
     """Friction at one speed; mm/s (deg/s), N (Nm).
 
     `friction` = (M(+v) - M(-v)) / 2, `load` = (M(+v) + M(-v)) / 2 (weight of a hanging axis), `scatter`: standard
-    deviation of the batch means about the mean of their direction.
+    deviation of the batch means about the mean of their direction, and half a digit of the torque, squares added.
     """
 
     speed: float
@@ -72,9 +73,10 @@ class _Sample:
     seconds: float
 
 
-def friction_curve(trace: AxisTrace, *, settling: Seconds) -> FrictionCurve:
+def friction_curve(trace: AxisTrace, *, settling: Seconds, half_digit: float = 0.0) -> FrictionCurve:
     """The friction curve of a recording; `settling`: seconds thrown away at the beginning of each phase, by speed.
 
+    `half_digit` of the recorded torque in N (Nm): a steady torque in whole digits may be off by that without a sign.
     Raises CncError 27003 too short, 27004 no motion, 27005 no torque, 27006 nothing steady, 27007 one direction only.
     """
     torque = _torque(trace)
@@ -92,7 +94,7 @@ def friction_curve(trace: AxisTrace, *, settling: Seconds) -> FrictionCurve:
             "no table was made, drive faster or longer",
         )
     samples = [_sample(trace, torque, phase) for phase in even]
-    points, one_way = _points(samples)
+    points, one_way = _points(samples, half_digit)
     if not points:
         shown = ", ".join(f"{velocity:g}" for velocity in one_way)
         raise refusal(
@@ -157,13 +159,13 @@ def _sample(trace: AxisTrace, torque: Array, phase: SteadyPhase) -> _Sample:
     return _Sample(phase.velocity, batches, len(phase) * trace.cycle_time)
 
 
-def _points(samples: Sequence[_Sample]) -> tuple[tuple[FrictionPoint, ...], tuple[float, ...]]:
+def _points(samples: Sequence[_Sample], half_digit: float) -> tuple[tuple[FrictionPoint, ...], tuple[float, ...]]:
     points, one_way = [], []
     for group in _by_speed(samples):
         forth = [sample for sample in group if sample.velocity > 0.0]
         back = [sample for sample in group if sample.velocity < 0.0]
         if forth and back:
-            points.append(_point(group, forth, back))
+            points.append(_point(group, forth, back, half_digit))
         else:
             one_way.append(group[0].velocity)
     return tuple(points), tuple(one_way)
@@ -179,7 +181,9 @@ def _by_speed(samples: Iterable[_Sample]) -> list[list[_Sample]]:
     return groups
 
 
-def _point(group: Sequence[_Sample], forth: Sequence[_Sample], back: Sequence[_Sample]) -> FrictionPoint:
+def _point(
+    group: Sequence[_Sample], forth: Sequence[_Sample], back: Sequence[_Sample], half_digit: float
+) -> FrictionPoint:
     means, residuals = [], []
     for direction in (forth, back):
         batches = np.concatenate([sample.batches for sample in direction])
@@ -188,5 +192,6 @@ def _point(group: Sequence[_Sample], forth: Sequence[_Sample], back: Sequence[_S
     all_residuals = np.concatenate(residuals)
     freedom = len(all_residuals) - 2
     scatter = float(np.sqrt(np.sum(all_residuals**2) / freedom)) if freedom > 0 else 0.0
+    scatter = math.hypot(scatter, half_digit)
     speed = float(np.mean([abs(sample.velocity) for sample in group]))
     return FrictionPoint(speed, means[0], means[1], scatter, sum(sample.seconds for sample in group))

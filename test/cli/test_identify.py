@@ -303,6 +303,39 @@ def test_recordings_that_are_no_use(kind, tmp_path):
     assert result.exit_code == 2 and result.stderr.startswith("P-ERR-2600")
 
 
+def test_a_torque_in_coarse_steps_is_warned_about(tmp_path):
+    """10 digits at 4 Nm: 0.948 Nm are 2 digits, 0.8 Nm, however steady they are."""
+    telegram = {"commands": ["S-0-0036", "S-0-0081"], "feedback": ["S-0-0051", "S-0-0084"]}
+    antr = {"torque_scale_num": 10, "telegram": telegram, "v_reso_num": 10000, "v_reso_denom": 10000}
+    machine = changed_mill(tmp_path / "coarse.yaml", "x", kenngr={"antr_typ": 2}, antr=antr)
+    path = tmp_path / "x.yaml"
+    speeds = ["--velocity", 2, "--velocity", 300]
+    result = call("identify", "friction", "x", "--machine", machine, "-o", path, *speeds)
+    assert result.exit_code == 0, result.output
+    for line in result.stdout.splitlines()[1:3]:
+        speed, _, _, friction, scatter, _, _ = map(float, line.split())
+        assert abs(friction - plant_friction(machine, "x", speed)) <= scatter == 0.2
+    warning = (
+        "warning: axis x: scatter above 3 % of the friction at 2, 300 mm/s; half a digit of the torque, which counts as "
+        "scatter, is 0.2 Nm there: more digits a Nm in drive and P-AXIS-00325, 00326, 00392"
+    )
+    assert result.stdout.splitlines()[3] == warning
+    assert f"# {warning}\n" in path.read_text()
+
+
+def test_a_torque_that_scatters_is_warned_about(tmp_path):
+    speeds = np.concatenate([np.r_[np.zeros(100), np.full(700, v), np.zeros(100)] for v in (5, -5, 20, -20)])
+    noise = np.where(np.abs(speeds) == 5.0, 1.0, 0.01) * np.random.default_rng(1).standard_normal(len(speeds))
+    columns = {"set_velocity": speeds, "actual_velocity": speeds, "actual_torque": 0.8 * np.sign(speeds) + noise}
+    columns["actual_position"] = np.cumsum(speeds) * 1e-3
+    path = recording_of(tmp_path / "a.mcap", "x", columns, machine=MILL.read_text())
+    result = call("identify", "friction", "x", "--recording", path)
+    assert result.exit_code == 0, result.output
+    text = "axis x: scatter above 3 % of the friction at 5 mm/s; measure longer, or without disturbances"
+    assert f"warning: {text}" in result.stdout.splitlines()
+    assert f"# warning: {text}" in result.stdout.splitlines()
+
+
 def test_axes_without_friction_have_no_table():
     """z has a drive of first order: what its torque shows at constant velocity is rounding."""
     result = call("identify", "friction", "z", "--machine", MILL)

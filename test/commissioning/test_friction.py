@@ -38,6 +38,16 @@ def test_weight_is_told_apart_and_noise_averages_out():
         assert 0.3 < point.scatter / (noise / np.sqrt(80)) < 2.0
 
 
+@pytest.mark.parametrize("digit", [1.0, 10.0, 40.0])
+def test_half_a_digit_of_the_torque_counts_as_scatter(digit):
+    """A torque that comes in steps is as steady as it is wrong: by up to half a step."""
+    run = friction_run(SPEEDS)
+    run.actual_torque[:] = np.round(run.actual_torque / digit) * digit
+    for point in friction_curve(run, settling=always(0.1), half_digit=0.5 * digit).points:
+        assert abs(point.friction - stribeck(point.speed)) <= point.scatter
+        assert point.scatter == pytest.approx(0.5 * digit)
+
+
 def test_settling_is_thrown_away():
     run = friction_run(SPEEDS, transient=500.0)
     for point in friction_curve(run, settling=always(0.1)).points:
