@@ -175,9 +175,8 @@ def ascending(parameters: ParameterSet, entries: int) -> Iterator[Problem]:
     missing = [index for index in range(1, entries) if not parameters.is_given("P-COMP-00046", index)]
     if missing:
         which = f"entries {spans(missing)}" if len(missing) > 1 else f"entry {missing[0]}"
-        verb = "are" if len(missing) > 1 else "is"
-        text = f"{which} of the {entries} that P-COMP-00042 names {verb} not given, velocities ascend"
-        yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00046", (missing[0],), text)
+        text = f"value {entries}, but the velocity (P-COMP-00046) of {which} is not given"
+        yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00042", (), text)
     last, before = -1, -1
     for index in (index for index in range(entries) if index not in missing):
         value = parameters.number("P-COMP-00046", index)

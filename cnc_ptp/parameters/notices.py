@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from cnc_ptp.parameters.control_notices import control_notices
 from cnc_ptp.parameters.encoder import CORRECTED
+from cnc_ptp.parameters.friction_notices import friction_notices
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.spindle_view import control_limit, feedback, is_open_loop
@@ -24,6 +25,7 @@ def machine_warnings(sets: Mapping[str, ParameterSet], cycle_time: float) -> Ite
             yield from couplings_without_effect(parameters)
         else:
             yield from control_notices(parameters, cycle_time)
+            yield from friction_notices(parameters)
             yield from corrected_resolution(parameters)
             yield from spindle_notices(parameters)
 

@@ -93,16 +93,16 @@ PROBLEMS = {
         "velocities ascend"
     ),
     'frict_comp: {mode: 3, table_entries: 20, table: {"0": {in: 5}}}': (
-        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[1].in of /x: entries 1 ... 19 of the 20 that "
-        "P-COMP-00042 names are not given, velocities ascend"
+        "P-ERR-110591 compensation list, P-COMP-00042 frict_comp.table_entries of /x: value 20, but the velocity "
+        "(P-COMP-00046) of entries 1 ... 19 is not given"
     ),
     'frict_comp: {mode: 3, table_entries: 8, table: {"1": {in: 5}, "3": {in: 6}, "4": {in: 7}}}': (
-        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[2].in of /x: entries 2, 5 ... 7 of the 8 that "
-        "P-COMP-00042 names are not given, velocities ascend"
+        "P-ERR-110591 compensation list, P-COMP-00042 frict_comp.table_entries of /x: value 8, but the velocity "
+        "(P-COMP-00046) of entries 2, 5 ... 7 is not given"
     ),
     'frict_comp: {mode: 3, table_entries: 3, table: {"0": {in: 5}, "2": {in: 6}}}': (
-        "P-ERR-110591 compensation list, P-COMP-00046 frict_comp.table[1].in of /x: entry 1 of the 3 that P-COMP-00042 "
-        "names is not given, velocities ascend"
+        "P-ERR-110591 compensation list, P-COMP-00042 frict_comp.table_entries of /x: value 3, but the velocity "
+        "(P-COMP-00046) of entry 1 is not given"
     ),
     f'{SERCOS}, lr_param: {{frict_comp: 1}}, frict_comp: {{mode: 3, table_entries: 1, table: {{"0": {{out: 5}}}}}}': (
         "P-ERR-70351 axis list, P-AXIS-00522 lr_param.frict_comp of /x: friction compensation needs an additive torque "
@@ -218,7 +218,8 @@ NOTICES = {
         "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
         "additive torque is put out"
     ),
-    "antr: {acc_reference_value: 0}, lr_param: {frict_comp: 1}, frict_comp: {mode: 3, table_entries: 1}": (
+    "antr: {acc_reference_value: 0}, lr_param: {frict_comp: 1}, "
+    "frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: 5}}}": (
         "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
         "additive torque is put out"
     ),
@@ -290,7 +291,7 @@ TORQUE_WORDS = {
     ),
     "commands: [S-0-0036, S-0-0081], feedback: [S-0-0051]": ("vorsteuer: {vorsteuerung: VEL}", []),
     "commands: [S-0-0036, S-0-0081], feedback: []": (
-        "lr_param: {frict_comp: 1}, frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: -40000}}}",
+        "lr_param: {frict_comp: 1}, frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: 40000}}}",
         ["additive torque command carry 1.31068 N, less than the 1.6 N of a_max and the friction table"],
     ),
     "feedback: [S-0-0051, S-0-0084]": (
