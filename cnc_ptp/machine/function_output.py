@@ -8,7 +8,7 @@ before M3, M4, M5, and these before S.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from enum import Enum
 
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBit, SpindleBlock
@@ -22,6 +22,7 @@ from cnc_ptp.nc.canonical import (
     CompensationSwitch,
     Function,
     GearChange,
+    Source,
     SpindleCommand,
     SpindleFeedforward,
     SpindleFunction,
@@ -79,25 +80,31 @@ class FunctionOutput:
                 outputs.told.append(change[1])
         return outputs
 
-    def at_program_end(self, feedback: Mapping[str, Block]) -> Outputs:
+    def at_program_end(self, feedback: Mapping[str, Block], source: Source) -> Outputs:
         """M05 for the spindles that the PLC wants stopped with the program (2.4.3); the others turn on."""
         wanted = [
             node
             for node, block in feedback.items()
             if isinstance(block, SpindleBlock) and block.status_bits[-1] & SpindleBit.STOP_AT_PROGRAM_END
         ]
-        return self._stop(wanted)
+        return self._stop(wanted, source)
 
-    def at_abort(self, keep: Container[str] = ()) -> Outputs:
+    def at_abort(self, source: Source, keep: Container[str] = ()) -> Outputs:
         """M05 for every spindle that the channel has set turning, except the nodes in `keep`; couplings end."""
-        turning = [node for node in self.spindles.turning if node not in keep]
-        outputs = self._stop(turning)
+        outputs = self._stop([node for node in self.spindles.turning if node not in keep], source)
         outputs.commands += self.spindles.decouple_all()
         return outputs
 
-    def _stop(self, nodes: Collection[str]) -> Outputs:
-        commands = self.spindles.stop(nodes)
-        return Outputs(commands=commands, told=[Wait(command.target) for command in commands])
+    def _stop(self, nodes: Container[str], source: Source) -> Outputs:
+        """The PLC need not acknowledge: nobody waits for it any more."""
+        outputs = Outputs()
+        for name in self.spindles.give_up(nodes):
+            spindle = self.spindles[name]
+            outputs.commands += self.spindles.stop(name)
+            outputs.told.append(Wait(spindle.node))
+            if self.spindles.told_to_plc(name) and not self.spindles.follows(name):
+                outputs.requests.append(self._request(source, "M", title(spindle), 5, waits=False))
+        return outputs
 
     def _synchronisation(self, function: Function) -> Synchronisation:
         match function:
@@ -131,7 +138,9 @@ class FunctionOutput:
         if not synchronisation & OUTPUT:
             return
         node = self.spindles[function.spindle].node if function.spindle else ""
-        request = self._request(block, function.letter, node, function.number, waits=bool(synchronisation & WAITING))
+        request = self._request(
+            block.source, function.letter, node, function.number, waits=bool(synchronisation & WAITING)
+        )
         self._ask(request, synchronisation, Wait(), outputs)
 
     def _spindle_function(self, function: SpindleFunction, block: CanonicalBlock, outputs: Outputs) -> None:
@@ -158,9 +167,9 @@ class FunctionOutput:
     ) -> HandshakeRequest:
         kind, number = ("S", 0) if function.m is None else ("M", function.m)
         return self._request(
-            block,
+            block.source,
             kind,
-            spindle.node or spindle.own_name or spindle.name,
+            title(spindle),
             number,
             waits=bool(synchronisation & WAITING),
             value=function.speed_rpm or 0.0,
@@ -177,7 +186,7 @@ class FunctionOutput:
 
     def _request(
         self,
-        block: CanonicalBlock,
+        source: Source,
         kind: str,
         spindle: str,
         number: int,
@@ -187,7 +196,12 @@ class FunctionOutput:
         position: float = 0.0,
         direction: str = "",
     ) -> HandshakeRequest:
-        request_id, line = next(self._request_numbers), block.source.line
+        request_id, line = next(self._request_numbers), source.line
         return HandshakeRequest(
             0, request_id, self._channel.name, kind, spindle, number, value, line, waits, position, direction
         )
+
+
+def title(spindle: ChannelSpindle) -> str:
+    """What the PLC knows a spindle by: its node, or its own name where it has none."""
+    return spindle.node or spindle.own_name or spindle.name

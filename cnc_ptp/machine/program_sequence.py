@@ -115,7 +115,7 @@ class ProgramSequence:
 
     def stop_spindles(self, *, keep: Container[str] = ()) -> None:
         """M05 for the spindles that the channel has set turning, except the nodes in `keep`; its couplings end."""
-        self._queue(self._functions.at_abort(keep))
+        self._queue(self._functions.at_abort(self.source, keep))
 
     def end_couplings(self) -> None:
         """Couplings that manual blocks have left end before a program begins."""
@@ -269,7 +269,7 @@ class ProgramSequence:
         stop = self._block.stop if self._block else ""
         self.blocks_done += 1
         if stop == "end":
-            self._queue(self._functions.at_program_end(self._feedback))
+            self._queue(self._functions.at_program_end(self._feedback, self.source))
             self._end_program()
         elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED

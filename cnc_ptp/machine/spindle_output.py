@@ -7,7 +7,7 @@ Source: TF5200 spindle 2.2, 2.4.1, 2.5, 2.8.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Container, Mapping
 from typing import Any
 
 from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
@@ -193,13 +193,18 @@ class SpindleOutput:
         slaves, self._masters = list(self._masters), {}
         return [self._command(self[slave].node, "decouple") for slave in slaves]
 
-    def stop(self, nodes: Collection[str]) -> list[Command]:
-        """M05 for those of `nodes` that the channel has set turning and nobody else has commanded since."""
-        stopped = [name for name in self._directions if self[name].node in nodes]
-        for name in stopped:
+    def give_up(self, nodes: Container[str]) -> list[str]:
+        """Names of those of `nodes` that the channel has set turning; from now on they are none of its concern."""
+        names = [name for name in self._directions if self[name].node in nodes]
+        for name in names:
             del self._directions[name]
-        self._standing_after_gear -= set(stopped)
-        return [self._command(self[name].node, "stop", own=True) for name in stopped]
+        self._standing_after_gear -= set(names)
+        return names
+
+    def stop(self, name: str) -> list[Command]:
+        """M05, unless somebody else has commanded the spindle since; none where there is no unit."""
+        spindle = self[name]
+        return [] if spindle.plc_control else [self._command(spindle.node, "stop", own=True)]
 
     @property
     def turning(self) -> set[str]:

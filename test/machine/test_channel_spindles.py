@@ -173,6 +173,43 @@ def test_channel_specific_plc_spindle_without_synchronisation() -> None:
     assert moves(bench)[0][0] == 1
 
 
+@pytest.mark.parametrize("how", ["reset", "error", "reset of an idle channel"])
+def test_the_plc_is_asked_to_stop_its_spindle_when_the_program_is_aborted(how: str) -> None:
+    """Nobody waits for its acknowledgement; no command goes out without a receiver."""
+    bench = MachineBench(
+        "%P\nM3 S500\nG01 X100 F3000\nM30",
+        machine=plc_machine(),
+        start=how != "reset of an idle channel",
+        end_when_idle=False,
+    )
+    if how == "reset of an idle channel":
+        bench.run(0.02)
+        bench.give("channel", "mdi", text="M3 S500")
+    bench.run(0.5)
+    if how == "error":
+        bench.give("channel", "upstream_lost", source="x")
+    else:
+        bench.give("channel", "reset")
+    bench.run(1.0)
+    first, last = requests(bench)
+    assert (first.kind, first.number, first.spindle, first.acknowledge_needed) == ("M", 3, "S1", True)
+    assert (last.kind, last.number, last.spindle, last.acknowledge_needed) == ("M", 5, "S1", False)
+    assert last.line == (1 if how == "reset of an idle channel" else 3) and last.cycle >= 500
+    assert {command.target for block in bench.blocks["channel"] for command in block.commands} <= {"x", "y", "z", "t"}
+
+
+def test_the_plc_hears_of_the_end_of_an_axis_specific_plc_spindle_too() -> None:
+    units = {"s": replace(MILL.spindles["s"], plc_controlled=True)}
+    bench = MachineBench("%P\nM3 S500\nG01 X100 F3000\nM30", machine=machine_of(three()[0], units=units)).run(0.5)
+    bench.give("channel", "reset")
+    bench.run(1.0)
+    assert [(r.kind, r.number, r.spindle, r.acknowledge_needed) for r in requests(bench)] == [
+        ("M", 3, "s", True),
+        ("M", 5, "s", False),
+    ]
+    assert told(bench)[-1] == ("stop", {}) and bench.last("s").set_speed_rpm[-1] == 0.0
+
+
 def test_beside_a_plc_spindle_an_nc_spindle_turns() -> None:
     bench = run("M3 S500 S2[M3 REV200]", plc_machine())
     assert told(bench, "t")[0] == ("start", {"direction": "cw", "speed_rpm": 200.0}) and bench.errors() == []
