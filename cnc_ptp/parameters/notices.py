@@ -9,6 +9,7 @@ from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.spindle_view import control_limit, feedback, is_open_loop
 
+UNIT_LISTS = {"channel": "P-MACH-00004", "axis": "P-MACH-00005", "spindle": "P-MACH-00006"}
 SERCOS = 2
 ANALOGUE_DRIVES = (1, 5, 6)
 HYPERBOLA = 1
@@ -16,8 +17,10 @@ SMALL_STEP = 0.001
 """Part of the constant acceleration."""
 
 
-def machine_warnings(sets: Mapping[str, ParameterSet], cycle_time: float) -> Iterator[str]:
-    """One line a warning, with file and line; `cycle_time` in s."""
+def machine_warnings(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[str]:
+    """One line a warning, with file and line."""
+    cycle_time = machine.kernel("P-MACH-00001")
+    yield from units_without_section(machine, sets)
     for parameters in sets.values():
         yield from without_effect(parameters)
         if parameters.kind == "channel":
@@ -28,6 +31,14 @@ def machine_warnings(sets: Mapping[str, ParameterSet], cycle_time: float) -> Ite
             yield from friction_notices(parameters)
             yield from corrected_resolution(parameters)
             yield from spindle_notices(parameters)
+
+
+def units_without_section(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[str]:
+    """Units that /machine lists and the file says nothing of, which the loader places where /machine stands."""
+    for name, parameters in sets.items():
+        if parameters.place == machine.place:
+            text = f"{parameters.kind} /{name} has no section in the file, it has the default of every parameter"
+            yield line(machine, UNIT_LISTS[parameters.kind], (), text)
 
 
 def without_effect(parameters: ParameterSet) -> Iterator[str]:

@@ -105,7 +105,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         channels=channels,
         axes=equally_late(axes, channels.values()),
         spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
-        warnings=tuple(notices.machine_warnings(sets, cycle_time)),
+        warnings=tuple(notices.machine_warnings(machine, sets)),
         sets={"machine": machine, **sets},
     )
 

@@ -61,7 +61,7 @@ def test_units(value: int, unit: str, kernel: float) -> None:
 
 
 def test_machine_of_defaults() -> None:
-    machine = load(axes=["x"])
+    machine = load("/x:", axes=["x"])
     assert (machine.cycle_time_us, machine.block_cycles, machine.watchdog_ms, machine.life_sign_timeout_ms) == (
         1000,
         10,
@@ -248,6 +248,16 @@ def test_warnings() -> None:
         "m.yaml:2:91: P-AXIS-00168 getriebe[0].slep_max of /x: "
         "limit 20 mm is not above vb_max / kv, the 20 mm that P-AXIS-00212 brings",
     )
+
+
+def test_units_of_which_the_file_says_nothing_but_their_names() -> None:
+    text = "/machine:\n  ros__parameters:\n    channels: [ch]\n    axes: [x, q]\n    spindles: [s]\n/x:\n/ch: {}\n"
+    behind = "has no section in the file, it has the default of every parameter"
+    assert load_machine(text, "m.yaml").warnings == (
+        f"m.yaml:4:11: P-MACH-00005 axes of /machine: axis /q {behind}",
+        f"m.yaml:5:15: P-MACH-00006 spindles of /machine: spindle /s {behind}",
+    )
+    assert load(channels=["ch"]).warnings == (f"m.yaml:1:40: P-MACH-00004 channels of /machine: channel /ch {behind}",)
 
 
 def test_preferred_direction_is_for_spindles() -> None:
