@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cnc_ptp.commands.console import WRONG_INPUT, print_error
+from cnc_ptp.commands.console import WRONG_INPUT, print_error, print_notices
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.nc.interpreter import check as check_text
@@ -15,12 +15,16 @@ SPINDLES_WITHOUT_MACHINE = ("S",)
 
 
 def check(program: str, machine: str | None) -> int:
-    """Prints all syntax errors and the first modal one; without a machine, axes X Y Z and spindle S are taken."""
+    """Prints all syntax errors and the first modal one, and what deserves a look in the machine file.
+
+    Without a machine, axes X Y Z and spindle S are taken.
+    """
     text = read_file("NC program", program)
     if machine is None:
         errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE)
     else:
         parameters = read_machine(machine)
+        print_notices(parameters)
         errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program)
     for error in errors:
         print_error(error)

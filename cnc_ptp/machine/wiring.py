@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 from cnc_ptp.machine.axis_unit import AxisUnit
+from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
@@ -15,6 +16,8 @@ from cnc_ptp.machine.unit import Unit
 from cnc_ptp.parameters import MachineParameters
 
 PLC = "plc"
+MACHINE_NOTICE = 26120
+"""Warning: a parameter that is accepted but perhaps not meant so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +55,10 @@ def wiring(machine: MachineParameters) -> dict[str, Inputs]:
 def build_unit(
     machine: MachineParameters, name: str, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
 ) -> Unit:
-    """The unit `name` of the machine, at position 0, standing. `scenario` and `end_when_idle` are for the PLC."""
+    """The unit `name` of the machine, at position 0, standing. `scenario` and `end_when_idle` are for the PLC.
+
+    The PLC, whose parameters are those of /machine, tells what deserves a look in the whole machine file.
+    """
     cycle_time = machine.cycle_time_us * 1e-6
     kinds = unit_kinds(machine)
     if kinds[name] == "axis":
@@ -68,7 +74,7 @@ def build_unit(
             request_numbers=count(1 + list(machine.channels).index(name), len(machine.channels)),
             handshake_timeout=machine.handshake_timeout_ms / 1000.0,
         )
-    return PlcUnit(
+    plc = PlcUnit(
         name,
         kinds=kinds,
         axes=machine.axes,
@@ -76,6 +82,9 @@ def build_unit(
         cycle_time=cycle_time,
         end_when_idle=end_when_idle,
     )
+    for text in machine.warnings:
+        plc.event(0, Severity.WARNING, MACHINE_NOTICE, text)
+    return plc
 
 
 def build_units(
