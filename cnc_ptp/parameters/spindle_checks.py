@@ -17,13 +17,16 @@ from cnc_ptp.parameters.spindle_view import (
 
 SIMULATED_DRIVES = (4, 16)
 OPEN_LOOP_DRIVES = (4, 5, 6, 7, 8)
+ROUNDING = 1e-6
+"""Part of the largest acceleration by which rounded coefficients of a curve may pass it."""
 STEPS = 1000
 """Places between the limit speed and the largest speed at which a curve is looked at."""
 
 
 def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
     """All of them, for one spindle."""
-    for check in (plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution):
+    checks = plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution, gear_at_start
+    for check in checks:
         yield from check(parameters)
     for gear in sorted({int(parameters.number("P-AXIS-00079")) - 1, *parameters.used_indexes("getriebe")}):
         yield from homing_speed(parameters, gear)
@@ -80,6 +83,16 @@ def open_loop_resolution(parameters: ParameterSet) -> Iterator[Problem]:
         yield spindle_problem(parameters, "P-AXIS-00234", (gear,), text, errors.RESOLUTION)
 
 
+def gear_at_start(parameters: ParameterSet) -> Iterator[Problem]:
+    """It needs its record; a spindle without any has gear 1 with all its defaults."""
+    stage, records = int(parameters.number("P-AXIS-00079")), parameters.used_indexes("getriebe")
+    if stage - 1 in records or (stage == 1 and not records):
+        return
+    known = ", ".join(f"getriebe[{index}]" for index in records) or "none"
+    text = f"value {stage} has no record getriebe[{stage - 1}], there {'are' if len(records) > 1 else 'is'} {known}"
+    yield spindle_problem(parameters, "P-AXIS-00079", (), text)
+
+
 def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
     """The zero pulse can be seen below the control limit only."""
     speed, limit = parameters.kernel("P-AXIS-00218", gear), control_limit(parameters, gear)
@@ -112,17 +125,25 @@ def curve(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
 
 
 def curve_to_the_top(parameters: ParameterSet, gear: int, kind: str) -> Iterator[Problem]:
-    """No acceleration up to the largest speed may be zero, negative or infinite."""
+    """No acceleration up to the largest speed may be zero, negative, infinite or above the largest one.
+
+    The constant acceleration has that bound as its range.
+    """
     value: Callable[[ParameterSet, int, float], float] = hyperbola if kind == "hyperbola" else polynomial
     limit, top = parameters.kernel("P-AXIS-00130", gear), parameters.kernel("P-AXIS-00212", gear)
-    least = parameters.kernel("P-AXIS-00010", gear)
+    least, constant, most = (parameters.kernel(f"P-AXIS-000{n}", gear) for n in ("10", "07", "08"))
     for step in range(STEPS + 1):
         speed = limit + (top - limit) * step / STEPS
         acceleration = value(parameters, gear, speed) if speed >= limit else 1.0
         if not 0.0 < max(acceleration, least) < float("inf"):
-            text = f"the {kind} gives {acceleration:g} °/s² at {speed:g} °/s, within P-AXIS-00212 ({top:g} °/s)"
-            yield spindle_problem(parameters, "P-AXIS-00026", (gear,), text)
-            return
+            bound = f"within P-AXIS-00212 ({top:g} °/s)"
+        elif acceleration > max(constant, most) * (1.0 + ROUNDING):
+            bound = f"above P-AXIS-00008 getriebe[{gear}].dynamik.a_max ({most:g} °/s²)"
+        else:
+            continue
+        text = f"the {kind} gives {acceleration:g} °/s² at {speed:g} °/s, {bound}"
+        yield spindle_problem(parameters, "P-AXIS-00026", (gear,), text)
+        return
 
 
 def polynomial(parameters: ParameterSet, gear: int, speed: float) -> float:

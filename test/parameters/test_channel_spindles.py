@@ -21,7 +21,8 @@ def machine(*lines: str, second: str = "") -> MachineParameters:
     text = f"/machine: {{ros__parameters: {{channels: {channels}, axes: [x], spindles: [a, b, c]}}}}\n"
     text += "/ch:\n  ros__parameters:\n" + "".join(f"    {line}\n" for part in lines for line in part.split("\n"))
     for node, number in (("a", 6), ("b", 11), ("c", 30)):
-        text += f"/{node}: {{ros__parameters: {{kopf.achs_nr: {number}, getriebe.1.kv: 1000}}}}\n"
+        gears = "getriebe: {0: {kv: 1000}, 1: {kv: 1000}}"
+        text += f"/{node}: {{ros__parameters: {{kopf.achs_nr: {number}, {gears}}}}}\n"
     return load_machine(text + second, "m.yaml")
 
 

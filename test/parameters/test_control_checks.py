@@ -354,7 +354,7 @@ def test_all_gears_of_a_spindle_are_looked_at() -> None:
 
 def test_a_gain_of_the_drive_is_told_once() -> None:
     assert spindle_notices(
-        'kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}, getriebe: {"0": {}, "1": {kv: 9}}'
+        'kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}, getriebe: {"0": {kv: 9}, "1": {kv: 9}}'
     ) == [
         "P-SIM-00019 simulation.drive_kv of /s: gain 3000 1/s makes the position loop unstable, with this drive the "
         "limit is 2000 1/s"

@@ -68,14 +68,39 @@ CASES = {
         "-20 °/s² at 28020 °/s, within P-AXIS-00212 (48000 °/s)",
     ),
     "a hyperbola with a pole": (
-        f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{typ: 1, n_grenz: 12000000, a_konst: 16000, b1: 100, b2: -0.5}}}}",
+        f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{typ: 1, n_grenz: 12000000, a_konst: 16000, b1: 100, b2: -2}}}}",
         "P-ERR-25009 m.yaml:2:146: axis list, P-AXIS-00026 getriebe[0].beschl_kennlinie.b1 of /s: the hyperbola gives "
-        "inf °/s² at 17004 °/s, within P-AXIS-00212 (48000 °/s)",
+        "inf °/s² at 12000 °/s, within P-AXIS-00212 (48000 °/s)",
     ),
     "a floor above the curve": (
         f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{typ: 3, a_max: 16000, n1: 100, n2: 200, a_min: 17000}}}}",
         "P-ERR-25009 m.yaml:2:145: axis list, P-AXIS-00010 getriebe[0].beschl_kennlinie.a_min of /s: value 17000 is above "
         "16000 °/s² of P-AXIS-00240",
+    ),
+    "a polynomial above the largest acceleration": (
+        f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{typ: 2, n_grenz: 12000000, a_konst: 16000, b1: 0.5}}}}",
+        "P-ERR-25009 m.yaml:2:146: axis list, P-AXIS-00026 getriebe[0].beschl_kennlinie.b1 of /s: the polynomial gives "
+        "20014 °/s² at 20028 °/s, above P-AXIS-00008 getriebe[0].dynamik.a_max (20000 °/s²)",
+    ),
+    "a constant acceleration above the largest one": (
+        f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{typ: 2, n_grenz: 12000000, a_konst: 20001, b1: -0.1}}}}",
+        "P-ERR-25009 m.yaml:2:123: axis list, P-AXIS-00007 getriebe[0].beschl_kennlinie.a_konst of /s: value 20001 is "
+        "above the maximum 20000 °/s² of P-AXIS-00008 getriebe[0].dynamik.a_max in line 2",
+    ),
+    "a gear at start without a record": (
+        "getriebe.0.kv: 1000, kenngr.getriebe_stufe: 3",
+        "P-ERR-25009 m.yaml:2:45: axis list, P-AXIS-00079 kenngr.getriebe_stufe of /s: value 3 has no record getriebe[2], "
+        "there is getriebe[0]",
+    ),
+    "a gear at start without any record": (
+        "kenngr.getriebe_stufe: 2",
+        "P-ERR-25009 m.yaml:2:45: axis list, P-AXIS-00079 kenngr.getriebe_stufe of /s: value 2 has no record getriebe[1], "
+        "there is none",
+    ),
+    "the first gear at start, which has no record": (
+        "getriebe: {1: {kv: 1000}, 4: {kv: 1000}}",
+        "P-ERR-25009 m.yaml:2:1: axis list, P-AXIS-00079 kenngr.getriebe_stufe of /s: value 1 has no record getriebe[0], "
+        "there are getriebe[1], getriebe[4]",
     ),
     "velocity control that is left above where it begins": (
         "antr: {velocity_position_control_on: 100, velocity_position_control_off: 101}",

@@ -63,7 +63,7 @@ def test_a_spindle_of_defaults() -> None:
         gears={1: GearParameters(**DEFAULT_GEAR, control=control)},
         stops_at_reset=True,
         target_time=2.0,
-        speed_time=0.0,
+        speed_time=5.0,
         gear_change_time=10.0,
         zero_pulse=0.0,
         max_override_percent=100.0,
@@ -78,7 +78,7 @@ def test_every_gear_that_the_file_describes_has_a_record() -> None:
     assert (view.gear, sorted(view.gears)) == (2, [1, 2])
     assert (view.gears[2].control.kv, view.gears[1].control.kv) == (3.0, 1.0)
     assert view.max_speed_deg_s == 60_000.0
-    assert sorted(spindle("kenngr.getriebe_stufe: 4").gears) == [4]
+    assert sorted(spindle("kenngr.getriebe_stufe: 4, getriebe.3.kv: 100").gears) == [4]
 
 
 def test_values_of_a_gear_in_kernel_units() -> None:
