@@ -55,10 +55,10 @@ def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: lis
     }
     nodes, lost, twice = len(monitor.diagnostics), total["lost_blocks"], total["duplicates"]
     console.print(f"blocks {total['blocks']} in {nodes} nodes, lost {lost}, computed twice {twice}")
-    for name, values in monitor.diagnostics.items():
-        if "following_error_max" in values:
-            unit = "deg" if machine.axes[name].rotary else "mm"
-            console.print(f"largest following error {name}: {float(values['following_error_max']):.4f} {unit}")
+    for name, axis in machine.axes.items():
+        if "following_error_max" in monitor.diagnostics.get(name, {}):
+            error = float(monitor.diagnostics[name]["following_error_max"])
+            console.print(f"largest following error {name}: {error:.4f} {'deg' if axis.rotary else 'mm'}")
     lateness = monitor.lateness()
     if lateness.counts:
         p50, p99 = lateness.percentile_us(50.0) / 1000.0, lateness.percentile_us(99.0) / 1000.0

@@ -15,7 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.report_figures import path_figures, time_figure
-from cnc_ptp.recording.statistics import last_diagnostics, summary, torque_units
+from cnc_ptp.recording.statistics import in_machine_order, last_diagnostics, summary, torque_units
 
 MOST_ROWS = 1000
 NUMBERS = ("time in s", "cycle", "line", "messages", "from s", "to s")  # columns of numbers
@@ -91,6 +91,7 @@ def write_report(
 
 def report_page(recorded: Recorded, *, program: str = "", machine: str = "", date: str = "") -> str:
     """The page as text."""
+    recorded = in_machine_order(recorded)
     figures = summary(recorded)
     title = program or recorded.path.name
     parts = [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -105,6 +105,25 @@ def axis_units(recorded: Recorded) -> dict[str, str]:
     """`mm` or `deg` by axis as the machine file says; empty when the recording holds none that can be loaded."""
     machine = _machine(recorded)
     return {name: "deg" if axis.rotary else "mm" for name, axis in machine.axes.items()} if machine else {}
+
+
+def in_machine_order(recorded: Recorded) -> Recorded:
+    """The recording with states and diagnostics in the order of the machine file, not that in which nodes were heard.
+
+    Units of each kind as /machine lists them, what it does not list behind them; as it is without a machine file.
+    """
+    machine = _machine(recorded)
+    if machine is None:
+        return recorded
+    units = [*machine.channels, *machine.spindles, *machine.axes]
+
+    def place(name: str) -> int:
+        unit = name.removeprefix("/").removesuffix("/state")
+        return units.index(unit) if unit in units else len(units)
+
+    states = {topic: recorded.states[topic] for topic in sorted(recorded.states, key=place)}
+    diagnostics = sorted(recorded.diagnostics, key=lambda diagnostic: place(diagnostic.name))
+    return replace(recorded, states=states, diagnostics=diagnostics)
 
 
 def torque_units(recorded: Recorded) -> dict[str, str]:

@@ -15,7 +15,7 @@ from cnc_ptp.recording.reader import Diagnostic, read_recording
 from cnc_ptp.recording.report import report_page, write_report
 from cnc_ptp.recording.report_figures import path_axes, path_figures, state_bands, time_figure
 from cnc_ptp.recording.schemas import load_schema
-from cnc_ptp.recording.statistics import Extreme, axis_units, summary, torque_units
+from cnc_ptp.recording.statistics import Extreme, axis_units, in_machine_order, last_diagnostics, summary, torque_units
 from cnc_ptp.recording.writer import Recording
 
 EVIL = '</script><script>alert("1")</script><img src=x onerror=alert(2)>'
@@ -147,6 +147,22 @@ def test_recordings_without_actual_torque_are_shown(recorded):
     rows["additive_torque"] = 1.0
     titles = [annotation.text for annotation in time_figure(recorded, {}).layout.annotations]
     assert "X: torque in Nm or N" in titles
+
+
+def test_units_stand_in_the_order_of_the_machine_file(tmp_path):
+    """However the nodes of the graph were heard; a recording without a machine file keeps that order."""
+    smooth_run(tmp_path / "run.mcap", 0.1, axes=("z", "q", "y", "x"))
+    recorded = read_recording(tmp_path / "run.mcap")
+    recorded.diagnostics = [Diagnostic(1, name, {"blocks": "5"}) for name in ("plc", "y", "s", "x", "y", "channel")]
+    assert in_machine_order(recorded) is recorded
+    page = report_page(recorded)
+    assert re.findall("largest following error of ([a-z])", page) == ["z", "q", "y", "x"]
+    recorded.machine_yaml = (PROJECT / "config" / "mill.yaml").read_text()
+    page = report_page(recorded)
+    assert re.findall("largest following error of ([a-z])", page) == ["x", "y", "z", "q"]
+    titles = re.findall('"([A-Z]): position in mm"', page)
+    assert titles == ["X", "Y", "Z", "Q"]
+    assert list(last_diagnostics(in_machine_order(recorded))) == ["channel", "s", "x", "y", "plc"]
 
 
 def test_torque_units_come_from_the_machine_file(recorded):

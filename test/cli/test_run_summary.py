@@ -1,0 +1,32 @@
+"""The closing lines of a run of the graph, from what its nodes have reported."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+from cnc_ptp.commands.run import print_summary
+from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.monitor import Progress
+from cnc_ptp.parameters import read_machine
+
+PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
+
+
+def reported(**more):
+    return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
+
+
+def test_axes_come_in_the_order_of_the_machine_file(capsys):
+    """The nodes report in any order; z has not reported at all."""
+    heard = {"c": "0.5", "y": "0.25", "x": "0.125"}
+    diagnostics = {"plc": reported()} | {name: reported(following_error_max=text) for name, text in heard.items()}
+    progress = Progress(cycle=70, program_cycles=40)
+    monitor = SimpleNamespace(diagnostics=diagnostics, progress=progress, lateness=Lateness, errors=[], notes=[])
+    print_summary(read_machine(PTP), monitor, [])
+    assert capsys.readouterr().out.splitlines() == [
+        "machine time 0.070 s (70 cycles)",
+        "program time 0.040 s",
+        "blocks 28 in 4 nodes, lost 0, computed twice 4",
+        "largest following error x: 0.1250 mm",
+        "largest following error y: 0.2500 mm",
+        "largest following error c: 0.5000 deg",
+    ]
