@@ -148,7 +148,11 @@ class Jobs:
         self._search_from = None
         speed = spindle.motion(cycle)[1]
         direction = copysign(1.0, speed) if speed else float(spindle.parameters.preferred_direction or 1)
-        spindle.ramp_to(cycle, direction * spindle.gear.homing_speed)
+        spindle.ramp_to(cycle, direction * self._homing_speed)
+
+    @property
+    def _homing_speed(self) -> float:
+        return min(self._spindle.gear.homing_speed, self._spindle.limits.max_speed)
 
     def _position(self, cycle: int) -> None:
         spindle, job = self._spindle, self._current()
@@ -243,7 +247,7 @@ class Jobs:
             spindle.referenced, spindle.reference_lost = True, False
             return True
         if abs(position - self._search_from) > PATIENCE:
-            reason = f"no zero pulse came in {PATIENCE:g} deg at homing speed {spindle.gear.homing_speed:g} deg/s"
+            reason = f"no zero pulse came in {PATIENCE:g} deg at homing speed {self._homing_speed:g} deg/s"
             spindle.fault(cycle, NO_ZERO_PULSE, f"{reason} (P-AXIS-00218)")
         return False
 

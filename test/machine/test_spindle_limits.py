@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from curve_support import CURVES, TOP, integrated
-from machine_support import UnitBench, spindle_bench
-from spindle_support import RPM
+from machine_support import UnitBench, spindle_bench, spindle_parameters
+from spindle_support import RPM, StuckDrive, bench_of
 
 from cnc_ptp.machine.blocks import SpindleBit
 
@@ -46,6 +46,40 @@ def test_the_minimum_counts_in_endless_rotation_only() -> None:
     bench.accepted("orient", position_deg=180.0, speed_rpm=20.0)
     bench.run(300)
     assert max(map(abs, bench.column("set_speed_rpm")[300:])) == pytest.approx(20.0)
+
+
+def test_the_maximum_counts_in_a_homing() -> None:
+    """Homing speed of the mill 60 rpm."""
+    bench = with_limits(spindle_bench(zero_pulse=200.0, referenced_at_start=False), max_speed_rpm=40.0)
+    bench.accepted("home")
+    bench.run(1500)
+    assert max(bench.column("set_speed_rpm")) == pytest.approx(40.0) and bench.column("referenced")[-1]
+    bench.accepted("start", direction="ccw", speed_rpm=20.0)
+    bench.run(100)
+    bench.accepted("home")
+    bench.run(1500)
+    assert min(bench.column("set_speed_rpm")) == pytest.approx(-40.0)
+
+
+def test_a_zero_pulse_that_does_not_come_at_the_speed_of_the_tool() -> None:
+    bench = with_limits(bench_of(spindle_parameters(referenced_at_start=False), drive=StuckDrive()), max_speed_rpm=40.0)
+    bench.accepted("home")
+    bench.run(3300)
+    assert bench.event_texts() == [
+        "P-ERR-24010 spindle s: no zero pulse came in 720 deg at homing speed 240 deg/s (P-AXIS-00218); the spindle stops "
+        "on its ramp (ErrorStop)"
+    ]
+
+
+def test_a_positioning_that_the_tool_makes_slower_says_so() -> None:
+    bench = with_limits(max_speed_rpm=40.0)
+    above = "is above the maximum of the tool, 40 rpm is used"
+    assert bench.accepted("orient", position_deg=90.0, speed_rpm=80.0) == f"spindle s: speed 80 rpm {above}"
+    bench.run(500)
+    assert bench.accepted("orient", position_deg=0.0) == f"spindle s: speed 600 rpm {above}"
+    bench.run(500)
+    assert max(map(abs, bench.column("set_speed_rpm"))) == pytest.approx(40.0) and bench.column("in_position")[-1]
+    assert bench.accepted("orient", position_deg=0.0, speed_rpm=40.0) == ""
 
 
 def test_the_minimum_holds_under_the_override_but_0_stops() -> None:
