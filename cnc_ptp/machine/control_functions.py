@@ -1,6 +1,7 @@
 """Feedforward and compensations of a program as commands for the nodes of axes and spindles.
 
-They are functions without synchronisation: they go out with the next block of cycles, and nothing waits for them.
+They are functions without synchronisation: they go out with the next block of cycles, and nothing waits for spindles.
+The next motion of the path begins in that block at the earliest, with what they have switched in the axes.
 """
 
 from __future__ import annotations

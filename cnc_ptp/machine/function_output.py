@@ -3,7 +3,7 @@
 Synchronisation types: TF5200 spindle 2.5. Before the motion go all types but MNS_SNS (after it) and MNE_SNS (with the
 measuring event). The path waits before the motion for MVS_SVS, at the block's end for MVS_SNS, MNS_SNS and MNE_SNS,
 before the next G01, G02, G03 for MVS_SLM, at the next #EXPL SYN for MVS_SLP, never for MOS. In one block M19 decides
-before M3, M4, M5, and these before S.
+before M3, M4, M5, and these before S. Feedforward and compensations of axes act from the begin of the next motion on.
 """
 
 from __future__ import annotations
@@ -128,7 +128,10 @@ class FunctionOutput:
                 outputs.add_wait(WAIT_BEFORE, wait)
             case AuxiliaryFunction():
                 self._auxiliary(function, block, outputs)
-            case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
+            case AxisFeedforward() | CompensationSwitch():
+                outputs.commands += control_commands(self._channel, function)
+                outputs.waits_motion.append(Wait(until_sent=True))
+            case SpindleFeedforward():
                 outputs.commands += control_commands(self._channel, function)
 
     def _auxiliary(self, function: AuxiliaryFunction, block: CanonicalBlock, outputs: Outputs) -> None:

@@ -1,8 +1,8 @@
 """The sequence of a program in a channel: block after block its functions, its motion and what the path waits for.
 
-A block goes: gear change (and wait), functions before the motion, waits (its own; before G01, G02, G03 those of
-MVS_SLM; at #EXPL SYN those of MVS_SLP; at the end of the program all), motion (functions of MNE_SNS with the measuring
-event), functions after it, waits, stop or next block.
+A block goes: gear change (and wait), functions before the motion, waits (its own; before a motion until feedforward and
+compensations have gone out; before G01, G02, G03 those of MVS_SLM; at #EXPL SYN those of MVS_SLP; at the end of the
+program all), motion (functions of MNE_SNS with the measuring event), functions after it, waits, stop or next block.
 """
 
 from __future__ import annotations
@@ -66,6 +66,7 @@ class ProgramSequence:
         self._unsent: list[Wait] = []
         self._waits: list[Wait] = []
         self._waits_after: list[Wait] = []
+        self._waits_motion: list[Wait] = []
         self._waits_machining: list[Wait] = []
         self._waits_explicit: list[Wait] = []
         self._awaits_event = False
@@ -237,6 +238,8 @@ class ProgramSequence:
         outputs = self._functions.of_block(block, Moment.BEFORE)
         self._queue(outputs)
         self._waits, self._waits_after = outputs.waits_before, outputs.waits_after
+        if block.motion is not None:
+            self._waits, self._waits_motion = self._waits + self._waits_motion, []
         end = block.stop == "end"
         machining = isinstance(block.motion, CircularMove) or (
             isinstance(block.motion, LinearMove) and not block.motion.rapid
@@ -282,7 +285,7 @@ class ProgramSequence:
     def _end_program(self) -> None:
         self._motion.feed = 0.0
         self._block = None
-        self._waits, self._waits_after = [], []
+        self._waits, self._waits_after, self._waits_motion = [], [], []
         self._waits_machining, self._waits_explicit = [], []
         self._awaits_event = False
         self.open_requests.clear()
@@ -298,6 +301,7 @@ class ProgramSequence:
         notes = [stored.note(self._feedback) for stored in outputs.stored]
         self.notes += [(SPEED_WITHOUT_EFFECT, note) for note in notes if note]
         self._renew_old_waits(outputs)
+        self._waits_motion += outputs.waits_motion
         self._waits_machining += outputs.waits_machining
         self._waits_explicit += outputs.waits_explicit
         self.open_requests |= {request.id for request in outputs.requests if request.acknowledge_needed}

@@ -54,12 +54,16 @@ class Wait:
     request_id: int = 0
     sent_cycle: int | None = None
     """First cycle of the block in which the function went out; what was reported for earlier cycles does not count."""
+    until_sent: bool = False
+    """Axes take the function over at that cycle; nobody has to report anything."""
 
     def fulfilled(self, cycle: int, spindles: Mapping[str, Block], open_requests: set[int]) -> bool:
         """Raises CncError: 22019 for a coupling that did not come about, 22021 for a spindle that does something else.
 
         A spindle that does something else is found out while the PLC has not acknowledged, too.
         """
+        if self.until_sent:
+            return self.sent_cycle is not None
         if not self.sent_before(cycle):
             return False
         acknowledged = self.request_id not in open_requests
@@ -135,6 +139,7 @@ class StoredSpeed(NamedTuple):
 class Outputs:
     """What is to go out at one moment of a block, and the waits that belong to it.
 
+    waits_motion      for the next motion (feedforward and compensations of axes)
     waits_machining   for the next G01, G02, G03 (MVS_SLM)
     waits_explicit    for the next #EXPL SYN (MVS_SLP)
     told              what the spindles are to report, whether the path waits for it or not
@@ -145,6 +150,7 @@ class Outputs:
     requests: list[HandshakeRequest] = field(default_factory=list)
     waits_before: list[Wait] = field(default_factory=list)
     waits_after: list[Wait] = field(default_factory=list)
+    waits_motion: list[Wait] = field(default_factory=list)
     waits_machining: list[Wait] = field(default_factory=list)
     waits_explicit: list[Wait] = field(default_factory=list)
     told: list[Wait] = field(default_factory=list)
@@ -164,4 +170,4 @@ class Outputs:
     @property
     def waits(self) -> list[Wait]:
         """All of them."""
-        return self.waits_before + self.waits_after + self.waits_machining + self.waits_explicit
+        return self.waits_before + self.waits_after + self.waits_motion + self.waits_machining + self.waits_explicit

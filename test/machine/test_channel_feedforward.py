@@ -63,12 +63,38 @@ def test_program_start_resets_all_axes_and_the_rest_goes_out_with_the_next_block
     assert bench.position("x") == 1.0 and bench.position("y") == 0.0
 
 
-def test_nothing_waits_for_feedforward() -> None:
-    """The path moves from the first cycle on, the commands act at the first cycle of the next block."""
-    bench = run("%P\nG135 X[COMP OFF FRICT]\nG01 X1 F3000\nM30")
-    assert bench.column("channel", "path_velocity")[1] > 0.0
-    on = [record.cycle for record in bench.records if record.command == "set_feedforward"]
-    assert on == [10, 10, 10]
+def first_motion(bench: MachineBench) -> int:
+    """The cycle at which the path stands for the last time before its first motion."""
+    return int(np.flatnonzero(bench.column("channel", "path_velocity"))[0]) - 1
+
+
+def test_a_motion_begins_with_the_feedforward_before_it() -> None:
+    """The path waits for the block with which the commands go out, 10 cycles; what is left of z's lag is < 0.0003 mm."""
+    bench = run("%P\nG135 X[COMP OFF FRICT]\nG136 Y50\nG00 Z-100\nM30")
+    assert {record.cycle for record in bench.records if record.command == "set_feedforward"} == {10}
+    assert first_motion(bench) == 10
+    assert np.abs(bench.column("z", "following_error")).max() < 3e-4
+
+
+@pytest.mark.parametrize(
+    ("program", "begin"),
+    [
+        ("G01 Z-1 F3000", 0),
+        ("S[G135]\nG01 Z-1 F3000", 0),
+        ("G135\nG04 0.1\nG01 Z-1 F3000", 110),
+        ("G04 0.1\nG01 Z-1 F3000", 100),
+        ("G04 0.005\nX[COMP OFF FRICT]\nG01 Z-1 F3000", 10),
+        ("G04 0.005\nX[COMP OFF FRICT]\nG136 X50\nG137\nG01 Z-1 F3000", 10),
+    ],
+)
+def test_only_feedforward_and_compensations_of_axes_hold_the_next_motion(program: str, begin: int) -> None:
+    assert first_motion(run(f"%P\n{program}\nM30")) == begin
+
+
+def test_a_program_does_not_wait_after_its_last_motion() -> None:
+    """M30 comes as soon as without G137, and the next program is not held by it."""
+    ends = [run(f"%P\nG01 Z-1 F3000\n{last}M30").blocks["channel"] for last in ("", "G137\n")]
+    assert len(ends[0]) == len(ends[1])
 
 
 def test_a_look_ahead_of_one_axis_does_not_bend_the_path() -> None:
