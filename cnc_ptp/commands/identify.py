@@ -108,9 +108,9 @@ def require_velocity_command(data: AxisData) -> None:
 
 
 def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:
-    """Raises CncError 27030 where something would be overwritten."""
+    """Raises CncError 27030 where something would be overwritten, one output by the other too."""
     check_output(output, machine_file=machine, recording=recording)
-    check_output(record, machine_file=machine, recording=recording)
+    check_output(record, machine_file=machine, recording=recording, output_file=output)
 
 
 def driven_trace(data: AxisData, motions: Sequence[Motion], record: str | None) -> AxisTrace | None:

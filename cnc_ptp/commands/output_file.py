@@ -17,9 +17,14 @@ def check_output(output: str | None, **inputs: str | None) -> None:
     if not Path(output).absolute().parent.is_dir():
         raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist; nothing was started")
     for what, path in inputs.items():
-        if path is not None and Path(output).exists() and Path(path).exists() and Path(output).samefile(path):
+        if path is not None and _same(Path(output), Path(path)):
             name = what.replace("_", " ")
             raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}; nothing was started")
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Whether both are one file, or would be: links of either kind count, and files that are not there yet."""
+    return one.resolve() == other.resolve() or (one.exists() and other.exists() and one.samefile(other))
 
 
 def check_page(output: str, **inputs: str | None) -> None:

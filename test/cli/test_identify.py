@@ -259,6 +259,18 @@ def test_refused_before_anything_starts(kind, arguments, text):
 
 
 @pytest.mark.parametrize("kind", ["friction", "dynamics"])
+def test_both_outputs_in_one_file(kind, tmp_path):
+    path, other, link = tmp_path / "o.yaml", tmp_path / "sub" / ".." / "o.yaml", tmp_path / "link.yaml"
+    other.parent.parent.mkdir()
+    link.symlink_to(path)
+    for record in (path, other, link):
+        result = call("identify", kind, "x", "--machine", MILL, "-o", path, "--record", record)
+        text = f"P-ERR-27030 {record} would overwrite the output file {path}; nothing was started\n"
+        assert (result.exit_code, result.stdout, result.stderr) == (2, "", text)
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("kind", ["friction", "dynamics"])
 def test_wrong_usage(kind):
     result = call("identify", kind, "x")
     assert result.exit_code == 2 and "--machine (drives the axis offline) or --recording is needed." in result.stderr
