@@ -220,7 +220,7 @@ def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
 
 
 def largest_digit(bits: int) -> int:
-    return 2 ** (bits - 1) - 1
+    return (1 << (bits - 1)) - 1
 
 
 def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
