@@ -30,6 +30,8 @@ DIRECTIONS = {"both": (False, True), "ccw": (False,), "cw": (True,)}
 FILE = "circle.nc"
 LARGEST = 1e5
 """mm and mm/min; beyond it is no circle test."""
+SMALLEST_RADIUS = 1e-3
+"""mm; below the increments of an encoder there is no circle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +57,7 @@ def circle(
     magnification: float | None,
 ) -> int:
     """Runs the circle test of all variants. Status 1 when a run failed."""
-    check_numbers(radius=radius, feed=feed, magnification=magnification)
+    check_numbers(radius=radius, feed=feed, centre=centre, magnification=magnification)
     for output in outputs:
         check_picture(output, machine_file=machine)
     text = read_file("machine file", machine)
@@ -97,15 +99,18 @@ def run_variants(
     return tuple(results)
 
 
-def check_numbers(*, radius: float, feed: float, magnification: float | None) -> None:
+def check_numbers(
+    *, radius: float, feed: float, centre: tuple[float, float] | None, magnification: float | None
+) -> None:
     """Raises CncError 27020 for what is no number of a circle."""
-    for name, value, unit in (("radius", radius, "mm"), ("feed", feed, "mm/min"), ("magnification", magnification, "")):
-        if value is not None and not 0.0 < value <= LARGEST:
+    numbers = [("radius", radius, SMALLEST_RADIUS, "mm"), ("feed", feed, 0.0, "mm/min")]
+    numbers += [("centre", value, -LARGEST, "mm") for value in centre or ()]
+    if magnification is not None:
+        numbers.append(("magnification", magnification, 0.0, ""))
+    for name, value, least, unit in numbers:
+        if not least <= value <= LARGEST or (value == 0.0 and least == 0.0):
             shown = f"{value:g} {unit}".rstrip()
-            raise CncError(
-                BAD_CIRCLE,
-                f"{name} {shown} is not within 0 … {LARGEST:g}; nothing was started",
-            )
+            raise CncError(BAD_CIRCLE, f"{name} {shown} is not within {least:g} … {LARGEST:g}; nothing was started")
 
 
 def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, float] | None) -> Place:

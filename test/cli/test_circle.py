@@ -167,11 +167,24 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (["--radius", 0, "--feed", 2000], "P-ERR-27020 radius 0 mm is not within 0 … 100000; nothing was started"),
+        (["--radius", 0, "--feed", 2000], "P-ERR-27020 radius 0 mm is not within 0.001 … 100000; nothing was started"),
+        (
+            ["--radius", 1e-9, "--feed", 2000],
+            "P-ERR-27020 radius 1e-09 mm is not within 0.001 … 100000; nothing was started",
+        ),
         (
             ["--radius", "nan", "--feed", 2000],
-            "P-ERR-27020 radius nan mm is not within 0 … 100000; nothing was started",
+            "P-ERR-27020 radius nan mm is not within 0.001 … 100000; nothing was started",
         ),
+        (
+            ["--radius", 25, "--feed", 2000, "--centre", "nan", 0],
+            "P-ERR-27020 centre nan mm is not within -100000 … 100000; nothing was started",
+        ),
+        (
+            ["--radius", 25, "--feed", 2000, "--centre", 0, "-inf"],
+            "P-ERR-27020 centre -inf mm is not within -100000 … 100000; nothing was started",
+        ),
+        (["--radius", 25, "--feed", 0], "P-ERR-27020 feed 0 mm/min is not within 0 … 100000; nothing was started"),
         (["--radius", 25, "--feed", -5], "P-ERR-27020 feed -5 mm/min is not within 0 … 100000; nothing was started"),
         (
             ["--radius", 25, "--feed", 2000, "--magnification", 0],
@@ -200,6 +213,13 @@ def test_refused_before_anything_starts(arguments, text):
     result = call("circle", MILL, *arguments)
     assert (result.exit_code, result.stderr.splitlines()[0]) == (2, text)
     assert result.stdout == ""
+
+
+def test_a_circle_that_friction_swallows_is_not_evaluated():
+    result = call("circle", MILL, "--radius", 0.001, "--feed", 10, "--direction", "ccw")
+    text = r"P-ERR-27022 circle test: the turn in line 6 went \d+\.\d° of 360°; nothing was evaluated\n"
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert re.fullmatch(text, result.stderr)
 
 
 def test_machines_that_have_no_such_circle(tmp_path):
