@@ -54,7 +54,7 @@ def carries_out(block: SpindleBlock, condition: Condition, value: float, turn: f
             commanded = block.programmed_speed_rpm[-1]
             return state == S.CONTINUOUS_MOTION and isclose(commanded, value, rel_tol=1e-9, abs_tol=1e-9)
         case Condition.STANDSTILL:
-            return state not in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION)
+            return state != S.CONTINUOUS_MOTION
         case Condition.POSITION if state == S.STANDSTILL:
             away = remainder(block.target_position_deg[-1] - value, turn)
             return mode == SpindleMode.POSITION and abs(away) <= SAME_POSITION
@@ -66,12 +66,14 @@ def carries_out(block: SpindleBlock, condition: Condition, value: float, turn: f
 
 
 def is_there(block: SpindleBlock, condition: Condition) -> bool:
-    """The spindle reports speed, standstill or position; for all else it is enough that it carries out the command."""
+    """The spindle reports speed, standstill or position, and nothing else comes first; a stop (M05) never waits."""
+    if condition is not Condition.STANDSTILL and must_wait(block):
+        return False
     match condition:
         case Condition.SPEED:
             return bool(block.speed_reached[-1])
         case Condition.STANDSTILL:
-            return bool(block.speed_zero[-1]) and block.state[-1] != S.HOMING
+            return bool(block.speed_zero[-1]) and block.state[-1] not in (S.HOMING, S.DISCRETE_MOTION)
         case Condition.POSITION:
             return bool(block.in_position[-1])
     return True

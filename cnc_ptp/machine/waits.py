@@ -87,7 +87,7 @@ class Wait:
                 return False
             told = what_it_was_told(self.spindle, self.condition, self.value)
             raise CncError(NOT_CARRIED_OUT, f"{told}, {what_it_does(block)}; the path waited for it")
-        return is_there(block, self.condition) and not must_wait(block)
+        return is_there(block, self.condition)
 
     def _coupled(self, block: SpindleBlock) -> bool:
         if block.master != self.master and not block.master_wanted:

@@ -25,6 +25,7 @@ from channel_spindle_support import (
 from machine_support import MachineBench
 from spindle_support import RPM, UP, StuckDrive, two_gears
 
+from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.parameters import MachineParameters, Synchronisation
 
@@ -88,6 +89,15 @@ def test_another_command_while_the_path_waits_for_standstill() -> None:
         "- {at: 2.1, to: s, do: start, direction: cw, speed_rpm: 300}",
     )
     aborted(bench, "stop as it was told, it was commanded to 300 rpm", 4, "M5")
+
+
+@pytest.mark.parametrize("at", [2.05, 2.3])
+def test_the_plc_positions_a_spindle_that_was_to_stop(at: float) -> None:
+    """Its order waits until M5 is done, or comes after it; the path goes on when the spindle stands."""
+    scenario = f"- {{at: {at}, to: s, do: orient, position_deg: 90, speed_rpm: 5, source: plc}}"
+    bench = run("M3 S10000\nG04 X2\nM5\nG01 X20 F6000", mill(m5=MVS_SVS), scenario)
+    assert bench.errors() == [] and bench.column("s", "state")[moves(bench)[0][0]] == S.STANDSTILL
+    assert bench.last("s").plc_acknowledged == 1
 
 
 def test_a_gear_change_that_somebody_gives_up() -> None:
