@@ -26,10 +26,11 @@ REST = 0.4
 """Seconds of rest before each motion."""
 DYNAMIC_SPEEDS = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Parts of the highest velocity: ramps of different length."""
-OWN_POSITION_LOOP = {
+NO_VELOCITY_COMMAND = {
     "none": "is virtual, there is no drive to identify (P-AXIS-00020)",
     "position": "its drive closes the position loop itself and is commanded positions (P-AXIS-00020)",
     "lag": "its drive closes the position loop itself and is commanded the following error (P-AXIS-00020)",
+    "torque": "its drive is commanded torques and has no velocity loop to identify (P-MACH-00020)",
 }
 
 
@@ -103,8 +104,8 @@ def identify_dynamics(
 def require_velocity_command(data: AxisData) -> None:
     """Raises CncError 27014 where the drive is not commanded a velocity: then it cannot be told from the motion."""
     interface = data.axis.control.drive.interface
-    if interface in OWN_POSITION_LOOP:
-        raise refusal(NO_COMMAND, data.axis.name, f"{OWN_POSITION_LOOP[interface]}; nothing was started")
+    if interface in NO_VELOCITY_COMMAND:
+        raise refusal(NO_COMMAND, data.axis.name, f"{NO_VELOCITY_COMMAND[interface]}; nothing was started")
 
 
 def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:

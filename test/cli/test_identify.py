@@ -400,11 +400,25 @@ def test_a_run_that_fails_is_status_1_and_tells_why(tmp_path):
         assert result.stdout == ""
 
 
-def test_drives_without_velocity_command_are_refused(tmp_path):
-    virtual = changed_mill(tmp_path / "virtual.yaml", "z", kenngr={"antr_typ": 16})
-    result = call("identify", "dynamics", "z", "--machine", virtual)
-    text = "P-ERR-27014 axis z: is virtual, there is no drive to identify (P-AXIS-00020); nothing was started\n"
-    assert (result.exit_code, result.stderr) == (2, text)
+@pytest.mark.parametrize(
+    ("kind", "commands", "reason"),
+    [
+        (16, None, "is virtual, there is no drive to identify (P-AXIS-00020)"),
+        (8, ["607A"], "its drive closes the position loop itself and is commanded positions (P-AXIS-00020)"),
+        (
+            3,
+            ["XERR", "NSOLL_B"],
+            "its drive closes the position loop itself and is commanded the following error (P-AXIS-00020)",
+        ),
+        (8, ["6071"], "its drive is commanded torques and has no velocity loop to identify (P-MACH-00020)"),
+    ],
+)
+def test_drives_without_velocity_command_are_refused(kind, commands, reason, tmp_path):
+    antr = {"telegram": {"commands": commands}} if commands else {}
+    changes = {"kenngr": {"antr_typ": kind}, "antr": antr, "vorsteuer": {"vorsteuerung": "NONE"}}
+    result = call("identify", "dynamics", "z", "--machine", changed_mill(tmp_path / "z.yaml", "z", **changes))
+    text = f"P-ERR-27014 axis z: {reason}; nothing was started\n"
+    assert (result.exit_code, result.stdout, result.stderr) == (2, "", text)
 
 
 def test_an_axis_that_is_switched_off_gets_its_enable(tmp_path):
