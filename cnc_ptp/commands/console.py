@@ -14,6 +14,8 @@ RUN_FAILED = 1
 WRONG_INPUT = 2
 """Wrong usage or input; nothing was started."""
 
+IDLE_STOP = ": stop without effect in "
+
 
 def print_error(error: CncError) -> None:
     """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
@@ -31,9 +33,13 @@ def print_notices(machine: MachineParameters) -> None:
         console.print(event_note(Severity.WARNING, MACHINE_NOTICE, text), style="yellow", markup=False)
 
 
-def print_faults(console: Console, errors: list[str], notes: list[str]) -> None:
-    """Errors of a run; commands that were refused or carried out with a warning."""
+def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool) -> None:
+    """Errors of a run; commands that were refused or carried out with a warning.
+
+    `stopped`: everything was stopped; that some axes stood already then is no news.
+    """
     for text in errors:
         console.print(f"error: {text}", style="red", markup=False)
     for text in notes:
-        console.print(text, style="yellow", markup=False)
+        if not (stopped and IDLE_STOP in text):
+            console.print(text, style="yellow", markup=False)

@@ -67,4 +67,4 @@ def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: lis
         )
     for text in failures:
         console.print(f"failed: {text}", style="bold red", markup=False)
-    print_faults(console, monitor.errors, monitor.notes)
+    print_faults(console, monitor.errors, monitor.notes, stopped=bool(failures) or monitor.run_failed)

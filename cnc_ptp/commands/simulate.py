@@ -23,6 +23,7 @@ from cnc_ptp.machine.blocks import (
     Severity,
     command_note,
     event_note,
+    keep_note,
 )
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
@@ -61,7 +62,8 @@ class Result:
             ]
             notes = (command_note(record.accepted, record.error_id, record.message) for record in output.records)
             warnings = (event_note(event.severity, event.error_id, event.text) for event in output.events)
-            self.notes += [note for note in (*notes, *warnings) if note and note not in self.notes]
+            for note in (*notes, *warnings):
+                keep_note(self.notes, note)
 
 
 def simulate(
@@ -130,4 +132,4 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
     if result.interrupted:
         console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
-    print_faults(console, result.errors, result.notes)
+    print_faults(console, result.errors, result.notes, stopped=result.failed or bool(result.interrupted))

@@ -47,7 +47,8 @@ class Trial:
         console = Console(stderr=True, highlight=False, soft_wrap=True)
         if self.result.interrupted:
             console.print(f"failed: {self.result.interrupted}", style="bold red", markup=False)
-        print_faults(console, self.result.errors, self.result.notes)
+        stopped = self.result.failed or bool(self.result.interrupted)
+        print_faults(console, self.result.errors, self.result.notes, stopped=stopped)
 
 
 def run_trial(

@@ -81,17 +81,29 @@ class CommandRecord:
     message: str
 
 
+REFUSED, WARNED = "refused: P-ERR-", "warning: P-WARN-"
+
+
 def command_note(accepted: bool, error_id: int, message: str) -> str:
     """What people should hear of a command: its refusal, or the warning with which it was carried out."""
     if accepted:
         return f"warning: {message}" if message else ""
-    return f"refused: P-ERR-{error_id} {message}"
+    return f"{REFUSED}{error_id} {message}"
 
 
 def event_note(severity: int, error_id: int, text: str) -> str:
-    """What people should hear of a warning that came by itself; refusals are told by their command."""
-    by_itself = severity == Severity.WARNING and " refused: " not in text
-    return f"warning: P-WARN-{error_id} {text}" if by_itself else ""
+    """What people should hear of an event: warnings."""
+    return f"{WARNED}{error_id} {text}" if severity == Severity.WARNING else ""
+
+
+def keep_note(notes: list[str], note: str) -> None:
+    """Adds a note once. A refused command is an event too: it is told as refused, in whatever order the two come."""
+    if not note or note in notes or note.replace(WARNED, REFUSED, 1) in notes:
+        return
+    event = note.replace(REFUSED, WARNED, 1)
+    if event in notes:
+        notes.remove(event)
+    notes.append(note)
 
 
 @dataclass(slots=True)

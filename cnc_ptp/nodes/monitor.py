@@ -9,7 +9,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Severity, command_note, event_note
+from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, MONITOR, PLC_INPUT, REPORT, block_topic
@@ -112,14 +112,10 @@ class RunMonitor(Node):
             where = f" (cycle {message.cycle}, line {message.line})" if message.line else f" (cycle {message.cycle})"
             self.errors.append(f"P-ERR-{message.error_id} {message.text}{where}")
             self._last_fault = max(self._last_fault, message.cycle)
-        self._note(event_note(message.severity, message.error_id, message.text))
+        keep_note(self.notes, event_note(message.severity, message.error_id, message.text))
 
     def _on_command(self, message: msg.CommandRecord) -> None:
-        self._note(command_note(message.accepted, message.error_id, message.message))
-
-    def _note(self, note: str) -> None:
-        if note and note not in self.notes:
-            self.notes.append(note)
+        keep_note(self.notes, command_note(message.accepted, message.error_id, message.message))
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

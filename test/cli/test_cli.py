@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
+from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
 from cnc_ptp.recording.reader import read_recording
 
 ROOT = Path(__file__).parents[2]
@@ -221,12 +222,35 @@ def test_a_refused_command_is_no_failed_run(tmp_path):
     assert "refused: P-ERR-120002 axis x: move_absolute refused: target 400.0 mm lies beyond" in result.output
 
 
+def test_a_refusal_is_told_once(tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text("- {at: 0, to: channel, do: mdi, text: G77}\n- {at: 0.1, to: y, do: stop}\n")
+    result = call("simulate", MILL, "--scenario", path)
+    assert [line for line in result.output.splitlines() if "largest" not in line and "time" not in line] == [
+        "refused: P-ERR-20131 mdi line 1 column 1 'G77': unknown G function G77",
+        "warning: axis y: stop without effect in Standstill",
+    ]
+
+
+def test_a_refusal_is_told_once_in_whatever_order_command_and_event_come():
+    event = event_note(Severity.WARNING, 20131, "mdi: unknown")
+    refusal, other = command_note(False, 20131, "mdi: unknown"), event_note(Severity.WARNING, 20132, "mdi: unknown")
+    assert (refusal, event) == ("refused: P-ERR-20131 mdi: unknown", "warning: P-WARN-20131 mdi: unknown")
+    for order in ((refusal, event), (event, refusal), (event, "", refusal, event, refusal)):
+        notes = [other]
+        for note in order:
+            keep_note(notes, note)
+        assert notes == [other, refusal]
+    assert event_note(Severity.INFO, 0, "y: Standstill -> Stopping") == command_note(True, 0, "") == ""
+
+
 def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):
     path = tmp_path / "s.yaml"
     path.write_text("- {at: 0.1, to: x, do: power, on: off}\n")
     result = call("simulate", MILL, "--program", program, "--scenario", path)
     assert result.exit_code == 1
     assert "error: P-ERR-23010 axis x: the enable was removed during path motion" in result.output
+    assert "stop without effect" not in result.output
 
 
 def test_a_duration_that_ends_in_the_block_of_a_fault_is_status_1(program, tmp_path):

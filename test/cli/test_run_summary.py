@@ -3,6 +3,8 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+import pytest
+
 from cnc_ptp.commands.run import print_summary
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.monitor import Progress
@@ -15,13 +17,22 @@ def reported(**more):
     return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
 
 
+def monitor(diagnostics, *, notes=(), run_failed=False):
+    return SimpleNamespace(
+        diagnostics=diagnostics,
+        progress=Progress(cycle=70, program_cycles=40),
+        lateness=Lateness,
+        errors=[],
+        notes=list(notes),
+        run_failed=run_failed,
+    )
+
+
 def test_axes_come_in_the_order_of_the_machine_file(capsys):
     """The nodes report in any order; z has not reported at all."""
     heard = {"c": "0.5", "y": "0.25", "x": "0.125"}
     diagnostics = {"plc": reported()} | {name: reported(following_error_max=text) for name, text in heard.items()}
-    progress = Progress(cycle=70, program_cycles=40)
-    monitor = SimpleNamespace(diagnostics=diagnostics, progress=progress, lateness=Lateness, errors=[], notes=[])
-    print_summary(read_machine(PTP), monitor, [])
+    print_summary(read_machine(PTP), monitor(diagnostics), [])
     assert capsys.readouterr().out.splitlines() == [
         "machine time 0.070 s (70 cycles)",
         "program time 0.040 s",
@@ -30,3 +41,11 @@ def test_axes_come_in_the_order_of_the_machine_file(capsys):
         "largest following error y: 0.2500 mm",
         "largest following error c: 0.5000 deg",
     ]
+
+
+@pytest.mark.parametrize(("failures", "run_failed"), [([], False), (["P-ERR-26106 interrupted"], False), ([], True)])
+def test_axes_that_stood_when_everything_was_stopped_are_no_news(failures, run_failed, capsys):
+    notes = ["warning: axis x: stop without effect in Standstill", "warning: axis x: target is its position"]
+    print_summary(read_machine(PTP), monitor({}, notes=notes, run_failed=run_failed), failures)
+    told = capsys.readouterr().out.splitlines()[3:]
+    assert told == [*(f"failed: {text}" for text in failures), *notes[bool(failures or run_failed) :]]
