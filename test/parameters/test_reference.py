@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.declarations import catalogue
 from cnc_ptp.parameters.reference import describe, reference_markdown
 
@@ -80,6 +81,15 @@ def test_forms_of_ranges() -> None:
     assert "range" not in describe("P-MACH-00005")
     assert "default  []" in describe("P-MACH-00005")
     assert "  Accepted and checked, but without effect in this version." in describe("P-AXIS-00179").splitlines()
+
+
+def test_drive_types_are_as_the_control_document_has_them() -> None:
+    """Each decides telegram and formats, none is warned about."""
+    text = "which decides the cyclic telegram and its formats; the drive behind it is simulated."
+    assert text in " ".join(describe("P-AXIS-00020").split())
+    for kind in catalogue().by_id["P-AXIS-00020"].choices:
+        machine = f"/machine: {{ros__parameters: {{axes: [x]}}}}\n/x: {{ros__parameters: {{kenngr.antr_typ: {kind}}}}}"
+        assert not [line for line in load_machine(machine, "m.yaml").warnings if "P-AXIS-00020" in line]
 
 
 @pytest.mark.parametrize(
