@@ -1,8 +1,9 @@
 """Position loop of a spindle: closed, opened at the control limit or by velocity control, or open for good.
 
 TF5200 spindle 2.2.4 (open position loop), 2.4.2 (control limit), P-AXIS-00265 and 00266 (velocity control). In the open
-loop the speed setpoint goes to the drive. Above the control limit the actual values are simulated: the following error
-is speed / Kv. Units: °, °/s.
+loop the speed setpoint goes to the drive. Above the control limit the actual values are simulated: position controller
+and feedforward go on with an ideal drive, so that the drive of the spindle notices nothing of the limit; at constant
+speed the following error is speed / Kv. Units: °, °/s.
 """
 
 from __future__ import annotations
@@ -22,6 +23,21 @@ Cycles = tuple[list[float], list[float], list[float], list[int]]
 """Actual positions, actual speeds, following errors, drive outputs."""
 
 
+class SimulatedActuals:
+    """Actual values where the measuring system has failed: of an ideal drive under the same position controller."""
+
+    def __init__(self, position: float, speed: float, *, kv: float, feedforward: float) -> None:
+        """Begins with the last measured values; `feedforward` is the part of the set speed that goes out beside Kv."""
+        self.position, self.speed = position, speed
+        self._kv, self._feedforward = kv, feedforward
+
+    def step(self, setpoint: State, cycle_time: float) -> float:
+        """The command of this cycle, which the ideal drive follows until the next one."""
+        self.speed = self._kv * (setpoint[0] - self.position) + self._feedforward * setpoint[1]
+        self.position += self.speed * cycle_time
+        return self.speed
+
+
 class PositionLoop:
     """The control loop of the gear in work, where it is closed and where it is not; actual values, cycle by cycle."""
 
@@ -29,7 +45,9 @@ class PositionLoop:
         """`cycle_time` in s."""
         self._parameters = parameters
         self._cycle_time = cycle_time
-        self.beyond_limit = False
+        self._simulated: SimulatedActuals | None = None
+        self._feedforward = 0.0
+        """Part of the set speed that went out beside the position controller."""
         self.velocity_control = False
         self.drive_output = 0
         self._last_position: float | None = None
@@ -66,6 +84,8 @@ class PositionLoop:
     def shift(self, distance: float) -> None:
         """All coordinates grow by `distance`."""
         self.control.shift(distance)
+        if self._simulated is not None:
+            self._simulated.position += distance
         self._last_position = None if self._last_position is None else self._last_position + distance
 
     @property
@@ -77,6 +97,11 @@ class PositionLoop:
     def position(self) -> float:
         """Actual position as the encoder shows it."""
         return self.control.position
+
+    @property
+    def beyond_limit(self) -> bool:
+        """Above the control limit; actual values are simulated."""
+        return self._simulated is not None
 
     @property
     def closed(self) -> bool:
@@ -100,15 +125,20 @@ class PositionLoop:
         """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
         if self.beyond_limit or self._parameters.open_loop or abs(set_speed) <= self._control_limit:
             return False
-        self.beyond_limit = True
+        control = self.control
+        self._simulated = SimulatedActuals(
+            control.position, control.drive.velocity, kv=control.kv, feedforward=self._feedforward
+        )
         return True
 
     def comes_back(self, set_speed: float) -> bool:
-        """True when the speed has come below the control limit: the measuring system counts again."""
-        if not self.beyond_limit or abs(set_speed) > self._control_limit:
+        """True when the speed has come below the control limit: the measuring system counts again, from where the
+        simulated one has come to.
+        """
+        if self._simulated is None or abs(set_speed) > self._control_limit:
             return False
-        self.beyond_limit = False
-        self._last_position = None
+        simulated, self._simulated = self._simulated, None
+        self.count_from(simulated.position)
         return True
 
     def waits_to_close(self, set_speed: float, wanted_speed: float) -> bool:
@@ -133,13 +163,15 @@ class PositionLoop:
 
     def actual_position(self, set_position: float, set_speed: float) -> float:
         """Measured, or simulated where there is no measurement."""
-        if self.beyond_limit:
-            return set_position - self.lag(set_speed)
+        if self._simulated is not None:
+            return self._simulated.position
         measured = self._parameters.has_position and not self.control.virtual
         return self.control.position if measured else set_position
 
     def actual_speed(self, set_speed: float) -> float:
         """By what the drive sends; asked once a cycle, because an open loop takes it from two positions."""
+        if self._simulated is not None:
+            return self._simulated.speed
         if not self.measures_speed or self.control.virtual:
             return set_speed
         if self._parameters.open_loop and self._parameters.has_position:
@@ -177,11 +209,17 @@ class PositionLoop:
         return cycles
 
     def _closed_cycles(self, setpoints: Sequence[State], watched: bool) -> Cycles:
-        actuals, actual_speeds, errors, commands, *_ = self.control.follow(setpoints, True, watched=watched)
+        actuals, actual_speeds, errors, commands, feedforward, additive, *_ = self.control.follow(
+            setpoints, True, watched=watched
+        )
         outputs = self._output.encode_all(commands)
         if outputs:
             self.drive_output = outputs[-1]
+            self._note_feedforward(feedforward[-1] + additive[-1], setpoints[len(outputs) - 1][1])
         return actuals, actual_speeds, errors, outputs
+
+    def _note_feedforward(self, feedforward_speed: float, set_speed: float) -> None:
+        self._feedforward = feedforward_speed / set_speed if set_speed else 0.0
 
     def command(self, setpoint: State, *, on: bool) -> None:
         """Moves the drive for one cycle. `on` is False without power.
@@ -191,5 +229,8 @@ class PositionLoop:
         speed = setpoint[1] if on else 0.0
         if self._parameters.open_loop:
             speed = self._output.decode(self._output.encode(speed))
+        if self._simulated is not None and on:
+            speed = self._simulated.step(setpoint, self._cycle_time)
         cycle = self.control.step(setpoint, on and self.closed, speed)
+        self._note_feedforward(cycle.feedforward_velocity + cycle.additive_velocity, setpoint[1])
         self.drive_output = self._output.encode(cycle.command_velocity)

@@ -189,8 +189,8 @@ class Spindle:
         if self.loop.passes_limit(speed):
             self.referenced = False
             self.reference_lost = True
-        elif self.loop.comes_back(speed):
-            self.loop.count_from(self.motion(cycle)[0] - self.loop.lag(speed))
+        else:
+            self.loop.comes_back(speed)
         if self.loop.leaves_velocity_control(speed, self.wanted_speed):
             self.place(cycle, self.loop.position + self.loop.lag(speed))
 

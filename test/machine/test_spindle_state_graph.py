@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import pytest
+from loop_support import feedforward
 from machine_support import UnitBench, spindle_bench, spindle_parameters
-from spindle_support import RPM, StuckDrive, bench_of, first_cycle, states, two_gears
+from spindle_support import DOWN, RPM, StuckDrive, bench_of, first_cycle, states, two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import SpindleBit, SpindleMode
+from cnc_ptp.parameters.control_view import VEL
 
 LIMIT = 1000.0 * RPM
 NO_REFERENCE = (
@@ -160,20 +163,56 @@ def test_the_control_limit_opens_the_loop_and_loses_the_reference() -> None:
         bits = column["status_bits"][cycle]
         assert bool(bits & SpindleBit.POSITION_CONTROL) is not beyond
         assert bool(bits & SpindleBit.MONITORING_INVALID) is beyond
-        if beyond:  # actual values are simulated: the lag of the speed
-            assert column["following_error_deg"][cycle] == pytest.approx(column["set_speed_rpm"][cycle] * RPM / 50.0)
-            assert column["actual_speed_rpm"][cycle] == column["set_speed_rpm"][cycle]
+        if beyond:  # actual values are simulated: the lag of the speed, on a ramp as that of the position controller
+            lag = column["actual_speed_rpm"][cycle + 1] * RPM / 50.0
+            assert column["following_error_deg"][cycle] == pytest.approx(lag)
+    assert column["following_error_deg"][699] == pytest.approx(2000.0 * RPM / 50.0)
+    assert column["actual_speed_rpm"][699] == pytest.approx(2000.0)
     lost = first_cycle(bench, "referenced", lambda referenced: not referenced)
     assert lost == first_cycle(bench, "set_speed_rpm", lambda speed: speed > 1000.0)
     assert not any(column["referenced"][lost:])
     closed = first_cycle(bench, "status_bits", lambda bits: bool(bits & SpindleBit.POSITION_CONTROL), 700)
     assert column["set_speed_rpm"][closed] == pytest.approx(1000.0, abs=1e-9)
-    assert column["following_error_deg"][closed] == pytest.approx(1000.0 * RPM / 50.0)
-    steps = [
-        b - a
-        for a, b in zip(column["actual_speed_rpm"][closed:], column["actual_speed_rpm"][closed + 1 :], strict=False)
-    ]
-    assert max(map(abs, steps)) < 10.0  # the loop closes without a jerk of the drive
+
+
+FEEDFORWARD = {"off": 0.0, "half": 50.0, "full": 100.0}
+
+
+@pytest.mark.parametrize("direction", ["cw", "ccw"])
+@pytest.mark.parametrize("weight", FEEDFORWARD)
+def test_the_drive_notices_nothing_of_the_control_limit(weight: str, direction: str) -> None:
+    """Speed and output of the drive are those of a spindle that has no such limit, up and down again on ramps.
+
+    With feedforward as well as its part is known, to less than the speed that the ramp gains in two cycles.
+    """
+    columns = []
+    for limit in (math.inf, LIMIT):
+        ideal = {"encoder_increment": 0.0, "drive_time_constant": 0.0}
+        bench = spindle_bench(control_limit=limit, **ideal, feedforward=feedforward(VEL))
+        bench.accepted("set_feedforward", on=weight != "off", weight_percent=FEEDFORWARD[weight])
+        turn(bench, 2000.0, 600, direction)
+        bench.accepted("set_speed", speed_rpm=500.0)
+        bench.run(600)
+        columns.append(bench.columns())
+    free, limited = columns
+    assert len({bool(bits & SpindleBit.POSITION_CONTROL) for bits in limited["status_bits"]}) == 2
+    slack = 1e-6 if weight == "off" else 2.0 * DOWN * 0.001
+    digits = max(map(abs, free["drive_output"])) / (2000.0 * RPM)
+    assert limited["drive_output"] == pytest.approx(free["drive_output"], abs=1.0 + slack * digits)
+    assert limited["actual_speed_rpm"] == pytest.approx(free["actual_speed_rpm"], abs=slack / RPM)
+    assert limited["following_error_deg"] == pytest.approx(free["following_error_deg"], abs=slack / 50.0)
+
+
+def test_a_drive_with_its_own_time_and_encoder_passes_the_control_limit_without_a_jump() -> None:
+    bench = spindle_bench(control_limit=LIMIT, drive_time_constant=0.002, encoder_increment=0.05)
+    turn(bench, 2000.0, 600)
+    bench.accepted("stop")
+    bench.run(1500)
+    output = bench.column("drive_output")
+    digits = max(output) / (2000.0 * RPM)
+    steps = [abs(after - before) / digits for before, after in pairwise(output)]
+    assert max(steps) < 2.0 * DOWN * 0.001 and bench.column("in_position")[-1] is False
+    assert bench.column("referenced")[-1] and bench.state == S.STANDSTILL
 
 
 @pytest.mark.parametrize("limit", [400.0, 401.7, 433.3, 1234.567, 1799.999])
