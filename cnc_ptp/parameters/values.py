@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declarations import Declaration, Limit, Number, ParameterValue
-from cnc_ptp.parameters.source import Value
+from cnc_ptp.parameters.source import Scalar, Value
 
 NEEDED = {
     "int": "an integer",
@@ -50,9 +50,18 @@ def typed_value(declaration: Declaration, value: Value) -> ParameterValue:
         return as_float(value)  # type: ignore[arg-type]
     if kind == "string" and isinstance(value, str):
         return value
-    if kind == "strings" and isinstance(value, tuple) and all(isinstance(item, str) for item in value):
-        return tuple(str(item) for item in value)
+    if kind == "strings" and isinstance(value, tuple):
+        return tuple(name_entry(item) for item in value)
     raise BadValue(errors.WRONG_TYPE, f"value {shown(value)} is {described(value)}, {NEEDED[kind]} is needed")
+
+
+def name_entry(item: Scalar) -> str:
+    """An entry of a list of names."""
+    if isinstance(item, str):
+        return item
+    if type(item) is int:
+        raise BadValue(errors.WRONG_TYPE, f'entry {shown(item)} is a number, names are text, quote it: "{item}"')
+    raise BadValue(errors.WRONG_TYPE, f"entry {shown(item)} is {described(item)}, {NEEDED['strings']} is needed")
 
 
 def as_float(value: Number) -> float:

@@ -188,6 +188,16 @@ CASES = {
         "P-ERR-25007 m.yaml:2:44: axis list, P-AXIS-00297 kopf.log_achs_name of /x: value 2 is an integer, "
         "text is needed" + END,
     ),
+    "numbers in a list of names": (
+        axis("{antr.telegram.feedback: [606C, 6064, 6077]}"),
+        "P-ERR-25007 m.yaml:2:48: machine list, P-MACH-00021 antr.telegram.feedback of /x: entry 6064 is a number, "
+        'names are text, quote it: "6064"' + END,
+    ),
+    "no text in a list of names": (
+        axis("{antr.telegram.feedback: [606C, null]}"),
+        "P-ERR-25007 m.yaml:2:48: machine list, P-MACH-00021 antr.telegram.feedback of /x: entry null is nothing, a "
+        "list of names is needed" + END,
+    ),
     "text for a list of names": (
         "/machine: {ros__parameters: {axes: x}}\n",
         "P-ERR-25007 m.yaml:1:36: machine list, P-MACH-00005 axes of /machine: value 'x' is text, "
