@@ -18,12 +18,12 @@ $(VENV)/.python:
 	@touch $@
 
 $(VENV)/.requirements: requirements-build.txt requirements.txt requirements-test.txt $(VENV)/.python
-	@echo "Installing ROS 2 and the other packages into $(VENV) (about a minute) ..."
+	@echo "Installing ROS 2 and the other packages into $(VENV) (one minute to four) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check $(addprefix -r ,$(filter %.txt,$^))
 	@touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
-	@echo "Generating the ROS interfaces and installing cnc_ptp into $(VENV) (about a minute) ..."
+	@echo "Generating the ROS interfaces and installing cnc_ptp into $(VENV) (one minute to four) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 
