@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-LONGEST_RUN = 1e7
-"""Seconds of machine time."""
+from cnc_ptp.machine.run_time import LONGEST_RUN
 
 
 class NumberRange(click.FloatRange):

@@ -12,7 +12,8 @@ from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
-from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, is_finite
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command
+from cnc_ptp.machine.run_time import LONGEST_RUN
 from cnc_ptp.machine.setpoint_file import parse_setpoints
 from cnc_ptp.machine.setpoint_queue import SETPOINTS
 
@@ -85,8 +86,8 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     if not {"at", "to", "do"} <= arguments.keys():
         raise CncError(BAD_SCENARIO, "an entry needs at (seconds), to (unit) and do (command)")
     at, to, do = (arguments.pop(name) for name in ("at", "to", "do"))
-    if isinstance(at, bool) or not isinstance(at, (int, float)) or not is_finite(at) or at < 0.0:
-        raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 or later")
+    if isinstance(at, bool) or not isinstance(at, (int, float)) or not 0.0 <= at <= LONGEST_RUN:
+        raise CncError(BAD_SCENARIO, f"at = {at!r} must be a time in seconds, 0 to {LONGEST_RUN:.0f}")
     to, do = str(to), str(do)
     if to not in kinds:
         raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
