@@ -30,6 +30,8 @@ DIRECTIONS = {"both": (False, True), "ccw": (False,), "cw": (True,)}
 FILE = "circle.nc"
 LARGEST = 1e5
 """mm and mm/min; beyond it is no circle test."""
+LONGEST_TEST = 3600.0
+"""s; all turns of a run, which keeps its positions in memory."""
 SMALLEST_RADIUS = 1e-3
 """mm; below the increments of an encoder there is no circle."""
 
@@ -77,6 +79,7 @@ def circle(
         )
         for variant in chosen
     ]
+    check_time(programs[0], feed)
     results = run_variants(parameters, place, list(zip(chosen, programs, strict=True)), feed)
     if results is None:
         return RUN_FAILED
@@ -111,6 +114,21 @@ def check_numbers(
         if not least <= value <= LARGEST or (value == 0.0 and least == 0.0):
             shown = f"{value:g} {unit}".rstrip()
             raise CncError(BAD_CIRCLE, f"{name} {shown} is not within {least:g} … {LARGEST:g}; nothing was started")
+
+
+def check_time(program: CircleProgram, feed: float) -> None:
+    """Raises CncError 27020 for a circle that would take longer than a test lasts."""
+    seconds = machine_time(program, feed)
+    if seconds > LONGEST_TEST:
+        circle = f"radius {program.radius:g} mm at feed {feed:g} mm/min"
+        limit = f"{seconds:g} s of machine time, the limit is {LONGEST_TEST:.0f} s"
+        raise CncError(BAD_CIRCLE, f"{circle} takes {limit}; nothing was started")
+
+
+def machine_time(program: CircleProgram, feed: float) -> float:
+    """About how long the run of a program takes, s: its turns, with a second before each and at the end."""
+    turn_time = 60.0 * 2.0 * math.pi * program.radius / feed
+    return len(program.turns) * (turn_time + 1.0) + 1.0
 
 
 def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, float] | None) -> Place:
@@ -176,12 +194,11 @@ def run_variant(
         Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text})),
         Entry(0.0, Command(place.channel, "start", {})),
     ]
-    turn_time = 2.0 * math.pi * program.radius / (feed / 60.0)
     trial = run_trial(
         machine,
         job,
         fields={place.channel: ("line", "path_velocity"), **dict.fromkeys(place.nodes, ("actual_position",))},
-        seconds=len(program.turns) * (turn_time + 1.0) + 1.0,
+        seconds=machine_time(program, feed),
         label=variant.name,
     )
     if trial.failed:

@@ -187,6 +187,16 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
         (["--radius", 25, "--feed", 0], "P-ERR-27020 feed 0 mm/min is not within 0 … 100000; nothing was started"),
         (["--radius", 25, "--feed", -5], "P-ERR-27020 feed -5 mm/min is not within 0 … 100000; nothing was started"),
         (
+            ["--radius", 25, "--feed", 1e-3],
+            "P-ERR-27020 radius 25 mm at feed 0.001 mm/min takes 3.76991e+07 s of machine time, the limit is 3600 s; "
+            "nothing was started",
+        ),
+        (
+            ["--radius", 25, "--feed", 5e-324, "--direction", "cw"],
+            "P-ERR-27020 radius 25 mm at feed 4.94066e-324 mm/min takes inf s of machine time, the limit is 3600 s; "
+            "nothing was started",
+        ),
+        (
             ["--radius", 25, "--feed", 2000, "--magnification", 0],
             "P-ERR-27020 magnification 0 is not within 0 … 100000; nothing was started",
         ),
