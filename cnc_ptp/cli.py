@@ -161,7 +161,7 @@ def identify_dynamics_command(**options: Any) -> None:
 @click.option("--plane", default="XY", show_default=True, help="XY, ZX or YZ.")
 @click.option("--centre", type=float, nargs=2, help="Centre in the plane, mm; without it where the axes stand.")
 @click.option("--direction", type=click.Choice(["both", "ccw", "cw"]), default="both", show_default=True)
-@click.option("--feedforward/--no-feedforward", default=False, help="G135 (off without it, as after a program start).")
+@click.option("--feedforward/--no-feedforward", default=None, help="G135 (off without it, as after a program start).")
 @click.option("--friction/--no-friction", default=None, help="Friction compensation (without it as the machine is).")
 @click.option(
     "--compare",
@@ -176,6 +176,12 @@ def circle_command(**options: Any) -> None:
     """Circle test of a machine, run offline: circular deviation (ISO 230-4), quadrant peaks, polar plot."""
     from cnc_ptp.commands.circle import circle
 
+    compared = options["compare"]
+    for name in ("feedforward", "friction"):
+        if compared in (name, "both") and options[name] is not None:
+            switches = f"--{name} and --no-{name} are for what is not compared."
+            raise click.UsageError(f"--compare {compared} runs without and with {name}: {switches}")
+    options["feedforward"] = bool(options["feedforward"])
     sys.exit(circle(**options))
 
 

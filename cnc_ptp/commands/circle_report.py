@@ -117,8 +117,16 @@ def comparison_lines(test: CircleTest) -> Iterator[str]:
         ("largest |F|", max(map(_largest, first.circles)), max(map(_largest, last.circles))),
         ("largest peak", first.largest_peak, last.largest_peak),
     ):
-        ratio = before / after if after > 0.0 else math.inf
-        yield f"  {name:14}{UM * before:9.2f} -> {UM * after:.2f} µm, {ratio:.1f} times smaller"
+        yield f"  {name:14}{UM * before:9.2f} -> {UM * after:.2f} µm, {_change(before, after)}"
+
+
+def _change(before: float, after: float) -> str:
+    """How often one is in the other, and in which way."""
+    small, large = sorted((before, after))
+    ratio = large / small if small > 0.0 else math.inf
+    if large == small or round(ratio, 1) == 1.0:
+        return "as large"
+    return f"{ratio:.1f} times {'smaller' if after < before else 'larger'}"
 
 
 def _largest(circle: CircleResult) -> float:

@@ -3,11 +3,14 @@
 import cmath
 import math
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill
+
+from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, comparison_lines
 
 RADIUS, FEED = 25.0, 2000.0
 NUMBER = r"(-?\d+\.\d\d)"
@@ -310,3 +313,46 @@ def test_help(option):
     assert "Usage:" in call("circle", option).output
     assert call("circle", MILL).exit_code == 2
     assert call("circle", MILL, "--radius", 25, "--feed", 2000, "--compare", "all").exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("compare", "option", "name"),
+    [
+        ("friction", "--no-friction", "friction"),
+        ("friction", "--friction", "friction"),
+        ("feedforward", "--feedforward", "feedforward"),
+        ("both", "--no-feedforward", "feedforward"),
+        ("both", "--friction", "friction"),
+    ],
+)
+def test_what_is_compared_is_not_chosen(compare, option, name):
+    result = call("circle", MILL, "--radius", 25, "--feed", 2000, "--compare", compare, option)
+    assert result.exit_code == 2
+    assert result.stderr.endswith(
+        f"\nError: --compare {compare} runs without and with {name}: --{name} and --no-{name} are for what is not "
+        "compared.\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "text"),
+    [
+        (0.01, 0.002, "5.0 times smaller"),
+        (0.002, 0.0034, "1.7 times larger"),
+        (0.002, 0.00202, "as large"),
+        (0.00202, 0.002, "as large"),
+        (0.0, 0.0, "as large"),
+        (0.002, 0.0, "inf times smaller"),
+        (0.0, 0.002, "inf times larger"),
+    ],
+)
+def test_better_and_worse_are_told_apart(before, after, text):
+    """Circles with one peak, so G, |F| and the peak are that peak."""
+
+    def result(height):
+        circle = SimpleNamespace(circular_deviation=height, radial_low=0.0, radial_high=height, largest_peak=height)
+        return VariantResult(Variant(False, height == after), (circle,), height, FEED)
+
+    lines = list(comparison_lines(CircleTest(("X", "Y"), (0.0, 0.0), RADIUS, FEED, (result(before), result(after)))))
+    changes = f"{1000 * before:9.2f} -> {1000 * after:.2f} µm, {text}"
+    assert lines[1:] == [f"  {name:14}{changes}" for name in ("G", "largest |F|", "largest peak")]
