@@ -23,6 +23,7 @@ def machine(*lines: str, second: str = "") -> MachineParameters:
     for node, number in (("a", 6), ("b", 11), ("c", 30)):
         gears = "getriebe: {0: {kv: 1000}, 1: {kv: 1000}}"
         text += f"/{node}: {{ros__parameters: {{kopf.achs_nr: {number}, {gears}}}}}\n"
+    text += "/x: {ros__parameters: {kopf.achs_nr: 1}}\n"
     return load_machine(text + second, "m.yaml")
 
 
