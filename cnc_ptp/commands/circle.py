@@ -68,6 +68,7 @@ def circle(
     place = find_place(parameters, found, centre)
     chosen = variants(feedforward, friction, compare)
     check_comparison(parameters, place, chosen)
+    compensated = compensated_axes(parameters, found, place)
     programs = [
         circle_program(
             found,
@@ -75,7 +76,7 @@ def circle(
             radius=radius,
             feed=feed,
             directions=DIRECTIONS[direction],
-            before=variant.blocks(found.axes),
+            before=variant.blocks(compensated),
         )
         for variant in chosen
     ]
@@ -83,7 +84,8 @@ def circle(
     results = run_variants(parameters, place, list(zip(chosen, programs, strict=True)), feed)
     if results is None:
         return RUN_FAILED
-    show(CircleTest(found.axes, place.centre, radius, feed, results), outputs, magnification)
+    others = tuple(axis for axis in found.axes if axis not in compensated)
+    show(CircleTest(found.axes, place.centre, radius, feed, results, others), outputs, magnification)
     return 0
 
 
@@ -180,6 +182,12 @@ def check_comparison(machine: MachineParameters, place: Place, chosen: Sequence[
             f"axes {names}: friction compensation has no effect, it needs lr_param.frict_comp (P-AXIS-00522) and a "
             "table; nothing was started, see cnc_ptp identify friction",
         )
+
+
+def compensated_axes(machine: MachineParameters, plane: Plane, place: Place) -> list[str]:
+    """The axes of the plane whose friction compensation can be switched."""
+    pairs = zip(plane.axes, place.nodes, strict=True)
+    return [axis for axis, node in pairs if machine.axes[node].control.friction.active]
 
 
 def _feeds_forward(axis: AxisParameters) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from cnc_ptp.commissioning.roundness import CircleResult
@@ -29,8 +29,8 @@ class Variant:
             words.append(f"{OFF_AND_ON[self.friction]} friction compensation")
         return ", ".join(words)
 
-    def blocks(self, axes: tuple[str, str]) -> list[str]:
-        """The program words that switch it."""
+    def blocks(self, axes: Iterable[str]) -> list[str]:
+        """The program words that switch it; `axes` are those with friction compensation."""
         blocks = ["G135" if self.feedforward else "G137"]
         if self.friction is not None:
             blocks += [f"{axis}[COMP {'ON' if self.friction else 'OFF'} FRICT]" for axis in axes]
@@ -61,6 +61,8 @@ class CircleTest:
     radius: float
     feed: float
     results: tuple[VariantResult, ...]
+    uncompensated: tuple[str, ...] = ()
+    """Axes without friction compensation."""
 
     @property
     def title(self) -> str:
@@ -134,10 +136,15 @@ def _largest(circle: CircleResult) -> float:
 
 
 def warning_lines(test: CircleTest) -> Iterator[str]:
-    """The feed that was not reached."""
+    """The feed that was not reached, friction compensation that an axis does not have."""
     lowest = min(result.lowest_feed for result in test.results)
     if lowest < (1.0 - FEED_TOLERANCE) * test.feed:
         yield (
             f"warning: the feed of {test.feed:g} mm/min was not reached everywhere, the lowest is {lowest:.0f} "
             "mm/min; the axes' acceleration is too small for this radius"
+        )
+    if test.uncompensated and any(result.variant.friction for result in test.results):
+        yield (
+            f"warning: axis {', '.join(test.uncompensated)} has no friction compensation, it needs lr_param.frict_comp "
+            "(P-AXIS-00522) and a table; only the other axis was switched"
         )

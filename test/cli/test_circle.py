@@ -277,11 +277,25 @@ def test_friction_compensation_that_is_not_configured_is_nothing_to_compare(opti
     assert (result.exit_code, result.stderr) == (2, text)
 
 
-def test_one_axis_without_friction_compensation_is_refused_by_the_program(tmp_path):
+def test_one_axis_without_friction_compensation_is_told_and_the_other_is_compared(tmp_path):
+    """The peaks of X at 0° and 180° become smaller, those of Y stay."""
     path = changed_mill(tmp_path / "one.yaml", "y", lr_param={"frict_comp": 0})
-    result = call("circle", path, "--radius", 25, "--feed", 2000, "--compare", "friction")
-    assert result.exit_code == 2
-    assert result.stderr.startswith("P-ERR-70495 circle.nc line 5 column 5 'N40 Y[COMP ON FRICT]': axis Y: ")
+    options = ["--radius", 25, "--feed", 2000, "--direction", "ccw", "--feedforward"]
+    result = call("circle", path, *options, "--compare", "friction")
+    assert result.exit_code == 0, result.output
+    assert result.stdout.splitlines()[-1] == (
+        "warning: axis Y has no friction compensation, it needs lr_param.frict_comp (P-AXIS-00522) and a table; only the "
+        "other axis was switched"
+    )
+    before, after = (rows(result)[name, "ccw"][3:7] for name in (FORWARD, ALL))
+    assert before[0] > 5.0 * after[0] and before[2] > 5.0 * after[2]
+    assert before[1] == pytest.approx(after[1], rel=0.1) and before[3] == pytest.approx(after[3], rel=0.1)
+
+
+def test_an_axis_without_friction_compensation_that_is_not_switched_is_no_news(tmp_path):
+    path = changed_mill(tmp_path / "one.yaml", "y", lr_param={"frict_comp": 0})
+    result = call("circle", path, "--radius", 5, "--feed", 2000, "--direction", "ccw", "--no-friction")
+    assert result.exit_code == 0 and "warning" not in result.output
 
 
 def both(tmp_path, sections):
