@@ -126,6 +126,8 @@ def require_source(options: dict[str, Any]) -> None:
         raise click.UsageError("--machine (drives the axis offline) or --recording is needed.")
     if options["recording"] is not None and options["record"] is not None:
         raise click.UsageError("--record and --recording exclude each other: a recording is evaluated without a run.")
+    if options["recording"] is not None and options.get("velocities"):
+        raise click.UsageError("--velocity and --recording exclude each other: a recording is evaluated without a run.")
 
 
 @main.group("identify")

@@ -105,13 +105,16 @@ class AxisData:
 
 
 def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData:
-    """The axis; the machine file of a recording is used where no other is given.
+    """The axis; the machine file of a recording is used, --machine is for one that holds none.
 
-    Raises CncError 27001, 27002, 27040, those of reading the machine file and the recording.
+    Raises CncError 27001, 27002, 27040 (none, or two that differ), those of reading the machine file and the recording.
     """
     recorded = read_recording(recording) if recording is not None else None
     if machine is not None:
         text, file = read_file("machine file", machine), machine
+        if recorded is not None and recorded.machine_yaml not in ("", text):
+            reason = f"was made with another machine file than {machine}; nothing was made, leave --machine out"
+            raise CncError(NO_MACHINE, f"recording {recording} {reason}")
     elif recorded is not None and recorded.machine_yaml:
         text, file = recorded.machine_yaml, f"{recording}:machine.yaml"
     else:

@@ -279,6 +279,28 @@ def test_wrong_usage(kind):
     assert call("identify", kind).exit_code == 2
 
 
+def test_velocities_are_for_a_run():
+    result = call("identify", "friction", "x", "--recording", "a.mcap", "--velocity", 7)
+    assert result.exit_code == 2 and result.stderr.endswith(
+        "\nError: --velocity and --recording exclude each other: a recording is evaluated without a run.\n"
+    )
+
+
+@pytest.mark.parametrize("kind", ["friction", "dynamics"])
+def test_a_machine_file_that_is_not_that_of_the_recording(kind, tmp_path):
+    """Units, ranges and scales would be those of another axis; the same text, or one for a recording without, is fine."""
+    path = standing(tmp_path / "a.mcap")
+    for machine in (PTP, changed_mill(tmp_path / "m.yaml", "x")):
+        result = call("identify", kind, "x", "--recording", path, "--machine", machine)
+        text = (
+            f"P-ERR-27040 recording {path} was made with another machine file than {machine}; nothing was made, leave "
+        )
+        assert (result.exit_code, result.stdout, result.stderr) == (2, "", f"{text}--machine out\n")
+    assert "does not move" in call("identify", kind, "x", "--recording", path, "--machine", MILL).stderr
+    path = standing(tmp_path / "b.mcap", machine="")
+    assert "does not move" in call("identify", kind, "x", "--recording", path, "--machine", MILL).stderr
+
+
 @pytest.mark.parametrize("option", ["--help", "-h"])
 @pytest.mark.parametrize("kind", ["friction", "dynamics"])
 def test_help(kind, option):
