@@ -8,8 +8,9 @@ from typing import Any
 
 import click
 
-from cnc_ptp.commands.console import WRONG_INPUT, print_error
+from cnc_ptp.commands.console import RUN_FAILED, WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
+from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.number_range import DURATION, RATE
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
@@ -30,7 +31,7 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class Group(click.Group):
-    """Prints a refusal as one text and ends with status 2, without a traceback."""
+    """Prints a refusal as one text and ends with status 2, an interrupt outside of a run with 1; no traceback."""
 
     def invoke(self, context: click.Context) -> Any:
         try:
@@ -38,6 +39,10 @@ class Group(click.Group):
         except CncError as error:
             print_error(error)
             sys.exit(WRONG_INPUT)
+        except KeyboardInterrupt:
+            text = "the command was interrupted (SIGINT) while no run was under way; it ends here"
+            print_error(CncError(INTERRUPTED, text))
+            sys.exit(RUN_FAILED)
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})

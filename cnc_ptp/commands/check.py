@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cnc_ptp.commands.console import WRONG_INPUT, print_error, print_notices
+from rich.console import Console
+
+from cnc_ptp.commands.console import WRONG_INPUT, print_error
+from cnc_ptp.machine.blocks import Severity, event_note
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.program_check import ProgramCheck
+from cnc_ptp.machine.wiring import MACHINE_NOTICE
 from cnc_ptp.nc.interpreter import check as check_text
-from cnc_ptp.parameters import read_machine
+from cnc_ptp.parameters import MachineParameters, read_machine
 
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
@@ -31,3 +35,10 @@ def check(program: str, machine: str | None) -> int:
     if not errors:
         print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
     return WRONG_INPUT if errors else 0
+
+
+def print_notices(machine: MachineParameters) -> None:
+    """What deserves a look in a machine file, on standard error."""
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    for text in machine.warnings:
+        console.print(event_note(Severity.WARNING, MACHINE_NOTICE, text), style="yellow", markup=False)

@@ -5,9 +5,6 @@ from __future__ import annotations
 from rich.console import Console
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Severity, event_note
-from cnc_ptp.machine.wiring import MACHINE_NOTICE
-from cnc_ptp.parameters import MachineParameters
 
 RUN_FAILED = 1
 """The run ended in an error, or a recording differs."""
@@ -24,13 +21,6 @@ def print_error(error: CncError) -> None:
     caret = getattr(error, "caret", "")
     if caret:
         console.print(caret, markup=False)
-
-
-def print_notices(machine: MachineParameters) -> None:
-    """What deserves a look in a machine file, on standard error."""
-    console = Console(stderr=True, highlight=False, soft_wrap=True)
-    for text in machine.warnings:
-        console.print(event_note(Severity.WARNING, MACHINE_NOTICE, text), style="yellow", markup=False)
 
 
 def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool) -> None:

@@ -311,6 +311,23 @@ def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
     assert f"cnc_ptp {name}" in capsys.readouterr().out
 
 
+def test_help_needs_no_numerics():
+    """What takes its time to load comes with the command that needs it, behind the handler of the interrupt."""
+    code = "import sys, cnc_ptp.cli; print({'numpy', 'scipy', 'matplotlib', 'rclpy', 'yaml'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout == "set()\n"
+
+
+def test_an_interrupt_during_the_start_is_told(tmp_path, monkeypatch):
+    def interrupted(path):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", interrupted)
+    result = call("simulate", MILL)
+    text = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
+    assert (result.exit_code, result.stdout, result.stderr) == (1, "", text)
+
+
 def test_no_progress_and_no_escape_codes_without_a_terminal(program):
     done = subprocess.run(
         [sys.executable, "-m", "cnc_ptp.cli", "simulate", MILL, "--program", program],
