@@ -27,7 +27,7 @@ ReadFile = Callable[[str, str], str]
 
 
 class ScenarioError(CncError):
-    """The scenario cannot be used; the message lists every fault with file and line. Nothing was started."""
+    """The scenario cannot be used; the message lists every fault with number, file and line. Nothing was started."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,8 @@ def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFil
         except CncError as error:
             faults.append(f"{file}:{node.start_mark.line + 1}: {error.message}")
     if faults:
-        raise ScenarioError(BAD_SCENARIO, "\n".join([*faults, "nothing was started"]))
+        lines = f"\nP-ERR-{BAD_SCENARIO} ".join(faults)
+        raise ScenarioError(BAD_SCENARIO, f"{lines}\nnothing was started")
     return sorted(entries, key=lambda entry: entry.at)
 
 

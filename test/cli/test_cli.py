@@ -211,7 +211,7 @@ def test_a_bad_scenario_lists_every_fault(tmp_path):
     result = call("simulate", MILL, "--scenario", path)
     assert result.exit_code == 2
     for line in (1, 2, 3):
-        assert f"{path}:{line}: " in result.stderr
+        assert f"P-ERR-25101 {path}:{line}: " in result.stderr
 
 
 def test_a_refused_command_is_no_failed_run(tmp_path):

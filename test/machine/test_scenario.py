@@ -141,8 +141,8 @@ def test_faults(text: str, reason: str) -> None:
 def test_all_faults_at_once_with_their_lines() -> None:
     text = "- {at: 0, to: x, do: stop}\n- {at: 0, to: q, do: stop}\n# comment\n- at: 0\n  to: x\n"
     assert fault(text) == (
-        f"P-ERR-25101 s.yaml:2: unit 'q' does not exist in the machine. {KNOWN}\ns.yaml:4: {MISSING}\nnothing "
-        f"was started"
+        f"P-ERR-25101 s.yaml:2: unit 'q' does not exist in the machine. {KNOWN}\nP-ERR-25101 s.yaml:4: {MISSING}\n"
+        "nothing was started"
     )
 
 
