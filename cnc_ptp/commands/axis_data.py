@@ -123,7 +123,8 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
     if axis not in parameters.axes:
         kind = "a spindle" if axis in parameters.spindles else "no axis"
         known = ", ".join(parameters.axes)
-        raise CncError(UNKNOWN_AXIS, f"{axis} is {kind} of the machine {file}; nothing was started. Axes: {known}")
+        near = f", did you mean {axis.lower()}?" if axis.lower() in parameters.axes else ";"
+        raise CncError(UNKNOWN_AXIS, f"{axis} is {kind} of the machine {file}{near} nothing was started. Axes: {known}")
     return AxisData(parameters, text, parameters.axes[axis], recorded)
 
 

@@ -23,6 +23,13 @@ def print_error(error: CncError) -> None:
         console.print(caret, markup=False)
 
 
+def print_note_of_idle_run(*job: object) -> None:
+    """Where none of --program, --scenario, --duration was given, that there was nothing to do."""
+    if all(part is None for part in job):
+        text = "note: there was nothing to do, give --program, --scenario or --duration"
+        Console(highlight=False, soft_wrap=True).print(text, style="yellow")
+
+
 def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool) -> None:
     """Errors of a run; commands that were refused or carried out with a warning.
 

@@ -69,6 +69,9 @@ def identify_friction(
     if table.dropped:
         kept = f"{len(table.entries)} of {len(curve.points)} points"
         console.print(f"{kept} are in the table (P-COMP-00062); between them the curve is straight")
+    if len(table.entries) == 1:
+        text = "warning: the table has one point, its friction counts at all velocities; drive more of them"
+        console.print(text, style="yellow")
     deliver(console, output, friction_yaml(data, curve, table, source))
     return 0
 

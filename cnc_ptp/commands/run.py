@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
-from cnc_ptp.commands.console import RUN_FAILED, print_faults
+from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
@@ -40,6 +40,7 @@ def run(
             supervisor = Supervisor(parameters, job, show=show)
             monitor, failures = supervisor.run(), supervisor.failures
     print_summary(parameters, monitor, failures)
+    print_note_of_idle_run(program, scenario, duration)
     return RUN_FAILED if failures or monitor.run_failed else 0
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from rich.console import Console
 
-from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults
+from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.errors import CncError
@@ -94,6 +94,7 @@ def simulate(
         print_error(error)
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started)
+    print_note_of_idle_run(program, scenario, duration)
     return RUN_FAILED if result.failed or result.interrupted else 0
 
 

@@ -269,6 +269,15 @@ def test_duration_ends_the_run(program, tmp_path):
     assert read_recording(tmp_path / "a.mcap").last_cycle == 259
 
 
+def test_a_run_without_anything_to_do_says_so(program, tmp_path):
+    note = "note: there was nothing to do, give --program, --scenario or --duration"
+    result = call("simulate", MILL)
+    assert (result.exit_code, result.stdout.splitlines()[-1]) == (0, note)
+    (tmp_path / "s.yaml").write_text("[]")
+    for job in (["--program", program], ["--duration", 0.1], ["--scenario", tmp_path / "s.yaml"]):
+        assert "nothing to do" not in call("simulate", MILL, *job).output
+
+
 def test_report_and_replay_of_a_cut_off_recording(program, tmp_path):
     call("simulate", MILL, "--program", program, "--record", tmp_path / "a.mcap")
     whole = (tmp_path / "a.mcap").read_bytes()

@@ -228,6 +228,10 @@ def test_a_gain_near_the_limit_is_warned_about(tmp_path):
             f"P-ERR-27001 q is no axis of the machine {MILL}; nothing was started. Axes: x, y, z",
         ),
         (
+            ["X", "--machine", MILL],
+            f"P-ERR-27001 X is no axis of the machine {MILL}, did you mean x? nothing was started. Axes: x, y, z",
+        ),
+        (
             ["s", "--machine", MILL],
             f"P-ERR-27001 s is a spindle of the machine {MILL}; nothing was started. Axes: x, y, z",
         ),
@@ -277,6 +281,14 @@ def test_wrong_usage(kind):
     result = call("identify", kind, "x", "--recording", "a.mcap", "--record", "b.mcap")
     assert result.exit_code == 2 and "--record and --recording exclude each other" in result.stderr
     assert call("identify", kind).exit_code == 2
+
+
+def test_a_table_of_one_point_is_warned_about():
+    line = "warning: the table has one point, its friction counts at all velocities; drive more of them"
+    result = call("identify", "friction", "x", "--machine", MILL, "--velocity", 5)
+    assert result.exit_code == 0 and result.stdout.splitlines().count(line) == 1
+    result = call("identify", "friction", "x", "--machine", MILL, "--velocity", 5, "--velocity", 50)
+    assert result.exit_code == 0 and "one point" not in result.output
 
 
 def test_velocities_are_for_a_run():

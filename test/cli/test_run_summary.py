@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from cnc_ptp.commands import run as command
 from cnc_ptp.commands.run import print_summary
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.monitor import Progress
@@ -49,3 +50,12 @@ def test_axes_that_stood_when_everything_was_stopped_are_no_news(failures, run_f
     print_summary(read_machine(PTP), monitor({}, notes=notes, run_failed=run_failed), failures)
     told = capsys.readouterr().out.splitlines()[3:]
     assert told == [*(f"failed: {text}" for text in failures), *notes[bool(failures or run_failed) :]]
+
+
+@pytest.mark.parametrize(("duration", "told"), [(None, True), (0.0, False)])
+def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypatch):
+    supervisor = SimpleNamespace(run=lambda: monitor({}), failures=[])
+    monkeypatch.setattr(command, "Supervisor", lambda *_, **__: supervisor)
+    assert command.run(str(PTP), None, None, duration, None, free_run=True, composed=False) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert (last == "note: there was nothing to do, give --program, --scenario or --duration") is told
