@@ -16,7 +16,7 @@ from cnc_ptp.machine.spindle_cycles import SpindleCycles
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
-from cnc_ptp.spindle.faults import MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, MASTER_IN_ERROR, SLAVE_CANNOT
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
@@ -128,21 +128,43 @@ class SpindleUnit(Unit):
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
         jobs = self.spindle.jobs
-        before = jobs.job
+        if order.command == "stop" and order.source != self._orders.source:
+            self._tell_overtaken(cycle, "stop")
+        before, turned = jobs.job, self.spindle.state == S.CONTINUOUS_MOTION
         message = self._group_handler(order.command)(cycle, **order.arguments)
         if jobs.job is not None and jobs.job is not before:
             jobs.job.number = order.number
         if order.command == "stop":
             self._orders.clear()
-        self._orders.begin(order.source)
+        if self._has_effect(order.command, new_job=jobs.job is not before, turned=turned):
+            self._orders.begin(order.source)
         if order.command in PASSED_ON:
             source = {"source": order.source} if order.source else {}
             self._passed_on.append(Command(self.name, order.command, {**order.arguments, **source}))
         return message
 
+    def _tell_overtaken(self, cycle: int, by: str) -> None:
+        """For whom the PLC changes the gear hears that nothing goes on afterwards."""
+        source = self._orders.source
+        if not source or not self.spindle.jobs.gear_request:
+            return
+        text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
+        self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
+        self._refused.append(f"{source}: P-ERR-{GEAR_CHANGE_OVERTAKEN} {text}")
+
+    @staticmethod
+    def _has_effect(command: str, *, new_job: bool, turned: bool) -> bool:
+        """False for the gear in use and a speed at rest: they take the spindle away from nobody."""
+        if command == "select_gear":
+            return new_job
+        return command != "set_speed" or turned
+
     def _take_turns(self, cycle: int) -> None:
         """Commands whose turn has come act at the first cycle of a block, like all others."""
         while (order := self._orders.next()) is not None:
+            if order.master_source is not None:
+                self._act_as_slave(cycle, order)
+                continue
             try:
                 self._carry_out(cycle, order)
             except CncError as error:
@@ -167,6 +189,7 @@ class SpindleUnit(Unit):
     def do_power(self, cycle: int, *, on: bool) -> str | None:
         """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""
         if not on:
+            self._tell_overtaken(cycle, "power off")
             self._orders.clear()
             if self.spindle.jobs.gear_request:
                 self._passed_on.append(Command(self.name, "stop", {}))
@@ -174,11 +197,14 @@ class SpindleUnit(Unit):
 
     def do_reset(self, cycle: int) -> None:
         """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
-        in_error = bool(self.spindle.error_id)
         self._power.do_reset(cycle)
         self._orders.clear()
-        if not in_error:
-            self._passed_on.append(Command(self.name, "stop", {}))
+        self._passed_on.append(Command(self.name, "stop", {}))
+
+    def do_decouple(self, cycle: int) -> None:
+        """As CouplingCommands.do_decouple; what waits because the master was told so is forgotten."""
+        self._coupling.do_decouple(cycle)
+        self._orders.forget_master()
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
@@ -205,12 +231,16 @@ class SpindleUnit(Unit):
         return block
 
     def _follow(self, cycle: int, master: SpindleBlock) -> None:
+        """Carries out what the master does; after an error of the master and without its power nothing waits."""
         spindle = self.spindle
         for command in master.commands:
             if can_follow(spindle):
                 self._do_as_master(cycle, command)
             elif spindle.state == S.DISABLED and command.command != "stop":
                 self._stays_behind(cycle, command)
+        if master.error_id[0] or master.state[0] == S.DISABLED:
+            self._orders.forget_master()
+            spindle.jobs.forget_rotation()
         if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
             reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
             spindle.fault(cycle, MASTER_IN_ERROR, reason)
@@ -224,21 +254,23 @@ class SpindleUnit(Unit):
             self._refused.append(f"{command.arguments['source']}: P-ERR-{SLAVE_CANNOT} {text}")
 
     def _do_as_master(self, cycle: int, command: Command) -> None:
-        """During a gear change of the slave the command waits; what the slave cannot do is an error.
-
-        A stop forgets what waits.
-        """
+        """During a gear change of the slave the command waits; a stop forgets what waits."""
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
         source = arguments.pop("source", "")
+        order = Order(name, arguments, "", master_source=source)
         if self._orders.must_wait(name, ""):
-            self._orders.add(Order(name, arguments, ""))
+            self._orders.add(order)
             return
         if name == "stop":
             self._orders.clear()
-        self._orders.commander = source
+        self._act_as_slave(cycle, order)
+
+    def _act_as_slave(self, cycle: int, order: Order) -> None:
+        """What the slave cannot do is an error."""
+        self._orders.commander = order.commander
         try:
-            self._group_handler(name)(cycle, **arguments)
+            self._group_handler(order.command)(cycle, **order.arguments)
         except CncError as error:
             if can_follow(self.spindle):
-                reason = f"cannot carry out '{name}' of its master {self._coupling.master}: {why_not(error)}"
+                reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {why_not(error)}"
                 self.spindle.fault(cycle, SLAVE_CANNOT, reason)

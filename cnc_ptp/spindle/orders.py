@@ -27,6 +27,13 @@ class Order(NamedTuple):
     source: str
     number: int = 0
     """By which its outcome is asked for."""
+    master_source: str | None = None
+    """Of a slave's order: who has commanded its master, empty for people. None for the spindle's own orders."""
+
+    @property
+    def commander(self) -> str:
+        """Who has commanded the spindle, itself or as a slave; empty for people."""
+        return self.source if self.master_source is None else self.master_source
 
 
 class Orders:
@@ -73,21 +80,29 @@ class Orders:
         self._spindle.unsettled = True
 
     def begin(self, source: str) -> None:
-        """The spindle works for `source` from now on."""
-        self.source = self.commander = source
+        """The spindle works for `source` from now on; a rotation to go on after a gear change keeps its commander."""
+        job = self._spindle.jobs.job
+        self.source = source
+        if job is None or not job.resume:
+            self.commander = source
         self._spindle.unsettled = True
 
     def next(self) -> Order | None:
         """The order whose turn it is."""
         if not self.waiting or self._spindle.jobs.changes_gear:
             return None
-        if self.waiting[0].source == PLC and self.source:
+        source = self.waiting[0].source
+        if self.source and source and (source == PLC or source != self.source):
             return None
         return self.waiting.popleft()
 
     def forget(self, source: str) -> None:
-        """What waits for `source` is not carried out."""
-        self.waiting = deque(order for order in self.waiting if order.source != source)
+        """What waits for `source`, itself or as a slave's, is not carried out."""
+        self.waiting = deque(order for order in self.waiting if order.commander != source)
+
+    def forget_master(self) -> None:
+        """What waits because the master was told so is not carried out."""
+        self.waiting = deque(order for order in self.waiting if order.master_source is None)
 
     def clear(self) -> None:
         """A stop, a reset or an error: nothing that waits is carried out."""
@@ -101,5 +116,6 @@ class Orders:
             self.clear()
         if not self.source or spindle.jobs.job is not None:
             return
-        if spindle.state == S.STANDSTILL or (spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached):
+        turns_as_told = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached
+        if turns_as_told or spindle.state in (S.STANDSTILL, S.DISABLED):
             self.source = ""

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from machine_support import UnitBench, spindle_bench
-from spindle_support import first_cycle
+from spindle_support import bench_of, first_cycle, two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 
@@ -172,3 +172,80 @@ def test_a_command_of_the_plc_that_is_refused_in_its_turn() -> None:
     assert acknowledged(bench)[-1] == (2, 2) and bench.column("set_speed_rpm")[-1] == 1000.0
     refused = [entry for block in bench.blocks for entry in block.refused]
     assert refused == [f"plc: P-ERR-70252 spindle s: orient refused: {text}"]
+
+
+# ---------------------------------------------------------------- whose spindle it is
+
+
+def of_two_gears() -> UnitBench:
+    """Turning at 600 rpm for the channel "one"."""
+    bench = bench_of(two_gears())
+    bench.accepted("start", direction="cw", speed_rpm=600.0, source="one")
+    bench.run(400)
+    assert bench.last.source == ""
+    return bench
+
+
+@pytest.mark.parametrize(("command", "arguments"), [("select_gear", {"stage": 1}), ("set_speed", {"speed_rpm": 5.0})])
+def test_a_command_without_effect_takes_the_spindle_from_nobody(command: str, arguments: dict[str, Any]) -> None:
+    bench = of_two_gears()
+    if command == "set_speed":
+        bench.accepted("stop", source="one")
+        bench.run(400)
+    assert "spindle s: " in bench.accepted(command, **arguments, source="plc")
+    bench.run(10)
+    assert (bench.last.source, bench.last.plc_commands, bench.last.plc_acknowledged) == ("", 1, 1)
+    assert bench.accepted("stop", source="one", own=True) == ""
+
+
+def test_a_rotation_that_goes_on_after_the_plc_has_changed_the_gear_is_stopped_by_the_channel_that_began_it() -> None:
+    bench = of_two_gears()
+    bench.accepted("select_gear", stage=2, source="plc")
+    bench.run(600)
+    assert bench.last.gear_request == 2
+    bench.accepted("gear_changed")
+    bench.run(400)
+    assert bench.column("set_speed_rpm")[-1] == pytest.approx(600.0)
+    assert bench.accepted("stop", source="one", own=True) == ""
+    bench.run(600)
+    assert bench.state == S.STANDSTILL
+
+
+def test_a_stop_of_a_spindle_without_power_is_done_at_once() -> None:
+    bench = spindle_bench()
+    bench.accepted("power", on=False)
+    bench.run(10)
+    bench.accepted("stop", source="plc")
+    bench.run(20)
+    assert (bench.last.source, bench.last.plc_commands, bench.last.plc_acknowledged) == ("", 1, 1)
+
+
+def test_what_came_during_a_gear_change_has_its_turn_in_the_order_of_arrival() -> None:
+    """The PLC's orient is carried out to its end, then the start of the channel."""
+    bench = bench_of(two_gears())
+    bench.accepted("select_gear", stage=2)
+    bench.run(600)
+    bench.accepted("orient", position_deg=100.0, source="plc")
+    bench.accepted("start", direction="cw", speed_rpm=300.0, source="one")
+    bench.accepted("gear_changed")
+    bench.run(1500)
+    positioned = first_cycle(bench, "in_position", bool, 610)
+    turning = first_cycle(bench, "state", lambda state: state == S.CONTINUOUS_MOTION, 610)
+    assert 600 < positioned < turning
+    assert bench.column("actual_position_deg")[turning - 1] == pytest.approx(100.0, abs=0.1)
+    assert bench.column("speed_reached")[-1]
+
+
+@pytest.mark.parametrize(("command", "arguments", "by"), [("stop", {}, "stop"), ("power", {"on": False}, "power off")])
+def test_who_has_commanded_a_gear_change_hears_that_it_was_overtaken(
+    command: str, arguments: dict[str, Any], by: str
+) -> None:
+    bench = of_two_gears()
+    bench.accepted("select_gear", stage=2, resume=False, source="one")
+    bench.run(600)
+    assert bench.last.gear_request == 2
+    bench.accepted(command, **arguments)
+    bench.run(10)
+    text = f"spindle s: {by} while the PLC changes the gear for 'one'; the spindle stays at rest"
+    assert bench.last.refused == [f"one: P-ERR-24017 {text}"]
+    assert bench.events[-1].text == text
