@@ -19,6 +19,7 @@ from channel_spindle_support import (
     two_channels,
 )
 from machine_support import MILL, MachineBench
+from spindle_support import two_gears
 
 from cnc_ptp.parameters import MachineParameters
 
@@ -107,6 +108,22 @@ def test_an_aborted_program_ends_its_couplings_and_stops_all(how: str) -> None:
     bench.run(4.0)
     assert [bench.last(unit).master for unit in "stu"] == ["", "", ""]
     assert [bench.last(unit).set_speed_rpm[-1] for unit in "stu"] == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("source", ["", ", source: plc"])
+def test_an_aborted_program_lets_nothing_wait_for_the_gear_change_of_a_slave(source: str) -> None:
+    """The PLC changes the gear of t, which it has begun itself, when nobody drives s any more."""
+    scenario = f"""
+- {{at: 0.0, to: plc, do: auto_acknowledge, on: off}}
+- {{at: 0.01, to: t, do: select_gear, stage: 2{source}}}
+- {{at: 1.0, to: channel, do: reset}}
+- {{at: 1.5, to: t, do: gear_changed}}
+"""
+    program = "#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]\nG04 X0.3\nM3 S1000\nG01 X20 F6000"
+    machine = machine_of(*three(), units={"t": replace(two_gears(), name="t")})
+    bench = MachineBench(f"%P\n{program}\nM30", scenario, machine=machine, end_when_idle=False).run(3.0)
+    assert bench.errors() == [] and max(bench.column("s", "set_speed_rpm")) == pytest.approx(1000.0)
+    assert bench.last("t").gear[-1] == 2 and set(bench.column("t", "set_speed_rpm")) == {0.0}
 
 
 def test_manual_blocks_keep_a_coupling_until_a_program_begins() -> None:

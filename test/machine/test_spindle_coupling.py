@@ -201,6 +201,97 @@ def test_a_slave_in_its_gear_change_follows_afterwards() -> None:
     assert run.column("t", "gear")[-1] == 2
 
 
+# ---------------------------------------------------------------- what the master has told a slave in its gear change
+
+
+def slave_in_gear_change(scenario: str, *, resume: str = "", slowest: float = 72000.0) -> MachineBench:
+    """1.5 s: t is coupled to s and waits for the PLC, which changes its gear at 1 s.
+
+    `resume` is what t does before, `slowest` the maximum of the new gear in °/s.
+    """
+    begin = f"""
+- {{at: 0.0, to: plc, do: auto_acknowledge, on: off}}
+{resume}
+- {{at: 0.2, to: t, do: couple, master: s}}
+- {{at: 0.2, to: t, do: select_gear, stage: 2}}
+- {{at: 1.0, to: t, do: gear_changed}}
+"""
+    two = {**machine().spindles, "t": replace(two_gears(second={"max_speed": slowest}), name="t", number=11)}
+    bench = MachineBench(scenario=begin + scenario, machine=replace(machine(), spindles=two), end_when_idle=False)
+    return bench.run(1.5)
+
+
+START = "- {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 1000.0}\n"
+RESUME = "- {at: 0.0, to: t, do: start, direction: cw, speed_rpm: 200.0}"
+
+
+def test_after_decoupling_a_slave_does_not_do_what_its_master_was_told_before() -> None:
+    run = slave_in_gear_change(f"{START}- {{at: 0.6, to: t, do: decouple}}\n- {{at: 0.8, to: s, do: stop}}")
+    assert run.refusals() == [] and max(run.column("s", "set_speed_rpm")) == 1000.0
+    assert run.last("t").gear[-1] == 2 and set(run.column("t", "set_speed_rpm")) == {0.0}
+
+
+def test_after_decoupling_a_slave_goes_on_with_what_it_did_itself() -> None:
+    run = slave_in_gear_change(f"{START}- {{at: 0.6, to: t, do: decouple}}", resume=RESUME)
+    assert run.last("s").set_speed_rpm[-1] == 1000.0
+    assert run.last("t").set_speed_rpm[-1] == 200.0 and max(run.column("t", "set_speed_rpm")[1000:]) == 200.0
+
+
+@pytest.mark.parametrize("resume", ["", RESUME])
+@pytest.mark.parametrize(
+    ("off_at", "then"), [(0.6, ()), (0.99, ()), (0.6, ("reset",)), (0.6, ("reset", "power, on: on"))]
+)
+def test_a_slave_does_not_start_after_its_master_was_switched_off(
+    resume: str, off_at: float, then: tuple[str, ...]
+) -> None:
+    """Whether the master is still in error when the gear is changed, or has been reset, without power or with it."""
+    commands = "".join(f"- {{at: 0.9, to: s, do: {command}}}\n" for command in then)
+    run = slave_in_gear_change(f"{START}- {{at: {off_at}, to: s, do: power, on: off}}\n{commands}", resume=resume)
+    assert [error.split(" ")[0] for error in run.errors()] == ["P-ERR-24011"]
+    assert run.last("t").gear[-1] == 2 and run.last("t").state[-1] == S.STANDSTILL
+    assert set(run.column("t", "set_speed_rpm")[600:]) == {0.0}
+
+
+@pytest.mark.parametrize("resume", ["", RESUME])
+def test_a_slave_does_not_start_after_its_master_was_reset_from_an_error(resume: str) -> None:
+    """Held by override 0 the master stands: enable, error and reset come between two blocks."""
+    scenario = f"""
+- {{at: 0.0, to: s, do: set_override, percent: 0}}
+{START}
+- {{at: 0.6, to: s, do: power, on: off}}
+- {{at: 0.6, to: s, do: reset}}
+- {{at: 0.6, to: s, do: power, on: on}}
+"""
+    run = slave_in_gear_change(scenario, resume=resume)
+    assert run.refusals() == [] and [error.split(" ")[0] for error in run.errors()] == ["P-ERR-24011"]
+    assert run.last("s").state[-1] == run.last("t").state[-1] == S.STANDSTILL
+    assert set(run.column("t", "set_speed_rpm")[600:]) == {0.0}
+
+
+def test_a_positioning_of_a_master_without_power_does_not_come_later() -> None:
+    """The master has come to its position and was switched off at rest, without an error."""
+    scenario = "- {at: 0.3, to: s, do: orient, position_deg: 90.0}\n- {at: 0.9, to: s, do: power, on: off}"
+    run = slave_in_gear_change(scenario)
+    assert run.errors() == [] and run.last("s").set_position_deg[-1] % 360.0 == pytest.approx(90.0)
+    assert run.last("s").state[-1] == S.DISABLED and set(run.column("t", "set_speed_rpm")) == {0.0}
+
+
+def test_what_a_slave_cannot_do_after_its_gear_change_is_an_error_too() -> None:
+    run = slave_in_gear_change("- {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 5000.0}", slowest=6000.0)
+    assert run.errors() == [
+        "P-ERR-24025 spindle t: cannot carry out 'start' of its master s: speed 5000.0 rpm is above the maximum 1000 rpm "
+        "of gear 2 (P-AXIS-00212); the spindle stops on its ramp (ErrorStop)"
+    ]
+    assert set(run.column("t", "set_speed_rpm")) == {0.0}
+
+
+def test_what_the_plc_tells_the_master_is_acknowledged_by_the_master_alone() -> None:
+    run = slave_in_gear_change("- {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 1000.0, source: plc}")
+    assert (run.last("s").plc_commands, run.last("s").plc_acknowledged) == (1, 1)
+    assert {(block.plc_commands, block.plc_acknowledged) for block in run.blocks["t"]} == {(0, 0)}
+    assert run.last("t").set_speed_rpm[-1] == 1000.0
+
+
 # ---------------------------------------------------------------- what may not be coupled
 
 
