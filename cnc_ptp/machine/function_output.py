@@ -50,6 +50,11 @@ class FunctionOutput:
         self._request_numbers = request_numbers
         self.spindles = SpindleOutput(channel, units)
 
+    @property
+    def channel(self) -> str:
+        """Name of the channel."""
+        return self._channel.name
+
     def of_block(self, block: CanonicalBlock, moment: Moment) -> Outputs:
         """The functions of `block` that go out at `moment`."""
         outputs = Outputs()

@@ -74,7 +74,7 @@ class ProgramSequence:
         self.open_requests: set[int] = set()
         """Numbers of the handshake requests that the PLC has not acknowledged."""
         self._asked: dict[int, HandshakeRequest] = {}
-        self._watch = SpindleWatch()
+        self._watch = SpindleWatch(functions.channel)
         self._feedback: Mapping[str, Block] = {}
         self.notes: list[tuple[int, str]] = []
         """What the channel is to warn of: number and text."""
@@ -157,6 +157,7 @@ class ProgramSequence:
     def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
         """Blocks that the spindles have reported for the cycles before `cycle`."""
         self._feedback = feedback
+        self._watch.read(cycle, feedback)
         if self.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
             waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
             lost = self._watch.lost(cycle, feedback, waited_for)

@@ -38,9 +38,14 @@ TOLD = {
 """What the spindle was told."""
 
 
+def orders_wait(block: SpindleBlock) -> bool:
+    """Commands wait in the spindle; the one that is asked about may be among them."""
+    return bool(block.status_bits[-1] & SpindleBit.ORDERS_WAIT)
+
+
 def must_wait(block: SpindleBlock) -> bool:
-    """The command may not have had its turn yet: others wait in the spindle, or a gear is changed."""
-    return bool(block.status_bits[-1] & SpindleBit.ORDERS_WAIT or block.gear_change_active[-1])
+    """The path has to: commands wait in the spindle, or a gear is changed, after which its rotation goes on."""
+    return orders_wait(block) or block.gear_change_active[-1]
 
 
 def carries_out(block: SpindleBlock, condition: Condition, value: float, turn: float = 360.0) -> bool:
@@ -92,6 +97,8 @@ def what_it_was_told(spindle: str, condition: Condition, value: float) -> str:
 def what_it_does(block: SpindleBlock) -> str:
     """What it does instead."""
     state = block.state[-1]
+    if block.gear_change_active[-1]:
+        return "its gear is being changed"
     if state == S.CONTINUOUS_MOTION:
         return f"it was commanded to {block.programmed_speed_rpm[-1]:g} rpm"
     if state == S.STANDSTILL and block.mode[-1] == SpindleMode.POSITION:

@@ -5,36 +5,57 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping
 
 from cnc_ptp.machine.blocks import Block, SpindleBlock
-from cnc_ptp.machine.spindle_reports import Condition, carries_out, must_wait, what_it_does, what_it_was_told
+from cnc_ptp.machine.spindle_reports import Condition, carries_out, orders_wait, what_it_does, what_it_was_told
 from cnc_ptp.machine.waits import Wait
 
 
 class SpindleWatch:
-    """The last command of a channel to each of its spindles."""
+    """The last command of a channel to each of its spindles, and whether it has had its turn."""
 
-    def __init__(self) -> None:
+    def __init__(self, channel: str) -> None:
+        """`channel`: name of the channel, as spindles report for whom they are at work."""
+        self._channel = channel
         self._told: dict[str, Wait] = {}
+        self._turned: set[str] = set()
+        """Spindles that have turned as they were told; a new speed for one of them does not change that."""
 
     def note(self, told: Iterable[Wait], first_cycle: int) -> None:
         """What goes out with the block that begins at `first_cycle`."""
         for wait in told:
             wait.sent_cycle = first_cycle
             self._told[wait.spindle] = wait
+            if wait.condition is not Condition.SPEED:
+                self._turned.discard(wait.spindle)
 
     def forget(self) -> None:
         """What earlier programs have commanded is of no concern any more."""
         self._told.clear()
+        self._turned.clear()
+
+    def read(self, cycle: int, spindles: Mapping[str, Block]) -> None:
+        """Notes which spindles turn as they were told, also while no block runs."""
+        self._turned |= {
+            node
+            for node, told, block in self._reports(cycle, spindles)
+            if carries_out(block, told.condition, told.value)
+            and (block.source == self._channel or not orders_wait(block))
+        }
 
     def lost(self, cycle: int, spindles: Mapping[str, Block], waited_for: Container[str]) -> Iterator[str]:
-        """A text for each spindle that does not turn any more as it was told, once; not for those of `waited_for`."""
+        """A text for each spindle that does not turn any more as it was told, once; not for those of `waited_for`.
+
+        A command that still waits behind others is not lost; one that was carried out is, in a gear change too.
+        """
+        for node, told, block in self._reports(cycle, spindles):
+            in_turn = node in self._turned or not orders_wait(block)
+            if in_turn and node not in waited_for and not carries_out(block, told.condition, told.value):
+                del self._told[node]
+                self._turned.discard(node)
+                yield f"{what_it_was_told(node, told.condition, told.value)}, {what_it_does(block)}"
+
+    def _reports(self, cycle: int, spindles: Mapping[str, Block]) -> Iterator[tuple[str, Wait, SpindleBlock]]:
+        """The spindles that were told a speed, with what they have reported since."""
         for node, told in list(self._told.items()):
             block = spindles.get(node)
-            if not isinstance(block, SpindleBlock) or node in waited_for or not told.sent_before(cycle):
-                continue
-            if (
-                told.condition is Condition.SPEED
-                and not carries_out(block, told.condition, told.value)
-                and not must_wait(block)
-            ):
-                del self._told[node]
-                yield f"{what_it_was_told(node, told.condition, told.value)}, {what_it_does(block)}"
+            if isinstance(block, SpindleBlock) and told.condition is Condition.SPEED and told.sent_before(cycle):
+                yield node, told, block

@@ -30,6 +30,7 @@ from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.parameters import MachineParameters, Synchronisation
 
 LINK = "#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]\n"
+GEAR_RANGES = ((50.0, 560.0), (400.0, 800.0))
 
 
 def mill(**types: Synchronisation) -> MachineParameters:
@@ -101,10 +102,25 @@ def test_the_plc_positions_a_spindle_that_was_to_stop(at: float) -> None:
 
 
 def test_a_gear_change_that_somebody_gives_up() -> None:
-    spindles = three(ranges=((50.0, 560.0), (400.0, 800.0)), automatic=False)
-    machine = machine_of(*spindles, units={"s": two_gears(change_position=180.0)}, gear_change=True)
+    machine = machine_of(
+        *three(ranges=GEAR_RANGES, automatic=False), units={"s": two_gears(change_position=180.0)}, gear_change=True
+    )
     bench = run("M41 S600 M3\nG01 X20 F6000", machine, "- {at: 0.1, to: s, do: stop}")
     aborted(bench, "change to gear 2 as it was told, it is in Stopping", 2, "M41 S600 M3")
+
+
+@pytest.mark.parametrize(("command", "by"), [("do: stop", "stop"), ("do: power, on: off", "power off")])
+def test_a_gear_change_that_is_overtaken_while_the_plc_changes(command: str, by: str) -> None:
+    """The speed of the same block does not come: the spindle stays at rest, with power again too."""
+    machine = machine_of(*three(ranges=GEAR_RANGES, automatic=False), units={"s": two_gears()}, gear_change=True)
+    scenario = MANUAL + f"- {{at: 0.5, to: s, {command}}}\n- {{at: 0.8, to: s, do: power, on: on}}\n"
+    bench = run("M41 S600 M3\nG01 X20 F6000", machine, scenario + "- {at: 1, to: s, do: gear_changed}")
+    overtaken = f"spindle s: {by} while the PLC changes the gear for 'channel'; the spindle stays at rest"
+    assert bench.errors() == [
+        f"P-ERR-22018 channel channel: s has refused a command, P-ERR-24017 {overtaken}; the path stops on its ramp and "
+        "the program is aborted"
+    ]
+    assert moves(bench) == [] and not any(bench.column("s", "set_speed_rpm")[500:])
 
 
 def test_a_stop_while_the_plc_has_not_acknowledged() -> None:
@@ -345,6 +361,89 @@ def test_a_stop_of_the_plc_is_told_to_a_program_that_does_not_wait() -> None:
         "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as it was told, it is in Stopping; "
         "the program goes on, line 3"
     ]
+
+
+def another_gear(at: float, source: str = "plc") -> str:
+    """Gear 2 from `at` (s) on, acknowledged at 2.5 s; without `source` it comes from people."""
+    whose = f", source: {source}" if source else ""
+    change = f"- {{at: {at}, to: s, do: select_gear, stage: 2{whose}}}"
+    return f"{MANUAL}{change}\n- {{at: 2.5, to: s, do: gear_changed}}\n"
+
+
+def warned(bench: MachineBench) -> list[tuple[int, str]]:
+    """(cycle, text) of all events: of a loss with what the spindle does instead."""
+    before, after = "channel channel: spindle s does not turn at 1000 rpm as it was told, ", "; the program goes on"
+    texts = [f"P-WARN-{event.error_id} {event.text.removeprefix(before).removesuffix(after)}" for event in bench.events]
+    return [(event.cycle, text) for event, text in zip(bench.events, texts, strict=True)]
+
+
+@pytest.mark.parametrize("kind", [MOS, MVS_SVS])
+def test_a_gear_change_of_the_plc_is_told_to_a_moving_path_at_once(kind: Synchronisation) -> None:
+    """For 2 s the spindle stands while the path cuts; afterwards it turns again, and nothing more is said."""
+    bench = run("M3 S1000\nG1 X80 F1500\nM5", mill(m3=kind), another_gear(0.5))
+    assert [(event.cycle, event.text) for event in bench.events] == [
+        (
+            510,
+            "channel channel: spindle s does not turn at 1000 rpm as it was told, its gear is being changed; "
+            "the program goes on",
+        )
+    ]
+    assert bench.column("s", "set_speed_rpm")[1500] == 0.0 != bench.column("channel", "path_velocity")[1500]
+    assert bench.column("s", "set_speed_rpm")[3000] == 1000.0 and bench.position("x") == 80.0
+
+
+def test_m3_that_waits_for_a_gear_is_not_lost_until_it_was_carried_out() -> None:
+    """M3 waits in the spindle from 0.3 s on and begins at 2.5 s; the stop at 2.7 s takes from it what it has."""
+    scenario = another_gear(0.1, "") + "- {at: 2.7, to: s, do: stop}"
+    bench = run("G04 X0.3\nM3 S1000\nG1 X100 F1500\nM5", mill(m3=MOS), scenario)
+    assert told_at(bench, "start") < 400 and warned(bench) == [(2710, "P-WARN-22022 it is in Stopping")]
+
+
+def test_commands_of_the_plc_that_wait_for_each_other() -> None:
+    """The first of them takes the spindle from a path that moves; the last one turns it as before."""
+    scenario = """
+- {at: 0.3, to: s, do: orient, position_deg: 90, speed_rpm: 50, source: plc}
+- {at: 0.3, to: s, do: orient, position_deg: 180, speed_rpm: 50, source: plc}
+- {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 1000, source: plc}
+"""
+    bench = run("M3 S1000\nG1 X50 F1500\nM5", mill(m3=MVS_SVS), scenario)
+    assert warned(bench) == [(310, "P-WARN-22022 it is in DiscreteMotion")]
+    assert bench.last("s").plc_acknowledged == 3
+
+
+def test_a_speed_of_the_plc_is_not_m3_that_waits_behind_it() -> None:
+    """The PLC turns the spindle at the very speed of the channel before it positions it; M3 has its turn at last."""
+    scenario = another_gear(0.1, "") + (
+        "- {at: 0.2, to: s, do: start, direction: cw, speed_rpm: 1000, source: plc}\n"
+        "- {at: 0.2, to: s, do: orient, position_deg: 90, speed_rpm: 50, source: plc}\n"
+    )
+    bench = run("G04 X0.3\nM3 S1000\nG1 X150 F1500\nM5", mill(m3=MOS), scenario)
+    assert warned(bench) == [] and bench.last("s").plc_acknowledged == 2
+    states = bench.column("s", "state")[2500:5500]
+    assert states.index(S.CONTINUOUS_MOTION) < states.index(S.DISCRETE_MOTION)
+    assert bench.column("s", "set_speed_rpm")[5500] == 1000.0
+
+
+def test_a_gear_change_between_two_manual_blocks() -> None:
+    scenario = another_gear(0.5) + (
+        '- {at: 0, to: channel, do: mdi, text: "M3 S1000"}\n- {at: 1, to: channel, do: mdi, text: "G1 X10 F1500"}\n'
+    )
+    bench = MachineBench(None, scenario, machine=mill(m3=MOS), end_when_idle=False).run(3.0)
+    assert warned(bench) == [(1000, "P-WARN-22022 its gear is being changed")]
+
+
+def test_a_gear_change_of_the_channel_is_nothing_to_warn_of() -> None:
+    spindles = three(MOS, ranges=((50.0, 800.0), (400.0, 800.0)), automatic=False)
+    machine = machine_of(*spindles, units={"s": two_gears(change_position=180.0)}, gear_change=True)
+    bench = run("M40 S600 M3\nG1 X5 F1500\nM41 S700 M3\nG1 X10\nM5", machine)
+    assert told_at(bench, "select_gear") > 100 and warned(bench) == []
+
+
+def test_a_path_goes_on_with_a_spindle_at_override_0() -> None:
+    """Only a wait notices it: the spindle does what it was told, at 0 %."""
+    bench = run("M3 S1000\nG1 X20 F1500\nM5", mill(m3=MOS), "- {at: 0.3, to: s, do: set_override, percent: 0}")
+    assert warned(bench) == [] and bench.position("x") == 20.0
+    assert bench.column("s", "set_speed_rpm")[700] == 0.0 != bench.column("channel", "path_velocity")[700]
 
 
 def test_a_spindle_that_was_stopped_between_two_programs_is_of_no_concern() -> None:

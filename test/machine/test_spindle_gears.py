@@ -183,6 +183,7 @@ def test_a_reset_while_the_plc_changes_gives_the_change_up() -> None:
     each.run(300)
     assert each.last.gear_request == 0 and set(each.column("set_speed_rpm")[700:]) == {0.0}
     assert each.refused("gear_changed").startswith("P-ERR-24015 ")
+    assert set(each.column("gear")) == {1}
 
 
 @pytest.mark.parametrize("stage", [0, 3, 7, -1])
