@@ -167,9 +167,10 @@ def test_faults_of_a_file_stand_with_the_line_of_the_scenario(tmp_path: Path) ->
     )
     assert scenario_fault(path).splitlines() == [
         f"P-ERR-25101 {path}:2: setpoint file a.csv:3: cycle 0 comes after cycle 0; cycles must ascend; nothing was started",
-        f"{path}:3: setpoint file {tmp_path / 'none.csv'} cannot be read: No such file or directory; nothing was started",
-        f"{path}:4: axis y: external_setpoints refused: argument 'file' is missing; nothing was changed",
-        f"{path}:5: axis x: external_setpoints refused: argument 'file' is missing; nothing was changed",
+        f"P-ERR-25101 {path}:3: setpoint file {tmp_path / 'none.csv'} cannot be read: No such file or directory; "
+        "nothing was started",
+        f"P-ERR-25101 {path}:4: axis y: external_setpoints refused: argument 'file' is missing; nothing was changed",
+        f"P-ERR-25101 {path}:5: axis x: external_setpoints refused: argument 'file' is missing; nothing was changed",
         "nothing was started",
     ]
 
