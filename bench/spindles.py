@@ -1,9 +1,10 @@
-"""Spindles: 16 of them with two channels offline, at steady speeds and in ramps without an end."""
+"""Spindles: 16 of them with two channels offline, at steady speeds and in ramps, with paths, with recording."""
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,13 @@ import yaml
 
 from bench.figures import Effort, Figure, Say, stopwatch
 from bench.jobs import MACHINE
+from cnc_ptp.commands.simulate import write
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.recording.writer import Recording
 
 CHANNELS = {"one": "x", "two": "z"}
 SPINDLES = 16
@@ -24,6 +27,8 @@ SECONDS = 10.0
 GOAL = 10.0
 STEADY, RAMPS = (500, 1500, 2500, 3500), (6000, 500)
 """Speeds in rpm; from one to the other of the ramps takes 0.9 s."""
+STROKE, STROKE_TIME = 10, 0.4
+"""mm there and back at F2000, and about how long one takes, s."""
 
 
 def machine_file(path: Path) -> str:
@@ -68,45 +73,59 @@ class NoAliases(yaml.SafeDumper):
         return True
 
 
-def program(numbers: range, speeds: Sequence[int], hold: float, seconds: float) -> str:
-    """Every `hold` s all spindles get the next of `speeds`, every other one turns the other way round."""
+def program(axis: str, numbers: range, speeds: Sequence[int], hold: float, seconds: float) -> str:
+    """Every `hold` s all spindles get the next of `speeds`, every other one turns the other way round.
+
+    Meanwhile `axis` goes to and fro; without one the path waits.
+    """
     names = ["S", *(f"S{number}" for number in numbers[1:])]
+    strokes = [f"G01 {axis.upper()}{STROKE * (n % 2)} F2000" for n in range(1, 1 + round(hold / STROKE_TIME))]
+    meanwhile = strokes if axis else [f"G04 {hold}"]
     lines = []
     for speed in islice(cycle(speeds), 2 + int(seconds / hold)):
         words = [f"{name}[REV{speed + 10 * n} M{3 + n % 2}]" for n, name in enumerate(names)]
-        lines += [" ".join(words), f"G04 {hold}"]
+        lines += [" ".join(words), *meanwhile]
     return "\n".join(["%SPINDLES", *lines, "M30", ""])
 
 
-def entries(speeds: Sequence[int], hold: float, seconds: float) -> list[Entry]:
+def entries(speeds: Sequence[int], hold: float, seconds: float, *, paths: bool) -> list[Entry]:
     """Both programs, loaded and started."""
     found = []
-    for index, channel in enumerate(CHANNELS):
-        text = program(range(8 * index + 1, 8 * index + 9), speeds, hold, seconds)
+    for index, (channel, axis) in enumerate(CHANNELS.items()):
+        text = program(axis if paths else "", range(8 * index + 1, 8 * index + 9), speeds, hold, seconds)
         load = Command(channel, "load", {"program": "spindles.nc", "text": text})
         found += [Entry(0.0, load), Entry(0.0, Command(channel, "start", {}))]
     return found
 
 
-def times_real_time(machine: MachineParameters, scenario: Sequence[Entry], seconds: float) -> float:
-    """Machine time over the time of the processor; the first second, in which all spindles run up, is not counted."""
+def times_real_time(machine: MachineParameters, scenario: Sequence[Entry], seconds: float, record: Path | None) -> float:
+    """Machine time over wall time; the first second, in which all spindles run up, is not counted."""
     offline = OfflineMachine(machine, build_units(machine, scenario=scenario))
     block = machine.block_cycles * machine.cycle_time_us * 1e-6
     for _ in range(round(1.0 / block)):
         offline.tick()
-    with stopwatch() as watch:
+    with stopwatch() as watch, ExitStack() as stack:
+        recording = stack.enter_context(Recording(record, "", 0, machine.cycle_time_us * 1000)) if record else None
         for _ in range(round(seconds / block)):
-            offline.tick()
-    return seconds / watch.cpu
+            outputs = offline.tick()
+            if recording:
+                write(recording, outputs)
+    return seconds / watch.wall
 
 
 def figures(effort: Effort, say: Say) -> Iterator[Figure]:
-    """Both rates, the best of several runs."""
+    """All rates, the best of several runs."""
+    seconds = SECONDS * effort.size
     with tempfile.TemporaryDirectory() as folder:
         machine = read_machine(machine_file(Path(folder) / "spindles.yaml"))
-    seconds = SECONDS * effort.size
-    for name, speeds, hold in (("at steady speeds", STEADY, 5.0), ("in ramps", RAMPS, 0.8)):
-        say(f"{SPINDLES} spindles {name}")
-        scenario = entries(speeds, hold, seconds)
-        rate = max(times_real_time(machine, scenario, seconds) for _ in range(effort.runs))
-        yield Figure(f"{SPINDLES} spindles and 2 channels offline, {name} (best)", rate, "x real time", goal=GOAL)
+        for name, speeds, hold in (("at steady speeds", STEADY, 5.0), ("in ramps", RAMPS, 0.8)):
+            for doing, paths, record in (
+                ("the axes stand", False, None),
+                ("the axes on their paths", True, None),
+                ("the same with full recording", True, Path(folder) / "run.mcap"),
+            ):
+                say(f"{SPINDLES} spindles {name}, {doing}")
+                scenario = entries(speeds, hold, seconds, paths=paths)
+                rate = max(times_real_time(machine, scenario, seconds, record) for _ in range(effort.runs))
+                title = f"{SPINDLES} spindles and 2 channels offline, {name}, {doing} (best)"
+                yield Figure(title, rate, "x real time", goal=GOAL)
