@@ -120,10 +120,16 @@ class SpindleCycles:
             return not held and abs(actual_speed) <= spindle.gear.zero_speed
         return abs(actual_speed - wanted) <= spindle.parameters.speed_reached_band * abs(wanted)
 
+    @property
+    def _awaits_speed(self) -> bool:
+        """The speed of the rotation is still to come, or 0 after a stop."""
+        spindle = self._spindle
+        return not spindle.speed_was_reached and spindle.state in (S.CONTINUOUS_MOTION, S.STANDSTILL)
+
     def _watch_speed(self, cycle: int, reached: bool) -> None:
         """Time monitoring: an error when the speed does not come (P-MACH-00050)."""
         spindle = self._spindle
-        if spindle.state != S.CONTINUOUS_MOTION or spindle.speed_was_reached:
+        if not self._awaits_speed:
             return
         spindle.speed_was_reached = reached
         patience = spindle.parameters.speed_time / spindle.cycle_time
@@ -134,7 +140,8 @@ class SpindleCycles:
         reason = (
             f"speed {wanted:g} rpm was not reached {spindle.parameters.speed_time:g} s after the setpoint got there"
         )
-        spindle.fault(cycle, SPEED_NOT_REACHED, f"{reason} (P-AXIS-00217, P-MACH-00050)")
+        limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
+        spindle.fault(cycle, SPEED_NOT_REACHED, f"{reason} ({limit}, P-MACH-00050)")
 
     def _in_position(self, actual: float) -> bool:
         spindle = self._spindle
@@ -171,7 +178,7 @@ class SpindleCycles:
             spindle.state in SETTLED
             and spindle.jobs.job is None
             and spindle.finished(cycle)
-            and (spindle.state != S.CONTINUOUS_MOTION or spindle.speed_was_reached)
+            and not self._awaits_speed
             and not self._orders.source
             and not self._orders.waiting
             and not spindle.loop.waits_to_close(spindle.motion(cycle)[1], spindle.wanted_speed)
@@ -198,7 +205,7 @@ class SpindleCycles:
         spindle = self._spindle
         patience = spindle.parameters.speed_time / spindle.cycle_time
         late = bool(patience) and spindle.cycles_since_end(last_cycle) >= patience
-        return late and not spindle.speed_was_reached and spindle.state == S.CONTINUOUS_MOTION
+        return late and self._awaits_speed
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
         """The same as `_cycle` for such cycles; up to a following error too large."""
@@ -249,7 +256,7 @@ class SpindleCycles:
 
     def _settle(self, last_cycle: int, reached: bool) -> None:
         spindle = self._spindle
-        if spindle.state == S.CONTINUOUS_MOTION:
-            spindle.speed_was_reached |= reached
+        if self._awaits_speed:
+            spindle.speed_was_reached = reached
         self._orders.watch()
         self._note_settled(last_cycle)

@@ -152,6 +152,7 @@ class Spindle:
         self.end_job()
         self.mode = SpindleMode.STOP
         self.programmed_speed = self.wanted_speed = 0.0
+        self.speed_was_reached = False
         self.state = S.STOPPING
         self.ramp_to(cycle, 0.0)
 

@@ -6,8 +6,9 @@ import math
 
 import pytest
 from machine_support import spindle_bench, spindle_parameters
-from spindle_support import RPM, UP, StuckDrive, bench_of, first_cycle
+from spindle_support import DOWN, RPM, UP, StuckDrive, bench_of, first_cycle
 
+from cnc_ptp.control.drives.first_order import FirstOrderDrive
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import SpindleBit
 
@@ -24,6 +25,39 @@ def test_a_speed_that_is_not_reached_in_time() -> None:
         "P-MACH-00050); the spindle stops on its ramp (ErrorStop)"
     ]
     assert bench.state == S.ERROR_STOP and not any(bench.column("speed_reached")[:400])
+
+
+class CreepingDrive(FirstOrderDrive):
+    """A drive that cannot turn slower than 2 rpm."""
+
+    __slots__ = ()
+
+    def __init__(self) -> None:
+        super().__init__(cycle_time=0.001, time_constant=0.0, encoder_increment=0.0)
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        super().step(max(2.0 * RPM, command))
+
+
+@pytest.mark.parametrize("zero_rpm", [1.0, 3.0])
+def test_a_spindle_that_does_not_come_to_rest_in_time(zero_rpm: float) -> None:
+    """After M05 it creeps at 2 rpm: too fast for the first limit of speed zero, P-AXIS-00216, not for the second."""
+    bench = bench_of(spindle_parameters(speed_time=0.25, zero_speed=zero_rpm * RPM), drive=CreepingDrive())
+    bench.accepted("start", direction="cw", speed_rpm=600.0)
+    bench.run(600)
+    bench.accepted("stop")
+    stands = math.ceil((600.0 * RPM / DOWN) * 1000.0 - 1e-6) + 600
+    bench.run(1000)
+    assert bench.column("state")[stands] == S.STANDSTILL and bench.column("set_speed_rpm")[stands] == 0.0
+    if zero_rpm > 2.0:
+        assert bench.events == [] and bench.state == S.STANDSTILL
+        return
+    assert bench.events[0].cycle == math.ceil((600.0 * RPM / DOWN + 0.25) * 1000.0 - 1e-6) + 600
+    assert bench.event_texts() == [
+        "P-ERR-24013 spindle s: speed 0 rpm was not reached 0.25 s after the setpoint got there (P-AXIS-00216, "
+        "P-MACH-00050); the spindle stops on its ramp (ErrorStop)"
+    ]
+    assert bench.state == S.ERROR_STOP
 
 
 def test_without_a_time_limit_it_goes_on_trying() -> None:
