@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
+from cnc_ptp.parameters.channel_view import DEG_S_PER_RPM
+from cnc_ptp.parameters.channels import spindle_entries
 from cnc_ptp.parameters.control_notices import control_notices
 from cnc_ptp.parameters.encoder import CORRECTED
 from cnc_ptp.parameters.friction_notices import friction_notices
@@ -26,6 +28,7 @@ def machine_warnings(machine: ParameterSet, sets: Mapping[str, ParameterSet]) ->
         if parameters.kind == "channel":
             yield from tools_without_limit(parameters)
             yield from couplings_without_effect(parameters)
+            yield from ranges_above_the_spindle(parameters, sets)
         else:
             yield from control_notices(parameters, cycle_time)
             yield from friction_notices(parameters)
@@ -66,6 +69,21 @@ def couplings_without_effect(parameters: ParameterSet) -> Iterator[str]:
                 yield line(parameters, "P-CHAN-00038", (group, pair), "only coupling group 0 is taken from here")
             elif not parameters.number("P-CHAN-00061", group, pair):
                 yield line(parameters, "P-CHAN-00061", (group, pair), "a pair of path axes is not coupled here")
+
+
+def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[str]:
+    """Speeds of a gear stage that its spindle refuses in motion (24001)."""
+    if not channel.number("P-CHAN-00052"):
+        return
+    for entry in spindle_entries(channel, sets):
+        if entry.node is None or not entry.indexes:
+            continue
+        for gear in channel.used_indexes(f"spindel.{entry.indexes[0]}.range_table"):
+            top = channel.number("P-CHAN-00055", *entry.indexes, gear)
+            most = sets[entry.node].kernel("P-AXIS-00212", gear) / DEG_S_PER_RPM
+            if top > most:
+                text = f"value {top} (rpm) is above P-AXIS-00212 getriebe[{gear}].vb_max of /{entry.node}, {most:g} rpm"
+                yield line(channel, "P-CHAN-00055", (*entry.indexes, gear), text)
 
 
 def corrected_resolution(parameters: ParameterSet) -> Iterator[str]:

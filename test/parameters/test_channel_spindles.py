@@ -69,6 +69,16 @@ def test_gears() -> None:
     assert [channel.m_functions[number] for number in range(40, 46)] == [Synchronisation.MVS_SVS] * 6
 
 
+def test_a_range_above_the_largest_speed_of_its_gear() -> None:
+    """The gears of b end at 200 °/s, 33.3 rpm; what is above is refused in motion (24001)."""
+    ranges = "spindel.1.range_table: {0: {min_speed: 1, max_speed: 33}, 1: {min_speed: 20, max_speed: 34}}"
+    assert machine(TWO, "main_spindle_gear_change: 1", ranges).warnings == (
+        "m.yaml:9:93: P-CHAN-00055 spindel[1].range_table[1].max_speed of /ch: "
+        "value 34 (rpm) is above P-AXIS-00212 getriebe[1].vb_max of /b, 33.3333 rpm",
+    )
+    assert machine(TWO, ranges).warnings == ()
+
+
 def test_without_gear_change_there_are_no_gear_functions() -> None:
     assert 40 not in machine(TWO).channels["ch"].m_functions
 
