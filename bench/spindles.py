@@ -98,7 +98,9 @@ def entries(speeds: Sequence[int], hold: float, seconds: float, *, paths: bool) 
     return found
 
 
-def times_real_time(machine: MachineParameters, scenario: Sequence[Entry], seconds: float, record: Path | None) -> float:
+def times_real_time(
+    machine: MachineParameters, scenario: Sequence[Entry], seconds: float, record: Path | None
+) -> float:
     """Machine time over wall time; the first second, in which all spindles run up, is not counted."""
     offline = OfflineMachine(machine, build_units(machine, scenario=scenario))
     block = machine.block_cycles * machine.cycle_time_us * 1e-6

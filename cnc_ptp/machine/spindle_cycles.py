@@ -8,6 +8,7 @@ from typing import Any
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.control.control_loop import State
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
+from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import Orders
 from cnc_ptp.spindle.rotation_commands import RotationCommands
 from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
@@ -35,8 +36,9 @@ Columns = list[Any]
 class SpindleCycles:
     """Computes the cycles of one spindle; blocks in which nothing can happen take a shorter way."""
 
-    def __init__(self, spindle: Spindle, orders: Orders, rotation: RotationCommands) -> None:
+    def __init__(self, spindle: Spindle, jobs: Jobs, orders: Orders, rotation: RotationCommands) -> None:
         self._spindle = spindle
+        self._jobs = jobs
         self._orders = orders
         self._rotation = rotation
 
@@ -61,8 +63,8 @@ class SpindleCycles:
         spindle.watch_loop(cycle, spindle.motion(cycle)[1])
         position, speed, acceleration = spindle.motion(cycle)
         actual_speed = loop.actual_speed(speed)
-        if spindle.jobs.job is not None:
-            spindle.jobs.advance(cycle, actual_speed)
+        if spindle.work.job is not None:
+            self._jobs.advance(cycle, actual_speed)
             position, speed, acceleration = spindle.motion(cycle)
         elif speed == 0.0 and spindle.state == S.STOPPING:
             spindle.state = S.STANDSTILL
@@ -93,7 +95,7 @@ class SpindleCycles:
             abs(actual_speed) <= spindle.gear.zero_speed,
             self._in_position(actual),
             spindle.referenced,
-            spindle.jobs.changes_gear,
+            spindle.work.changes_gear,
             self._bits(),
             spindle.state,
             spindle.error_id,
@@ -145,7 +147,7 @@ class SpindleCycles:
 
     def _in_position(self, actual: float) -> bool:
         spindle = self._spindle
-        if not spindle.jobs.done or spindle.target is None or spindle.state != S.STANDSTILL:
+        if not spindle.work.done or spindle.target is None or spindle.state != S.STANDSTILL:
             return False
         return abs(spindle.target - actual) <= spindle.gear.position_window
 
@@ -176,7 +178,7 @@ class SpindleCycles:
         spindle = self._spindle
         spindle.unsettled = not (
             spindle.state in SETTLED
-            and spindle.jobs.job is None
+            and spindle.work.job is None
             and spindle.finished(cycle)
             and not self._awaits_speed
             and not self._orders.source
@@ -191,7 +193,7 @@ class SpindleCycles:
         spindle = self._spindle
         if not spindle.unsettled:
             return True
-        if spindle.jobs.job is not None or self._orders.waiting:
+        if spindle.work.job is not None or self._orders.waiting:
             return False
         if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
             return False

@@ -17,6 +17,7 @@ from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
 from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
@@ -53,19 +54,20 @@ class SpindleUnit(Unit):
             report_error=partial(self._report, Severity.ERROR),
             report_warning=partial(self._report, Severity.WARNING),
         )
+        jobs = Jobs(self.spindle)
         self._orders = Orders(self.spindle)
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
-        self._rotation = RotationCommands(self.spindle)
+        self._rotation = RotationCommands(self.spindle, jobs)
         self._power = PowerCommands(self.spindle)
         self._groups = (
             self,
             self._rotation,
-            PositionCommands(self.spindle),
+            PositionCommands(self.spindle, jobs),
             self._power,
             self._coupling,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
-        self._cycles = SpindleCycles(self.spindle, self._orders, self._rotation)
+        self._cycles = SpindleCycles(self.spindle, jobs, self._orders, self._rotation)
         self.next_order = 1
         """Number of the next motion command."""
         self._turned_down: tuple[int, CncError | None] = 0, None
@@ -127,16 +129,16 @@ class SpindleUnit(Unit):
         return message
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
-        jobs = self.spindle.jobs
+        work = self.spindle.work
         if order.command == "stop" and order.source != self._orders.source:
             self._tell_overtaken(cycle, "stop")
-        before, turned = jobs.job, self.spindle.state == S.CONTINUOUS_MOTION
+        before, turned = work.job, self.spindle.state == S.CONTINUOUS_MOTION
         message = self._group_handler(order.command)(cycle, **order.arguments)
-        if jobs.job is not None and jobs.job is not before:
-            jobs.job.number = order.number
+        if work.job is not None and work.job is not before:
+            work.job.number = order.number
         if order.command == "stop":
             self._orders.clear()
-        if self._has_effect(order.command, new_job=jobs.job is not before, turned=turned):
+        if self._has_effect(order.command, new_job=work.job is not before, turned=turned):
             self._orders.begin(order.source)
         if order.command in PASSED_ON:
             source = {"source": order.source} if order.source else {}
@@ -146,7 +148,7 @@ class SpindleUnit(Unit):
     def _tell_overtaken(self, cycle: int, by: str) -> None:
         """For whom the PLC changes the gear hears that nothing goes on afterwards."""
         source = self._orders.source
-        if not source or not self.spindle.jobs.gear_request:
+        if not source or not self.spindle.work.gear_request:
             return
         text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
         self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
@@ -175,11 +177,11 @@ class SpindleUnit(Unit):
 
     def outcome(self, number: int) -> bool | None:
         """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
-        job = self.spindle.jobs.job
+        job = self.spindle.work.job
         in_work = job is not None and job.number == number
         if in_work or any(order.number == number for order in self._orders.waiting):
             return None
-        return self.spindle.jobs.last_done == number
+        return self.spindle.work.last_done == number
 
     def refusal(self, number: int) -> CncError | None:
         """Why the last order that was refused in its turn was so, if it is this one."""
@@ -191,7 +193,7 @@ class SpindleUnit(Unit):
         if not on:
             self._tell_overtaken(cycle, "power off")
             self._orders.clear()
-            if self.spindle.jobs.gear_request:
+            if self.spindle.work.gear_request:
                 self._passed_on.append(Command(self.name, "stop", {}))
         return self._power.do_power(cycle, on=on)
 
@@ -222,7 +224,7 @@ class SpindleUnit(Unit):
         self._take_turns(first_cycle)
         columns = self._cycles.block(first_cycle, count)
         block = SpindleBlock(first_cycle, count, *columns)
-        block.gear_request = self.spindle.jobs.gear_request
+        block.gear_request = self.spindle.work.gear_request
         block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
         block.source = self._orders.source
         block.plc_commands, block.plc_acknowledged = self._orders.taken, self._orders.acknowledged
@@ -240,7 +242,7 @@ class SpindleUnit(Unit):
                 self._stays_behind(cycle, command)
         if master.error_id[0] or master.state[0] == S.DISABLED:
             self._orders.forget_master()
-            spindle.jobs.forget_rotation()
+            spindle.work.forget_rotation()
         if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
             reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
             spindle.fault(cycle, MASTER_IN_ERROR, reason)

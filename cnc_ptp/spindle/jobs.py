@@ -6,56 +6,19 @@ cycle asks whether the step in work is done. TF5200 spindle 2.3 (state graphs), 
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import dataclass, field
-from enum import Enum, auto
 from math import copysign
-from typing import TYPE_CHECKING
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
+from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
 from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stop_way
+from cnc_ptp.spindle.spindle import Spindle
 from cnc_ptp.spindle.states import SpindleMode
-
-if TYPE_CHECKING:
-    from cnc_ptp.spindle.spindle import Spindle
-
-DIRECTIONS = {"cw": 1.0, "ccw": -1.0}
-
-
-class Step(Enum):
-    """Part of a job."""
-
-    APPROACH = auto()
-    """Down to a speed at which the position loop can be closed."""
-    SEARCH = auto()
-    """Turn at homing speed until the zero pulse comes."""
-    POSITION = auto()
-    HALT = auto()
-    """Exact stop."""
-    SHIFT = auto()
-    """The PLC changes the gear."""
-
-
-@dataclass(slots=True)
-class Job:
-    """`name` of the command; the rest as the steps need it."""
-
-    name: str
-    steps: deque[Step] = field(default_factory=deque)
-    goal: float = 0.0
-    speed: float = 0.0
-    direction: str = ""
-    stage: int = 0
-    resume: float = 0.0
-    """Speed of endless rotation that the gear change has interrupted, °/s."""
-    number: int = 0
-    """Of the order for which it is done."""
 
 
 class Jobs:
-    """The job in work of one spindle."""
+    """Carries the job of one spindle out, step by step."""
 
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
@@ -64,33 +27,6 @@ class Jobs:
         self._since = 0
         self._turns = 1.0
         """Direction in which the target is reached."""
-        self.job: Job | None = None
-        self.done = True
-        """The last job came to its end."""
-        self.last_done = 0
-        """Number of the last order whose job came to its end."""
-
-    @property
-    def step(self) -> Step | None:
-        return self.job.steps[0] if self.job is not None else None
-
-    @property
-    def gear_request(self) -> int:
-        """The stage that the PLC is to change to, 0 if none."""
-        return self.job.stage if self.job is not None and self.step is Step.SHIFT else 0
-
-    @property
-    def changes_gear(self) -> bool:
-        return self.job is not None and self.job.stage != 0
-
-    def cancel(self) -> None:
-        self.job = None
-        self.done = False
-
-    def forget_rotation(self) -> None:
-        """The endless rotation that a gear change has interrupted does not go on after it."""
-        if self.job is not None:
-            self.job.resume = 0.0
 
     # begin
 
@@ -104,7 +40,7 @@ class Jobs:
             job.steps.appendleft(Step.SEARCH)
         if self._loop_stays_open:
             job.steps.appendleft(Step.APPROACH)
-        self.job = job
+        spindle.work.job = job
         spindle.programmed_speed = job.speed
         spindle.wanted_speed = 0.0
         spindle.unsettled = True
@@ -127,8 +63,9 @@ class Jobs:
         }[self._current().steps[0]](cycle)
 
     def _current(self) -> Job:
-        assert self.job is not None
-        return self.job
+        job = self._spindle.work.job
+        assert job is not None
+        return job
 
     def _approach(self, cycle: int) -> None:
         spindle = self._spindle
@@ -214,7 +151,7 @@ class Jobs:
             done = self._shifted(cycle)
         else:
             done = self._stands(cycle, actual_speed)
-        if not done or self.job is not job:
+        if not done or self._spindle.work.job is not job:
             return
         job.steps.popleft()
         if job.steps:
@@ -286,9 +223,7 @@ class Jobs:
 
     def _finish(self) -> None:
         spindle, job = self._spindle, self._current()
-        self.job = None
-        self.done = True
-        self.last_done = job.number
+        spindle.work.finish()
         spindle.programmed_speed = 0.0
         spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
         if job.name in ("home", "stop"):

@@ -71,7 +71,7 @@ class Orders:
         """During a gear change all commands wait; those of the PLC for whatever is in work, too. A stop never waits."""
         if command == "stop":
             return False
-        if self._spindle.jobs.changes_gear or (self.waiting and source != PLC and self.waiting[0].source != PLC):
+        if self._spindle.work.changes_gear or (self.waiting and source != PLC and self.waiting[0].source != PLC):
             return True
         return source == PLC and bool(self.waiting or self.source)
 
@@ -81,7 +81,7 @@ class Orders:
 
     def begin(self, source: str) -> None:
         """The spindle works for `source` from now on; a rotation to go on after a gear change keeps its commander."""
-        job = self._spindle.jobs.job
+        job = self._spindle.work.job
         self.source = source
         if job is None or not job.resume:
             self.commander = source
@@ -89,7 +89,7 @@ class Orders:
 
     def next(self) -> Order | None:
         """The order whose turn it is."""
-        if not self.waiting or self._spindle.jobs.changes_gear:
+        if not self.waiting or self._spindle.work.changes_gear:
             return None
         source = self.waiting[0].source
         if self.source and source and (source == PLC or source != self.source):
@@ -114,7 +114,7 @@ class Orders:
         spindle = self._spindle
         if spindle.state == S.ERROR_STOP:
             self.clear()
-        if not self.source or spindle.jobs.job is not None:
+        if not self.source or spindle.work.job is not None:
             return
         turns_as_told = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached
         if turns_as_told or spindle.state in (S.STANDSTILL, S.DISABLED):

@@ -15,7 +15,8 @@ from cnc_ptp.spindle.faults import (
     NO_SUCH_GEAR,
     SENSORLESS,
 )
-from cnc_ptp.spindle.jobs import Job, Step
+from cnc_ptp.spindle.job import Job, Step
+from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
 from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
 
@@ -29,8 +30,9 @@ NEEDS_REFERENCE = (
 class PositionCommands:
     """`orient`, `home`, `select_gear` and `gear_changed`."""
 
-    def __init__(self, spindle: Spindle) -> None:
+    def __init__(self, spindle: Spindle, jobs: Jobs) -> None:
         self._spindle = spindle
+        self._jobs = jobs
 
     def do_orient(
         self, cycle: int, *, position_deg: float, speed_rpm: float | None = None, direction: str = ""
@@ -53,7 +55,7 @@ class PositionCommands:
         self._require_reference("orient", cycle)
         speed = spindle.gear.positioning_speed if speed_rpm is None else speed_rpm * DEG_S_PER_RPM
         job = Job("orient", deque([Step.POSITION]), goal=float(position_deg), speed=speed, direction=direction)
-        spindle.jobs.start(cycle, job)
+        self._jobs.start(cycle, job)
         return self._slower(speed)
 
     def _slower(self, speed: float) -> str | None:
@@ -87,7 +89,7 @@ class PositionCommands:
         if not spindle.parameters.automatic_homing and spindle.state != S.STANDSTILL:
             reason = "the drive homes the spindle from standstill only (P-AXIS-00015 0x100); stop it first"
             spindle.refuse("home", HOMING_FROM_MOTION, reason)
-        spindle.jobs.start(cycle, Job("home", deque([Step.SEARCH, Step.HALT])))
+        self._jobs.start(cycle, Job("home", deque([Step.SEARCH, Step.HALT])))
 
     def do_select_gear(self, cycle: int, *, stage: int, resume: bool = True) -> str | None:
         """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear and says `gear_changed`.
@@ -108,15 +110,15 @@ class PositionCommands:
             self._require_reference("select_gear", cycle)
             job.steps[0] = Step.POSITION
             job.goal, job.speed = spindle.gear.change_position, spindle.gear.positioning_speed
-        spindle.jobs.start(cycle, job)
+        self._jobs.start(cycle, job)
         return self._slower(job.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
         """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""
         spindle = self._spindle
-        if not spindle.jobs.gear_request:
+        if not spindle.work.gear_request:
             spindle.refuse("gear_changed", NO_GEAR_CHANGE, "no gear change waits for its acknowledgement")
-        job = spindle.jobs.gear_changed(cycle)
+        job = self._jobs.gear_changed(cycle)
         if not job.resume:
             return None
         if abs(job.resume) > spindle.gear.max_speed:

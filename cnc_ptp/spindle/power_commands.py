@@ -24,9 +24,9 @@ class PowerCommands:
             return f"spindle {spindle.name}: power is {'on' if on else 'off'} already"
         spindle.powered = on
         spindle.unsettled = True
-        if spindle.jobs.gear_request:
+        if spindle.work.gear_request:
             spindle.state = S.DISABLED
-            spindle.jobs.forget_rotation()
+            spindle.work.forget_rotation()
             return f"spindle {spindle.name}: power on counts when the PLC has changed the gear" if on else None
         if on:
             self._switch_on(cycle)

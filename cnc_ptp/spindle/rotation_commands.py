@@ -13,7 +13,8 @@ from cnc_ptp.spindle.faults import (
     BAD_TOOL_LIMITS,
     SPEED_TOO_HIGH,
 )
-from cnc_ptp.spindle.jobs import DIRECTIONS, Job, Step
+from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
+from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
 from cnc_ptp.spindle.states import SpindleMode
 from cnc_ptp.spindle.tool_limits import ToolLimits
@@ -22,8 +23,9 @@ from cnc_ptp.spindle.tool_limits import ToolLimits
 class RotationCommands:
     """`start`, `set_speed`, `stop`, override, limits of the tool, and what happens at the program's end."""
 
-    def __init__(self, spindle: Spindle) -> None:
+    def __init__(self, spindle: Spindle, jobs: Jobs) -> None:
         self._spindle = spindle
+        self._jobs = jobs
         self.stops_at_program_end = False
 
     def do_start(self, cycle: int, *, direction: str, speed_rpm: float) -> str | None:
@@ -61,13 +63,13 @@ class RotationCommands:
         While the PLC changes the gear the spindle stands; it stays at rest afterwards.
         """
         spindle = self._spindle
-        if spindle.jobs.gear_request:
-            spindle.jobs.forget_rotation()
+        if spindle.work.gear_request:
+            spindle.work.forget_rotation()
             return
         if spindle.state in (S.ERROR_STOP, S.DISABLED):
             return
         if spindle.reference_lost and spindle.parameters.automatic_homing and spindle.state == S.CONTINUOUS_MOTION:
-            spindle.jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
+            self._jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
         else:
             spindle.stop(cycle)
 
@@ -90,7 +92,7 @@ class RotationCommands:
         spindle = self._spindle
         if spindle.state == S.CONTINUOUS_MOTION:
             spindle.apply_speed(cycle)
-        elif spindle.state == S.DISCRETE_MOTION and not spindle.jobs.replan(cycle):
+        elif spindle.state == S.DISCRETE_MOTION and not self._jobs.replan(cycle):
             return f"spindle {spindle.name}: {what} does not change the positioning in work (brake phase)"
         return None
 

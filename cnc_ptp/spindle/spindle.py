@@ -12,7 +12,7 @@ from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.spindle.faults import NOT_READY
-from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.job import Work
 from cnc_ptp.spindle.position_loop import PositionLoop
 from cnc_ptp.spindle.speed_ramp import plan_speed
 from cnc_ptp.spindle.speed_table import Motion, SpeedTable
@@ -74,7 +74,7 @@ class Spindle:
         self.speed_was_reached = True
         self.unsettled = True
         """Something may happen in the next cycles besides following the setpoint."""
-        self.jobs = Jobs(self)
+        self.work = Work()
         self.report_error = report_error
         self.report_warning = report_warning
 
@@ -157,7 +157,7 @@ class Spindle:
         self.ramp_to(cycle, 0.0)
 
     def end_job(self) -> None:
-        self.jobs.cancel()
+        self.work.cancel()
         self.target = None
         self.job_error = False
 
@@ -209,7 +209,7 @@ class Spindle:
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
-        had_job = self.jobs.job is not None
+        had_job = self.work.job is not None
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
         self.stop(cycle)

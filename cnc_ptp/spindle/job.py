@@ -1,0 +1,73 @@
+"""What a job of a spindle is, and the one in work."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from enum import Enum, auto
+
+DIRECTIONS = {"cw": 1.0, "ccw": -1.0}
+
+
+class Step(Enum):
+    """Part of a job."""
+
+    APPROACH = auto()
+    """Down to a speed at which the position loop can be closed."""
+    SEARCH = auto()
+    """Turn at homing speed until the zero pulse comes."""
+    POSITION = auto()
+    HALT = auto()
+    """Exact stop."""
+    SHIFT = auto()
+    """The PLC changes the gear."""
+
+
+@dataclass(slots=True)
+class Job:
+    """`name` of the command; the rest as the steps need it."""
+
+    name: str
+    steps: deque[Step] = field(default_factory=deque)
+    goal: float = 0.0
+    speed: float = 0.0
+    direction: str = ""
+    stage: int = 0
+    resume: float = 0.0
+    """Speed of endless rotation that the gear change has interrupted, °/s."""
+    number: int = 0
+    """Of the order for which it is done."""
+
+
+@dataclass(slots=True)
+class Work:
+    """The job in work of one spindle, and what became of the last one."""
+
+    job: Job | None = None
+    done: bool = True
+    """The last job came to its end."""
+    last_done: int = 0
+    """Number of the last order whose job came to its end."""
+
+    @property
+    def gear_request(self) -> int:
+        """The stage that the PLC is to change to, 0 if none."""
+        return self.job.stage if self.job is not None and self.job.steps[0] is Step.SHIFT else 0
+
+    @property
+    def changes_gear(self) -> bool:
+        return self.job is not None and self.job.stage != 0
+
+    def finish(self) -> None:
+        """The job in work is done."""
+        if self.job is not None:
+            self.last_done = self.job.number
+        self.job, self.done = None, True
+
+    def cancel(self) -> None:
+        self.job, self.done = None, False
+
+    def forget_rotation(self) -> None:
+        """The endless rotation that a gear change has interrupted does not go on after it."""
+        if self.job is not None:
+            self.job.resume = 0.0
