@@ -1,6 +1,8 @@
 """The command line as users and scripts meet it: help, exit statuses, refusals word for word."""
 
 import importlib
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
 from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
 from cnc_ptp.recording.reader import read_recording
@@ -310,14 +313,23 @@ def test_params_shows_one_or_all():
     assert "P-CHAN-00056" in call("params").output
 
 
-@pytest.mark.parametrize("name", ["simulate", "run", "check", "replay", "report", "params"])
+@pytest.fixture
+def handlers():
+    """The entry points take the interrupt; afterwards it is pytest's again."""
+    before = signal.getsignal(signal.SIGINT)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("handlers")
+@pytest.mark.parametrize("name", [*cli.main.commands, "main"])
 def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
     """`ros2 run cnc_ptp simulate ...`"""
     monkeypatch.setattr(sys, "argv", [name, "--help"])
     with pytest.raises(SystemExit) as ended:
-        getattr(cli, name)()
+        getattr(entries, name)()
     assert ended.value.code == 0
-    assert f"cnc_ptp {name}" in capsys.readouterr().out
+    assert f"Usage: cnc_ptp {'[OPTIONS]' if name == 'main' else name} " in capsys.readouterr().out
 
 
 def test_help_needs_no_numerics():
@@ -327,19 +339,35 @@ def test_help_needs_no_numerics():
     assert done.stdout == "set()\n"
 
 
-def test_an_interrupt_during_the_start_is_told(tmp_path, monkeypatch):
-    def interrupted(path):
-        raise KeyboardInterrupt
+INTERRUPTED = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
 
-    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", interrupted)
-    result = call("simulate", MILL)
-    text = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
-    assert (result.exit_code, result.stdout, result.stderr) == (1, "", text)
+
+@pytest.mark.usefixtures("handlers")
+def test_an_interrupt_during_the_start_is_told(monkeypatch, capsys):
+    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", lambda path: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr(sys, "argv", ["cnc_ptp", "simulate", str(MILL)])
+    with pytest.raises(SystemExit) as ended:
+        entries.main()
+    assert (ended.value.code, capsys.readouterr()) == (130, ("", INTERRUPTED))
+
+
+def test_an_interrupt_while_the_command_line_is_loaded_is_told(tmp_path):
+    """It comes in the first package that is loaded."""
+    (tmp_path / "click.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "cnc_ptp", "simulate", MILL],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", INTERRUPTED)
 
 
 def test_no_progress_and_no_escape_codes_without_a_terminal(program):
     done = subprocess.run(
-        [sys.executable, "-m", "cnc_ptp.cli", "simulate", MILL, "--program", program],
+        [sys.executable, "-m", "cnc_ptp", "simulate", MILL, "--program", program],
         capture_output=True,
         text=True,
         timeout=60,

@@ -86,7 +86,7 @@ def verified(path, *, whole=True):
 
 
 def command(*arguments):
-    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, arguments)]
+    return [sys.executable, "-m", "cnc_ptp", *map(str, arguments)]
 
 
 def run(*arguments, expect=0):
