@@ -12,12 +12,16 @@ from click.testing import CliRunner
 
 from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
+from cnc_ptp.commands.simulate import Result, print_summary
 from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
+from cnc_ptp.machine.program_report import ProgramReport
+from cnc_ptp.parameters import read_machine
 from cnc_ptp.recording.reader import read_recording
 
 ROOT = Path(__file__).parents[2]
 MILL = ROOT / "config" / "mill.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
+TWO_CHANNELS = ROOT / "examples" / "spindles" / "two_channels.yaml"
 BRACKET = ROOT / "examples" / "bracket.nc"
 PROGRAM = "%p\nN10 G1 X5 F1000\nM30\n"
 
@@ -270,6 +274,47 @@ def test_duration_ends_the_run(program, tmp_path):
     result = call("simulate", MILL, "--program", program, "--duration", "0.255", "--record", tmp_path / "a.mcap")
     assert result.exit_code == 0
     assert read_recording(tmp_path / "a.mcap").last_cycle == 259
+
+
+@pytest.mark.parametrize(
+    ("duration", "note"),
+    [
+        ("0.3", "warning: P-WARN-26121 channel channel: --duration 0.3 s has cut off the program in line 3, state WAITING"),
+        ("0.05", "warning: P-WARN-26121 channel channel: --duration 0.05 s has cut off the program in line 2, state RUNNING"),
+        ("1000", None),
+    ],
+)  # fmt: skip
+def test_a_program_that_the_duration_cuts_off_is_told(duration, note, tmp_path):
+    """1 mm takes less than 0.2 s, the dwell after it half a second."""
+    path = tmp_path / "p.nc"
+    path.write_text("%p\nN10 G1 X1 F1000\nN20 G04 0.5\nM30\n")
+    result = call("simulate", MILL, "--program", path, "--duration", duration)
+    assert result.exit_code == 0
+    notes = [line for line in result.stdout.splitlines() if line.startswith("warning")]
+    assert notes == ([note] if note else [])
+
+
+def test_an_interrupted_program_is_not_cut_off_by_the_duration(tmp_path, capsys):
+    result = Result(programs={"channel": ProgramReport(done=False)}, interrupted="P-ERR-26106 interrupted")
+    print_summary(read_machine(MILL), result, 1.0, 5.0)
+    assert "P-WARN-26121" not in capsys.readouterr().out
+
+
+def test_the_program_time_of_each_channel(tmp_path):
+    """Dwells of half a second and of one."""
+    scenario = tmp_path / "s.yaml"
+    dwell = "- {{at: 0, to: {}, do: mdi, text: G04 {}}}\n".format
+    scenario.write_text(dwell("channel1", 0.5) + dwell("channel2", 1))
+    result = call("simulate", TWO_CHANNELS, "--scenario", scenario)
+    assert result.exit_code == 0
+    assert [line for line in result.stdout.splitlines() if line.startswith("program time")] == [
+        "program time channel1: 0.500 s",
+        "program time channel2: 1.000 s",
+    ]
+    result = call("simulate", TWO_CHANNELS, "--scenario", scenario, "--duration", 0.7)
+    assert result.stdout.splitlines()[-1] == (
+        "warning: P-WARN-26121 channel channel2: --duration 0.7 s has cut off the program in line 1, state WAITING"
+    )
 
 
 def test_a_run_without_anything_to_do_says_so(program, tmp_path):

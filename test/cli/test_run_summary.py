@@ -7,6 +7,8 @@ import pytest
 
 from cnc_ptp.commands import run as command
 from cnc_ptp.commands.run import print_summary
+from cnc_ptp.machine.blocks import ChannelStateCode as C
+from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.monitor import Progress
 from cnc_ptp.parameters import read_machine
@@ -18,10 +20,11 @@ def reported(**more):
     return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
 
 
-def monitor(diagnostics, *, notes=(), run_failed=False):
+def monitor(diagnostics, *, notes=(), run_failed=False, programs=(("channel", ProgramReport(40)),)):
     return SimpleNamespace(
         diagnostics=diagnostics,
-        progress=Progress(cycle=70, program_cycles=40),
+        progress=Progress(cycle=70),
+        programs=dict(programs),
         lateness=Lateness,
         errors=[],
         notes=list(notes),
@@ -42,6 +45,18 @@ def test_axes_come_in_the_order_of_the_machine_file(capsys):
         "largest following error y: 0.2500 mm",
         "largest following error c: 0.5000 deg",
     ]
+
+
+def test_each_channel_has_its_program_time_and_is_told_when_it_was_cut_off(capsys):
+    programs = {"one": ProgramReport(40, done=True, line=3), "two": ProgramReport(70, False, 2, C.RUNNING)}
+    print_summary(read_machine(PTP), monitor({}, programs=programs), [], 0.07)
+    told = capsys.readouterr().out.splitlines()
+    assert told[1:3] == ["program time one: 0.040 s", "program time two: 0.070 s"]
+    assert told[4:] == [
+        "warning: P-WARN-26121 channel two: --duration 0.07 s has cut off the program in line 2, state RUNNING"
+    ]
+    print_summary(read_machine(PTP), monitor({}, programs=programs), ["P-ERR-26106 interrupted"], 0.07)
+    assert "P-WARN-26121" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("failures", "run_failed"), [([], False), (["P-ERR-26106 interrupted"], False), ([], True)])
