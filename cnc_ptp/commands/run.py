@@ -33,6 +33,7 @@ def run(
 
         def show(monitor: RunMonitor) -> None:
             at = monitor.progress
+            progress.tell(monitor.notes)
             progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
 
         if composed:

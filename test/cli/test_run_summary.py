@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from cnc_ptp.commands import run as command
+from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.commands.run import print_summary
 from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.machine.program_report import ProgramReport
@@ -13,6 +14,7 @@ from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.monitor import Progress
 from cnc_ptp.parameters import read_machine
 
+ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
 
 
@@ -20,11 +22,11 @@ def reported(**more):
     return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
 
 
-def monitor(diagnostics, *, notes=(), run_failed=False, programs=(("channel", ProgramReport(40)),)):
+def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
     return SimpleNamespace(
         diagnostics=diagnostics,
         progress=Progress(cycle=70),
-        programs=dict(programs),
+        programs=programs,
         lateness=Lateness,
         errors=[],
         notes=list(notes),
@@ -74,3 +76,16 @@ def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypa
     assert command.run(str(PTP), None, None, duration, None, free_run=True, composed=False) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     assert (last == "note: there was nothing to do, give --program, --scenario or --duration") is told
+
+
+def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with RunProgress() as progress:
+        for notes in (["warning: one"], ["warning: one", "refused: P-ERR-1 [two]"]):
+            progress.tell(notes)
+    shown = capsys.readouterr().err
+    assert (shown.count("warning: one"), shown.count("refused: P-ERR-1 [two]")) == (1, 1)
+    monkeypatch.delenv("FORCE_COLOR")
+    with RunProgress() as progress:
+        progress.tell(["warning: one"])
+    assert capsys.readouterr() == ("", "")
