@@ -209,7 +209,7 @@ def curve_group() -> None:
 @click.option("--top-speed", type=float, help="Up to which the curve must hold; without it the last point.")
 @click.option("--a-min", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Floor in °/s².")
 @click.option("--spindle", default="s", show_default=True, help="For the lines of the machine file.")
-@click.option("--gear", type=click.IntRange(0), default=0, show_default=True, help="Index of getriebe[i].")
+@click.option("--gear", type=click.IntRange(0, 5), default=0, show_default=True, help="Index of getriebe[i].")
 @click.option(
     "-o",
     "--output",
