@@ -96,8 +96,8 @@ def share(folder: str, pattern: str) -> tuple[str, list[str]]:
 
 
 def console_scripts() -> list[str]:
-    scripts = [f"{PACKAGE} = {PACKAGE}.cli:main"]
-    scripts += [f"{name} = {PACKAGE}.cli:{name}" for name in COMMANDS]
+    scripts = [f"{PACKAGE} = {PACKAGE}.__main__:main"]
+    scripts += [f"{name} = {PACKAGE}.__main__:{name}" for name in COMMANDS]
     scripts += [f"{name} = {PACKAGE}.nodes.{name}:main" for name in NODES]
     return scripts
 

@@ -44,7 +44,7 @@ def measure(calls: int) -> list[tuple[float, float]]:
     from cnc_ptp.nodes import process
 
     duration = 5.0 + calls * (PAUSE + 0.1)
-    command = [sys.executable, "-m", "cnc_ptp.cli", "run", MACHINE, "--duration", str(duration)]
+    command = [sys.executable, "-m", "cnc_ptp", "run", MACHINE, "--duration", str(duration)]
     graph = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     try:
         process.initialise()

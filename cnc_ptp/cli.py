@@ -1,4 +1,4 @@
-"""The command line. Exit status: 0 done, 1 the run ended in an error, 2 wrong usage or input."""
+"""The command line. Exit status: 0 done, 1 the run ended in an error, 2 wrong usage or input, 130 interrupted."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from typing import Any
 
 import click
 
-from cnc_ptp.commands.console import RUN_FAILED, WRONG_INPUT, print_error
+from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
-from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.number_range import DURATION, RATE
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
@@ -31,7 +30,7 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class Group(click.Group):
-    """Prints a refusal as one text and ends with status 2, an interrupt outside of a run with 1; no traceback."""
+    """Prints a refusal as one text and ends with status 2; no traceback."""
 
     def invoke(self, context: click.Context) -> Any:
         try:
@@ -39,10 +38,6 @@ class Group(click.Group):
         except CncError as error:
             print_error(error)
             sys.exit(WRONG_INPUT)
-        except KeyboardInterrupt:
-            text = "the command was interrupted (SIGINT) while no run was under way; it ends here"
-            print_error(CncError(INTERRUPTED, text))
-            sys.exit(RUN_FAILED)
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
@@ -214,7 +209,7 @@ def curve_group() -> None:
 @click.option("--top-speed", type=float, help="Up to which the curve must hold; without it the last point.")
 @click.option("--a-min", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Floor in °/s².")
 @click.option("--spindle", default="s", show_default=True, help="For the lines of the machine file.")
-@click.option("--gear", type=click.IntRange(0), default=0, show_default=True, help="Index of getriebe[i].")
+@click.option("--gear", type=click.IntRange(0, 5), default=0, show_default=True, help="Index of getriebe[i].")
 @click.option(
     "-o",
     "--output",
@@ -234,26 +229,3 @@ def curve_fit_command(**options: Any) -> None:
     if bool(options["points"]) == bool(options["csv"]):
         raise click.UsageError("Either --point (again and again) or --csv is needed.")
     sys.exit(curve_fit(**options))
-
-
-def _entry(command: click.Command) -> Callable[[], Any]:
-    """A command of its own, so that `ros2 run cnc_ptp simulate ...` serves the same."""
-
-    def call() -> Any:
-        return main.main(args=[command.name or "", *sys.argv[1:]], prog_name="cnc_ptp")
-
-    return call
-
-
-simulate = _entry(simulate_command)
-run = _entry(run_command)
-check = _entry(check_command)
-replay = _entry(replay_command)
-report = _entry(report_command)
-params = _entry(params_command)
-identify = _entry(identify_group)
-circle = _entry(circle_command)
-curve = _entry(curve_group)
-
-if __name__ == "__main__":
-    main()

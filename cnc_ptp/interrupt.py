@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import signal
+import sys
 import time
 from types import FrameType, TracebackType
 
 INTERRUPTED = 26106
-"""The run was interrupted."""
+"""The run or command was interrupted."""
+
+
+def end_command(number: int, frame: FrameType | None) -> None:
+    """Handler of a signal while no run is under way: tells it, and ends the process with 128 + `number`."""
+    name = signal.Signals(number).name
+    text = f"the command was interrupted ({name}) while no run was under way; it ends here"
+    print(f"P-ERR-{INTERRUPTED} {text}", file=sys.stderr)
+    sys.exit(128 + number)
 
 
 class EndRequest:

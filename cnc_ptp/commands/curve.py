@@ -11,10 +11,13 @@ from cnc_ptp.commands.curve_page import curve_page
 from cnc_ptp.commands.curve_picture import curve_picture
 from cnc_ptp.commands.curve_report import curve_lines, curve_yaml
 from cnc_ptp.commands.output_file import check_output, deliver, write_output
-from cnc_ptp.commands.picture_file import check_picture, picture_kind
+from cnc_ptp.commands.picture_file import KINDS, picture_kind
 from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault, fit_curve
 from cnc_ptp.commissioning.curve_points import SPEED_UNITS, parse_point, parse_point_file
+from cnc_ptp.commissioning.faults import BAD_OUTPUT, BAD_SPINDLE_NAME
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
+from cnc_ptp.parameters.loader import name_trouble
 
 YAML = ("yaml", "yml")
 
@@ -32,6 +35,8 @@ def curve_fit(
     outputs: Sequence[str],
 ) -> int:
     """Fits, prints the table and the lines for the machine file. Status 1 when no spindle can run on the curve."""
+    if trouble := name_trouble(spindle, {}):
+        raise CncError(BAD_SPINDLE_NAME, f"spindle name '{spindle}' {trouble}; nothing was fitted")
     check_outputs(outputs, csv)
     given = (
         [parse_point(point, unit) for point in points]
@@ -64,8 +69,10 @@ def curve_fit(
 def check_outputs(outputs: Sequence[str], csv: str | None) -> None:
     """Raises CncError 27030 for an output that cannot be made or would overwrite the points."""
     for output in outputs:
-        check = check_output if picture_kind(output) in YAML else check_picture
-        check(output, point_file=csv)
+        if picture_kind(output) not in (*KINDS, *YAML):
+            known = "a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml)"
+            raise CncError(BAD_OUTPUT, f"{output}: an output is {known} by its ending; nothing was started")
+        check_output(output, point_file=csv)
 
 
 def draw(console: Console, fit: CurveFit, outputs: Sequence[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import TracebackType
 
 from rich.console import Console
@@ -30,6 +30,7 @@ class RunProgress:
         )
         self._task = self._progress.add_task("program", total=None, where="")
         self._next = 0.0
+        self._told: set[str] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
@@ -41,6 +42,13 @@ class RunProgress:
     ) -> None:
         if self._on:
             self._progress.stop()
+
+    def tell(self, notes: Iterable[str]) -> None:
+        """Shows what has come to `notes`, above the progress line: a run that waits for somebody says so at once."""
+        for note in notes:
+            if self._on and note not in self._told:
+                self._told.add(note)
+                self._progress.console.print(note, style="yellow", markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""

@@ -8,6 +8,7 @@ from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idl
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
+from cnc_ptp.machine.program_report import cut_off_notes, time_lines
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import Job, Supervisor
@@ -32,6 +33,7 @@ def run(
 
         def show(monitor: RunMonitor) -> None:
             at = monitor.progress
+            progress.tell(monitor.notes)
             progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
 
         if composed:
@@ -39,17 +41,20 @@ def run(
         else:
             supervisor = Supervisor(parameters, job, show=show)
             monitor, failures = supervisor.run(), supervisor.failures
-    print_summary(parameters, monitor, failures)
+    print_summary(parameters, monitor, failures, duration)
     print_note_of_idle_run(program, scenario, duration)
     return RUN_FAILED if failures or monitor.run_failed else 0
 
 
-def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: list[str]) -> None:
+def print_summary(
+    machine: MachineParameters, monitor: RunMonitor, failures: list[str], duration: float | None = None
+) -> None:
     console = Console(highlight=False, soft_wrap=True)
     cycle_time = machine.cycle_time_us * 1e-6
     cycles = monitor.progress.cycle
     console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
-    console.print(f"program time {monitor.progress.program_cycles * cycle_time:.3f} s")
+    for line in time_lines(monitor.programs, cycle_time):
+        console.print(line, markup=False)
     total = {
         key: sum(int(node[key]) for node in monitor.diagnostics.values())
         for key in ("blocks", "lost_blocks", "duplicates")
@@ -68,4 +73,5 @@ def print_summary(machine: MachineParameters, monitor: RunMonitor, failures: lis
         )
     for text in failures:
         console.print(f"failed: {text}", style="bold red", markup=False)
-    print_faults(console, monitor.errors, monitor.notes, stopped=bool(failures) or monitor.run_failed)
+    notes = [*monitor.notes, *([] if failures else cut_off_notes(monitor.programs, duration))]
+    print_faults(console, monitor.errors, notes, stopped=bool(failures) or monitor.run_failed)

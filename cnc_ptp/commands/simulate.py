@@ -28,6 +28,7 @@ from cnc_ptp.machine.blocks import (
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.plc_unit import error_of
+from cnc_ptp.machine.program_report import ProgramReport, cut_off_notes, time_lines
 from cnc_ptp.machine.wiring import PLC, build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
@@ -38,7 +39,7 @@ class Result:
     """What is told at the end of a run."""
 
     cycles: int = 0
-    program_cycles: int = 0
+    programs: dict[str, ProgramReport] = field(default_factory=lambda: defaultdict(ProgramReport))
     failed: bool = False
     interrupted: str = ""
     following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
@@ -52,7 +53,7 @@ class Result:
                 largest = max(max(block.following_error), -min(block.following_error))
                 self.following_errors[name] = max(self.following_errors[name], largest)
             elif isinstance(block, ChannelBlock):
-                self.program_cycles += block.count if block.path_active else 0
+                self.programs[name].add(block)
             elif isinstance(block, PlcBlock):
                 self.cycles = block.first_cycle + block.count
                 # The PLC knows of a fault a block later, which may not come any more.
@@ -93,7 +94,7 @@ def simulate(
     except CncError as error:  # of the recording: it cannot be written any more
         print_error(error)
         result.failed = True
-    print_summary(parameters, result, time.monotonic() - started)
+    print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, duration)
     return RUN_FAILED if result.failed or result.interrupted else 0
 
@@ -120,7 +121,9 @@ def write(recording: Recording, outputs: Outputs) -> None:
             recording.command(record)
 
 
-def print_summary(machine: MachineParameters, result: Result, wall_seconds: float) -> None:
+def print_summary(
+    machine: MachineParameters, result: Result, wall_seconds: float, duration: float | None = None
+) -> None:
     cycle_time = machine.cycle_time_us * 1e-6
     console = Console(highlight=False, soft_wrap=True)
     seconds = result.cycles * cycle_time
@@ -128,9 +131,13 @@ def print_summary(machine: MachineParameters, result: Result, wall_seconds: floa
         f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: "
         f"{seconds / max(wall_seconds, 1e-9):.0f} times real time"
     )
-    console.print(f"program time {result.program_cycles * cycle_time:.3f} s")
+    for line in time_lines(result.programs, cycle_time):
+        console.print(line, markup=False)
     for axis, error in result.following_errors.items():
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
+    notes = result.notes
     if result.interrupted:
         console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
-    print_faults(console, result.errors, result.notes, stopped=result.failed or bool(result.interrupted))
+    else:
+        notes = [*notes, *cut_off_notes(result.programs, duration)]
+    print_faults(console, result.errors, notes, stopped=result.failed or bool(result.interrupted))

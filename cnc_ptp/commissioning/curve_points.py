@@ -21,7 +21,7 @@ from cnc_ptp.commissioning.faults import (
     TOO_FEW_POINTS,
 )
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.csv_table import table_lines
+from cnc_ptp.machine.csv_table import Fault, table_lines, table_names
 
 SPEED_UNITS: Mapping[str, float] = {"deg/s": 1.0, "rpm": 6.0}
 """°/s."""
@@ -51,7 +51,7 @@ def parse_point(text: str, unit: str) -> CurvePoint:
     """A point "SPEED:ACCELERATION" with the speed in `unit`. Raises CncError 27041."""
     speed, _, acceleration = text.partition(":")
     try:
-        return _point(speed, acceleration, unit)
+        return _point(speed, acceleration, unit, "it is not SPEED:ACCELERATION, two numbers")
     except ValueError as error:
         raise CncError(BAD_CURVE_POINT, f"point '{text}': {error}; nothing was fitted") from None
 
@@ -59,31 +59,50 @@ def parse_point(text: str, unit: str) -> CurvePoint:
 def parse_point_file(text: str, file: str) -> list[CurvePoint]:
     """The points of a CSV file, whose first line names acceleration_deg_s2 and speed_deg_s or speed_rpm.
 
-    Raises CncError 27042 with file and line.
+    Raises CncError 27042 and 27043 with file and line.
     """
     fault = partial(_file_fault, file)
-    unit = "rpm" if SPEED_COLUMNS["rpm"] in text.partition("\n")[0] else "deg/s"
-    points = []
+    unit = _speed_unit(table_names(text, fault), fault)
+    points: list[CurvePoint] = []
     for line, (speed, acceleration) in table_lines(text, (SPEED_COLUMNS[unit], ACCELERATION_COLUMN), fault):
+        reason = f"{SPEED_COLUMNS[unit]} '{speed}' and {ACCELERATION_COLUMN} '{acceleration}' are not two numbers"
         try:
-            points.append(_point(speed, acceleration, unit))
+            points.append(_point(speed, acceleration, unit, reason))
         except ValueError as error:
             raise fault(line, f"{error}") from None
+        _require_ascending(points[-2:], f"point file {file}:{line}: ")
     return points
 
 
-def _point(speed: str, acceleration: str, unit: str) -> CurvePoint:
-    """Raises ValueError for what is no point."""
+def _speed_unit(names: Sequence[str], fault: Fault) -> str:
+    """Of the column that the first line names. Raises what `fault` makes."""
+    units = [unit for unit, column in SPEED_COLUMNS.items() for name in names if name == column]
+    if len(units) != 1 or names.count(ACCELERATION_COLUMN) != 1:
+        wanted = f"{ACCELERATION_COLUMN} and one of {', '.join(SPEED_COLUMNS.values())}"
+        raise fault(1, f"the first line must name {wanted}, separated by commas; it is '{', '.join(names):.100}'")
+    return units[0]
+
+
+def _point(speed: str, acceleration: str, unit: str, no_numbers: str) -> CurvePoint:
+    """Raises ValueError for what is no point, with the text `no_numbers` where they are none."""
     try:
         given, point_acceleration = float(speed), float(acceleration)
     except ValueError:
-        raise ValueError("it is not SPEED:ACCELERATION, two numbers") from None
+        raise ValueError(no_numbers) from None
     point = CurvePoint(given * SPEED_UNITS[unit], point_acceleration)
     if not 0.0 <= point.speed <= LARGEST_SPEED:
         raise ValueError(f"speed {given:g} {unit} is not within 0 … {LARGEST_SPEED / SPEED_UNITS[unit]:g} {unit}")
     if not 0.0 < point.acceleration <= LARGEST_ACCELERATION:
         raise ValueError(f"acceleration {point_acceleration:g} °/s² is not above 0 and up to {LARGEST_ACCELERATION:g}")
     return point
+
+
+def _require_ascending(points: Sequence[CurvePoint], where: str = "") -> None:
+    """Raises CncError 27043 unless the speeds ascend."""
+    for before, point in pairwise(points):
+        if not point.speed > before.speed:
+            reason = f"{where}point {point} comes after {before} (°/s:°/s²), speeds must ascend"
+            raise CncError(NOT_ASCENDING, f"{reason}; nothing was fitted")
 
 
 def _file_fault(file: str, line: int, reason: str) -> CncError:
@@ -95,10 +114,7 @@ def limit_index(points: Sequence[CurvePoint], kind: str, limit_speed: float | No
 
     Raises CncError 27043 unless the speeds ascend, 27045 without a point at the limit, 27044 with too few above it.
     """
-    for before, point in pairwise(points):
-        if not point.speed > before.speed:
-            reason = f"point {point} comes after {before} (°/s:°/s²), speeds must ascend"
-            raise CncError(NOT_ASCENDING, f"{reason}; nothing was fitted")
+    _require_ascending(points)
     index = _limit_place([point.speed for point in points], limit_speed) if points else 0
     above, needed = max(len(points) - index - 1, 0), NEEDED_ABOVE[kind]
     if above < needed:

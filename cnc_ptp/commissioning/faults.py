@@ -33,6 +33,7 @@ NO_HYPERBOLA = 27047
 CURVE_NOT_POSITIVE = 27048
 CURVE_POLE = 27049
 CURVE_RISES = 27050
+BAD_SPINDLE_NAME = 27051
 
 
 def refusal(number: int, axis: str, text: str) -> CncError:

@@ -45,6 +45,7 @@ AXIS_NOT_FOLLOWING = 22015
 NOT_ACKNOWLEDGED = 22016
 SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
+HELD_BY_OVERRIDE = 22024
 
 C = ChannelStateCode
 
@@ -98,6 +99,8 @@ class ChannelUnit(Unit):
         self._feedback: Mapping[str, Block] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
+        self._held: Sequence[str] = ()
+        """What the program waited for because of override 0, in the block before."""
         self._error_id = 0
         self._apply_override()
 
@@ -349,6 +352,24 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
         self._sequence.read(first_cycle, inputs)
         self._warn(first_cycle)
+        self._tell_held(first_cycle)
+
+    def _tell_held(self, cycle: int) -> None:
+        """Where override 0 lets the program wait, which may be for ever: what it waits for, once."""
+        held = [f"{what}, which is held by override 0" for what in self._sequence.held_by_override(cycle)]
+        if self._path_held():
+            held.append("a path override above 0")
+        line = self._sequence.source.line
+        for what in dict.fromkeys(held):
+            if what not in self._held:
+                text = f"channel {self.name}: the program waits in line {line} for {what}"
+                self.event(cycle, Severity.WARNING, HELD_BY_OVERRIDE, text, line)
+        self._held = held
+
+    def _path_held(self) -> bool:
+        """The path stands within an element because of override 0 alone; a feed hold tells of itself."""
+        held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
+        return held and self._override_percent == 0.0 and not self._feed_hold
 
     def _check_member(self, first_cycle: int, node: str, block: Block) -> None:
         """Axes and spindles must be without error, and axes on the path that the block before gave them."""

@@ -6,7 +6,7 @@ Scenarios are checked against it before a run starts, units before they change a
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ UNKNOWN_COMMAND = 22002
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """One argument of a command. `kind`: number, integer, switch, text or rows; `choices` limits a text.
+    """One argument of a command. `kind`: number, integer, switch, text, rows or source; `choices` limits a text.
 
     `positive`: only a number above 0 makes sense, so that a service can say with 0 that it is left out.
     """
@@ -40,7 +40,7 @@ ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
-FOR: Arguments = {"source": OPTIONAL_TEXT}
+FOR: Arguments = {"source": Argument("source", required=False)}
 """For whom a spindle is to do it: the name of a channel, or plc for the external commanding of the PLC."""
 OPTIONAL_SWITCH = Argument("switch", required=False)
 CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
@@ -170,11 +170,16 @@ INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling
 OF_CHANNELS = frozenset({"own", "resume"})
 """Arguments of spindle commands that channels give; services do not have them."""
 
-TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list}
+TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}
 
 
-def check_command(kind: str, unit: str, command: str, arguments: Mapping[str, Any]) -> None:
-    """Raises CncError (22001 argument, 22002 command) when a unit of `kind` cannot understand the command."""
+def check_command(
+    kind: str, unit: str, command: str, arguments: Mapping[str, Any], sources: Collection[str] = ()
+) -> None:
+    """Raises CncError (22001 argument, 22002 command) when a unit of `kind` cannot understand the command.
+
+    `sources`: who may command a spindle of this machine; without them every name is taken.
+    """
     specification = COMMANDS[kind].get(command)
     if specification is None:
         known = ", ".join(sorted(set(COMMANDS[kind]) - INTERNAL))
@@ -189,6 +194,8 @@ def check_command(kind: str, unit: str, command: str, arguments: Mapping[str, An
     for name, argument in specification.items():
         if name in arguments:
             _check_argument(where, name, argument, arguments[name])
+            if argument.kind == "source":
+                _check_source(where, arguments[name], sources)
         elif argument.required:
             raise CncError(BAD_ARGUMENT, f"{where}: argument '{name}' is missing; nothing was changed")
 
@@ -206,6 +213,17 @@ def _check_argument(where: str, name: str, argument: Argument, value: Any) -> No
     if argument.choices and value not in argument.choices:
         allowed = " or ".join(argument.choices)
         raise CncError(BAD_ARGUMENT, f"{where}: {name} = '{value}' is not {allowed}; nothing was changed")
+
+
+def sources_of(kinds: Mapping[str, str]) -> list[str]:
+    """Who may command a spindle: PLC and channels of the machine, from unit name -> kind."""
+    return [unit for unit, kind in kinds.items() if kind in ("plc", "channel")]
+
+
+def _check_source(where: str, source: str, sources: Collection[str]) -> None:
+    if source and sources and source not in sources:
+        known = ", ".join(sources)
+        raise CncError(BAD_ARGUMENT, f"{where}: unknown source '{source}'; nothing was changed. Known: {known}")
 
 
 def is_finite(value: float) -> bool:

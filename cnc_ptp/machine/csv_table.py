@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 from cnc_ptp.errors import CncError
 
@@ -15,21 +16,38 @@ Fault = Callable[[int, str], CncError]
 
 def table_lines(text: str, columns: Sequence[str], fault: Fault) -> Iterator[tuple[int, list[str]]]:
     """Number and values of each line that is not empty, the values as `columns` stand. Raises what `fault` makes."""
-    lines = csv.reader(text.removeprefix(BYTE_ORDER_MARK).splitlines(), skipinitialspace=True)
+    lines = _reader(text)
     try:
         places = _places(next(lines, []), columns, fault)
         for line in lines:
             if any(map(str.strip, line)):
                 if len(line) <= max(places):
-                    raise fault(lines.line_num, f"{len(line)} values instead of {max(places) + 1}")
+                    shown = ",".join(line)
+                    raise fault(lines.line_num, f"'{shown}' has {len(line)} values instead of {max(places) + 1}")
                 yield lines.line_num, [line[place] for place in places]
     except csv.Error as error:
         raise fault(lines.line_num, f"{error}") from None
 
 
+def table_names(text: str, fault: Fault) -> list[str]:
+    """What the first line names. Raises what `fault` makes."""
+    try:
+        return _names(next(_reader(text), []))
+    except csv.Error as error:
+        raise fault(1, f"{error}") from None
+
+
+def _reader(text: str) -> Any:
+    return csv.reader(text.removeprefix(BYTE_ORDER_MARK).splitlines(), skipinitialspace=True)
+
+
+def _names(header: Sequence[str]) -> list[str]:
+    return [name.strip() for name in header]
+
+
 def _places(header: Sequence[str], columns: Sequence[str], fault: Fault) -> list[int]:
     """Where in a line the columns stand."""
-    names = [name.strip() for name in header]
+    names = _names(header)
     for column in columns:
         if names.count(column) != 1:
             what = "stands twice" if column in names else "is missing"

@@ -19,6 +19,7 @@ from cnc_ptp.machine.blocks import (
 from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.plc_unit import at_rest
 from cnc_ptp.machine.runner import UnitRunner
+from cnc_ptp.machine.spindle_reports import held_by_override
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
@@ -160,8 +161,7 @@ def spindle_wait(block: SpindleBlock, name: str) -> str:
 
 def why_it_stays(block: SpindleBlock) -> str:
     """Why a spindle on its way does not get there; empty while it goes on by itself."""
-    moves = block.state[-1] in (AxisStateCode.CONTINUOUS_MOTION, AxisStateCode.DISCRETE_MOTION)
-    if moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0:
+    if held_by_override(block):
         return "it is held by override 0"
     steady = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION and block.set_acceleration_deg_s2[-1] == 0.0
     return "its speed is not reached" if steady and not block.speed_reached[-1] else ""

@@ -174,6 +174,11 @@ class ProgramSequence:
             return " and ".join(text for text in waits if text)
         return ""
 
+    def held_by_override(self, cycle: int) -> list[str]:
+        """What the program waits for of spindles that override 0 holds."""
+        waits = self._waits if self.phase in WAITING else []
+        return [text for wait in waits if (text := wait.held(cycle, self._feedback))]
+
     # from block to block
 
     def go_on(self, first_cycle: int) -> bool:

@@ -12,7 +12,7 @@ from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
-from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, sources_of
 from cnc_ptp.machine.run_time import LONGEST_RUN
 from cnc_ptp.machine.setpoint_file import parse_setpoints
 from cnc_ptp.machine.setpoint_queue import SETPOINTS
@@ -99,7 +99,7 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
         _read_setpoints(to, arguments, read)
     if do in CAMS and read and isinstance(arguments.get("file"), str) and "table" not in arguments:
         arguments["table"] = parse_cam(read("cam file", arguments["file"]), arguments["file"])
-    check_command(kinds[to], to, do, arguments)
+    check_command(kinds[to], to, do, arguments, sources_of(kinds))
     if do == "load" and "text" not in arguments and read:
         arguments["text"] = read("NC program", arguments["program"])
     return Entry(float(at), Command(to, do, arguments))

@@ -84,6 +84,12 @@ def is_there(block: SpindleBlock, condition: Condition) -> bool:
     return True
 
 
+def held_by_override(block: SpindleBlock) -> bool:
+    """The spindle is on its way, and stands because of override 0."""
+    moves = block.state[-1] in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION)
+    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
+
+
 def turns(block: SpindleBlock) -> bool:
     """In endless rotation."""
     return block.state[-1] == S.CONTINUOUS_MOTION

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
@@ -38,6 +38,8 @@ class Unit(ABC):
         """Events since the last block; the harness takes them away."""
         self.records: list[CommandRecord] = []
         """Commands carried out or refused since the last block; the harness takes them away."""
+        self.sources: Collection[str] = ()
+        """Who may command a spindle; without them every name is taken."""
         self.lost: set[str] = set()
         """Sources that a watchdog has given up; their blocks count no more, even if they should come."""
 
@@ -67,7 +69,7 @@ class Unit(ABC):
 
     def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
         self._warning = ""
-        check_command(self.kind, self.name, command, arguments)
+        check_command(self.kind, self.name, command, arguments, self.sources)
         self._warning = self.handler(command)(cycle, **arguments) or ""
         if command == "upstream_lost":
             self.lost.add(arguments["source"])

@@ -14,6 +14,7 @@ from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBloc
 from cnc_ptp.machine.spindle_reports import (
     Condition,
     carries_out,
+    held_by_override,
     is_there,
     must_wait,
     turns,
@@ -111,6 +112,16 @@ class Wait:
             return ""
         if self.request_id in open_requests:
             return f"the acknowledgement of request {self.request_id}"
+        return self._report()
+
+    def held(self, cycle: int, spindles: Mapping[str, Block]) -> str:
+        """What does not come because override 0 holds the spindle, if so."""
+        block = spindles.get(self.spindle)
+        waits = self.sent_before(cycle) and self.condition not in (Condition.MASTER, Condition.ALONE)
+        held = waits and isinstance(block, SpindleBlock) and not block.gear_request and held_by_override(block)
+        return self._report() if held else ""
+
+    def _report(self) -> str:
         return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
 
 

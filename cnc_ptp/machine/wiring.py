@@ -9,6 +9,7 @@ from itertools import count
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.channel_unit import ChannelUnit
+from cnc_ptp.machine.commands import sources_of
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.spindle_unit import SpindleUnit
@@ -64,7 +65,9 @@ def build_unit(
     if kinds[name] == "axis":
         return AxisUnit(machine.axes[name], cycle_time=cycle_time, axes=machine.axes)
     if kinds[name] == "spindle":
-        return SpindleUnit(machine.spindles[name], cycle_time=cycle_time, spindles=tuple(machine.spindles))
+        spindle = SpindleUnit(machine.spindles[name], cycle_time=cycle_time, spindles=tuple(machine.spindles))
+        spindle.sources = sources_of(kinds)
+        return spindle
     if kinds[name] == "channel":
         return ChannelUnit(
             machine.channels[name],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -10,6 +11,7 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
+from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, MONITOR, PLC_INPUT, REPORT, block_topic
@@ -22,7 +24,7 @@ SUPERVISOR = "supervisor"
 
 @dataclass
 class Progress:
-    """Where the program is."""
+    """Where the program of the first channel is."""
 
     line: int = 0
     block_number: int = 0
@@ -31,15 +33,15 @@ class Progress:
     feed_mm_per_min: float = 0.0
     position: dict[str, float] = field(default_factory=dict)
     cycle: int = 0
-    program_cycles: int = 0
 
 
 class RunMonitor(Node):
-    """Subscriptions: /<first channel>/block, /plc/block, /events, /commands, /diagnostics."""
+    """Subscriptions: /<channel>/block, /plc/block, /events, /commands, /diagnostics."""
 
     def __init__(self, machine: MachineParameters) -> None:
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
         self.progress = Progress()
+        self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
         self.notes: list[str] = []
         self.run_done = False
@@ -51,8 +53,9 @@ class RunMonitor(Node):
         self._needed = []
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
-        for channel in list(machine.channels)[:1]:
-            self._need(msg.ChannelBlock, block_topic(channel), self._on_channel)
+        for number, (channel, program) in enumerate(self.programs.items()):
+            received = program.add if number else partial(self._on_first_channel, program)
+            self._need(msg.ChannelBlock, block_topic(channel), received)
         self._need(msg.PlcBlock, block_topic(PLC), self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
@@ -91,7 +94,8 @@ class RunMonitor(Node):
             total.merge(values["lateness_counts"], int(values["lateness_max_us"]))
         return total
 
-    def _on_channel(self, message: msg.ChannelBlock) -> None:
+    def _on_first_channel(self, program: ProgramReport, message: msg.ChannelBlock) -> None:
+        program.add(message)
         progress = self.progress
         progress.line, progress.block_number = message.line[-1], message.block_number[-1]
         progress.blocks_done, progress.blocks_total = message.blocks_done, message.blocks_total
@@ -99,8 +103,6 @@ class RunMonitor(Node):
         last = range(message.count - 1, len(message.set_position), message.count)
         progress.position = {axis: message.set_position[index] for axis, index in zip(message.axes, last, strict=True)}
         progress.cycle = max(progress.cycle, message.first_cycle + message.count)
-        if message.path_active:
-            progress.program_cycles += message.count
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)

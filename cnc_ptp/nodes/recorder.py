@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -189,10 +190,14 @@ class RecorderNode(Node):
 
 
 def require_writable(path: str) -> None:
-    """Raises CncError 26113 when no file can be made at `path`; what is there stays until the first tick."""
+    """Raises CncError 26113 when no file can be made at `path`; what is there, or not, stays until the first tick."""
+    file = Path(os.path.realpath(path))  # a link stays too
     try:
-        with Path(path).open("ab"):
+        exists = file.exists()
+        with file.open("ab"):
             pass
+        if not exists:
+            file.unlink()
     except OSError as error:
         raise CncError(
             NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}; nothing was started"

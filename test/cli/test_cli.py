@@ -1,6 +1,8 @@
 """The command line as users and scripts meet it: help, exit statuses, refusals word for word."""
 
 import importlib
+import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -8,13 +10,18 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
+from cnc_ptp.commands.simulate import Result, print_summary
 from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
+from cnc_ptp.machine.program_report import ProgramReport
+from cnc_ptp.parameters import read_machine
 from cnc_ptp.recording.reader import read_recording
 
 ROOT = Path(__file__).parents[2]
 MILL = ROOT / "config" / "mill.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
+TWO_CHANNELS = ROOT / "examples" / "spindles" / "two_channels.yaml"
 BRACKET = ROOT / "examples" / "bracket.nc"
 PROGRAM = "%p\nN10 G1 X5 F1000\nM30\n"
 
@@ -269,6 +276,47 @@ def test_duration_ends_the_run(program, tmp_path):
     assert read_recording(tmp_path / "a.mcap").last_cycle == 259
 
 
+@pytest.mark.parametrize(
+    ("duration", "note"),
+    [
+        ("0.3", "warning: P-WARN-26121 channel channel: --duration 0.3 s has cut off the program in line 3, state WAITING"),
+        ("0.05", "warning: P-WARN-26121 channel channel: --duration 0.05 s has cut off the program in line 2, state RUNNING"),
+        ("1000", None),
+    ],
+)  # fmt: skip
+def test_a_program_that_the_duration_cuts_off_is_told(duration, note, tmp_path):
+    """1 mm takes less than 0.2 s, the dwell after it half a second."""
+    path = tmp_path / "p.nc"
+    path.write_text("%p\nN10 G1 X1 F1000\nN20 G04 0.5\nM30\n")
+    result = call("simulate", MILL, "--program", path, "--duration", duration)
+    assert result.exit_code == 0
+    notes = [line for line in result.stdout.splitlines() if line.startswith("warning")]
+    assert notes == ([note] if note else [])
+
+
+def test_an_interrupted_program_is_not_cut_off_by_the_duration(tmp_path, capsys):
+    result = Result(programs={"channel": ProgramReport(done=False)}, interrupted="P-ERR-26106 interrupted")
+    print_summary(read_machine(MILL), result, 1.0, 5.0)
+    assert "P-WARN-26121" not in capsys.readouterr().out
+
+
+def test_the_program_time_of_each_channel(tmp_path):
+    """Dwells of half a second and of one."""
+    scenario = tmp_path / "s.yaml"
+    dwell = "- {{at: 0, to: {}, do: mdi, text: G04 {}}}\n".format
+    scenario.write_text(dwell("channel1", 0.5) + dwell("channel2", 1))
+    result = call("simulate", TWO_CHANNELS, "--scenario", scenario)
+    assert result.exit_code == 0
+    assert [line for line in result.stdout.splitlines() if line.startswith("program time")] == [
+        "program time channel1: 0.500 s",
+        "program time channel2: 1.000 s",
+    ]
+    result = call("simulate", TWO_CHANNELS, "--scenario", scenario, "--duration", 0.7)
+    assert result.stdout.splitlines()[-1] == (
+        "warning: P-WARN-26121 channel channel2: --duration 0.7 s has cut off the program in line 1, state WAITING"
+    )
+
+
 def test_a_run_without_anything_to_do_says_so(program, tmp_path):
     note = "note: there was nothing to do, give --program, --scenario or --duration"
     result = call("simulate", MILL)
@@ -310,14 +358,23 @@ def test_params_shows_one_or_all():
     assert "P-CHAN-00056" in call("params").output
 
 
-@pytest.mark.parametrize("name", ["simulate", "run", "check", "replay", "report", "params"])
+@pytest.fixture
+def handlers():
+    """The entry points take the interrupt; afterwards it is pytest's again."""
+    before = signal.getsignal(signal.SIGINT)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("handlers")
+@pytest.mark.parametrize("name", [*cli.main.commands, "main"])
 def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
     """`ros2 run cnc_ptp simulate ...`"""
     monkeypatch.setattr(sys, "argv", [name, "--help"])
     with pytest.raises(SystemExit) as ended:
-        getattr(cli, name)()
+        getattr(entries, name)()
     assert ended.value.code == 0
-    assert f"cnc_ptp {name}" in capsys.readouterr().out
+    assert f"Usage: cnc_ptp {'[OPTIONS]' if name == 'main' else name} " in capsys.readouterr().out
 
 
 def test_help_needs_no_numerics():
@@ -327,19 +384,35 @@ def test_help_needs_no_numerics():
     assert done.stdout == "set()\n"
 
 
-def test_an_interrupt_during_the_start_is_told(tmp_path, monkeypatch):
-    def interrupted(path):
-        raise KeyboardInterrupt
+INTERRUPTED = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
 
-    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", interrupted)
-    result = call("simulate", MILL)
-    text = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
-    assert (result.exit_code, result.stdout, result.stderr) == (1, "", text)
+
+@pytest.mark.usefixtures("handlers")
+def test_an_interrupt_during_the_start_is_told(monkeypatch, capsys):
+    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", lambda path: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr(sys, "argv", ["cnc_ptp", "simulate", str(MILL)])
+    with pytest.raises(SystemExit) as ended:
+        entries.main()
+    assert (ended.value.code, capsys.readouterr()) == (130, ("", INTERRUPTED))
+
+
+def test_an_interrupt_while_the_command_line_is_loaded_is_told(tmp_path):
+    """It comes in the first package that is loaded."""
+    (tmp_path / "click.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "cnc_ptp", "simulate", MILL],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", INTERRUPTED)
 
 
 def test_no_progress_and_no_escape_codes_without_a_terminal(program):
     done = subprocess.run(
-        [sys.executable, "-m", "cnc_ptp.cli", "simulate", MILL, "--program", program],
+        [sys.executable, "-m", "cnc_ptp", "simulate", MILL, "--program", program],
         capture_output=True,
         text=True,
         timeout=60,

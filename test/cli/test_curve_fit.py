@@ -190,7 +190,10 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
         (["--point", "12000"], "P-ERR-27041 point '12000': it is not SPEED:ACCELERATION, two numbers; nothing was fitted\n"),
         (options(POINTS[:3]), "P-ERR-27044 the polynomial needs a point at the limit speed and 3 above it, 2 above it given; nothing was fitted\n"),
         (["--csv", "/nowhere.csv"], "P-ERR-26110 point file /nowhere.csv cannot be read: No such file or directory; nothing was started\n"),
-        ([*options(POINTS), "-o", "curve.pdf"], "P-ERR-27030 curve.pdf: a picture is one of .svg, .png, .html by its ending; nothing was started\n"),
+        ([*options(POINTS), "-o", "curve.pdf"], "P-ERR-27030 curve.pdf: an output is a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml) by its ending; nothing was started\n"),
+        ([*options(POINTS), "--spindle", "s 1"], "P-ERR-27051 spindle name 's 1' must be small letters, digits and _, a letter first; nothing was fitted\n"),
+        ([*options(POINTS), "--spindle", ""], "P-ERR-27051 spindle name '' must be small letters, digits and _, a letter first; nothing was fitted\n"),
+        ([*options(POINTS), "--spindle", "plc"], "P-ERR-27051 spindle name 'plc' is taken by another node; nothing was fitted\n"),
         ([*options(POINTS), "-o", "/nowhere/a.yaml"], "P-ERR-27030 /nowhere/a.yaml cannot be written: its folder does not exist; nothing was started\n"),
     ],
 )  # fmt: skip
@@ -207,7 +210,10 @@ def test_the_points_are_not_overwritten(tmp_path):
     assert (result.exit_code, result.stderr) == (2, text)
 
 
-@pytest.mark.parametrize("arguments", [[], [*options(POINTS), "--csv", MILL], [*options(POINTS), "--a-min", -1]])
+@pytest.mark.parametrize(
+    "arguments",
+    [[], [*options(POINTS), "--csv", MILL], [*options(POINTS), "--a-min", -1], [*options(POINTS), "--gear", 6]],
+)
 def test_wrong_usage(arguments):
     result = call("curve", "fit", "polynomial", *arguments)
     assert result.exit_code == 2 and "Usage:" in result.stderr

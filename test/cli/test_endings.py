@@ -28,7 +28,7 @@ def call(*arguments):
 
 
 def command(*arguments):
-    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, arguments)]
+    return [sys.executable, "-m", "cnc_ptp", *map(str, arguments)]
 
 
 def wait_for_size(path, size):

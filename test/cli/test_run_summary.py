@@ -6,11 +6,15 @@ from types import SimpleNamespace
 import pytest
 
 from cnc_ptp.commands import run as command
+from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.commands.run import print_summary
+from cnc_ptp.machine.blocks import ChannelStateCode as C
+from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.monitor import Progress
 from cnc_ptp.parameters import read_machine
 
+ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
 
 
@@ -18,10 +22,11 @@ def reported(**more):
     return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
 
 
-def monitor(diagnostics, *, notes=(), run_failed=False):
+def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
     return SimpleNamespace(
         diagnostics=diagnostics,
-        progress=Progress(cycle=70, program_cycles=40),
+        progress=Progress(cycle=70),
+        programs=programs,
         lateness=Lateness,
         errors=[],
         notes=list(notes),
@@ -44,6 +49,18 @@ def test_axes_come_in_the_order_of_the_machine_file(capsys):
     ]
 
 
+def test_each_channel_has_its_program_time_and_is_told_when_it_was_cut_off(capsys):
+    programs = {"one": ProgramReport(40, done=True, line=3), "two": ProgramReport(70, False, 2, C.RUNNING)}
+    print_summary(read_machine(PTP), monitor({}, programs=programs), [], 0.07)
+    told = capsys.readouterr().out.splitlines()
+    assert told[1:3] == ["program time one: 0.040 s", "program time two: 0.070 s"]
+    assert told[4:] == [
+        "warning: P-WARN-26121 channel two: --duration 0.07 s has cut off the program in line 2, state RUNNING"
+    ]
+    print_summary(read_machine(PTP), monitor({}, programs=programs), ["P-ERR-26106 interrupted"], 0.07)
+    assert "P-WARN-26121" not in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(("failures", "run_failed"), [([], False), (["P-ERR-26106 interrupted"], False), ([], True)])
 def test_axes_that_stood_when_everything_was_stopped_are_no_news(failures, run_failed, capsys):
     notes = ["warning: axis x: stop without effect in Standstill", "warning: axis x: target is its position"]
@@ -59,3 +76,16 @@ def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypa
     assert command.run(str(PTP), None, None, duration, None, free_run=True, composed=False) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     assert (last == "note: there was nothing to do, give --program, --scenario or --duration") is told
+
+
+def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with RunProgress() as progress:
+        for notes in (["warning: one"], ["warning: one", "refused: P-ERR-1 [two]"]):
+            progress.tell(notes)
+    shown = capsys.readouterr().err
+    assert (shown.count("warning: one"), shown.count("refused: P-ERR-1 [two]")) == (1, 1)
+    monkeypatch.delenv("FORCE_COLOR")
+    with RunProgress() as progress:
+        progress.tell(["warning: one"])
+    assert capsys.readouterr() == ("", "")

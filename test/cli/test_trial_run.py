@@ -56,7 +56,7 @@ def test_a_fault_ends_the_run(tmp_path):
 def slow_circle(*options):
     """A circle test that takes minutes of machine time."""
     words = ["circle", MILL, "--radius", 100, "--feed", 200, "--direction", "ccw", *options]
-    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, words)]
+    return [sys.executable, "-m", "cnc_ptp", *map(str, words)]
 
 
 def test_interrupted_runs_stop_on_their_ramps_and_are_status_1():
@@ -75,7 +75,7 @@ def test_a_terminal_sees_a_bar():
     terminal, other_end = pty.openpty()
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
     words = ["circle", MILL, "--radius", 5, "--feed", 3000, "--direction", "ccw"]
-    job = [sys.executable, "-m", "cnc_ptp.cli", *map(str, words)]
+    job = [sys.executable, "-m", "cnc_ptp", *map(str, words)]
     running = subprocess.Popen(job, stdout=subprocess.DEVNULL, stderr=other_end, env=environment)
     os.close(other_end)
     shown = b""

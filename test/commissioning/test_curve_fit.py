@@ -290,19 +290,40 @@ def test_point_files_name_their_unit():
     assert parse_point_file(rpm, "a.csv") == parse_point_file(degrees, "b.csv") == PAGE_44[:2]
 
 
+HEAD = "1: the first line must name acceleration_deg_s2 and one of speed_deg_s, speed_rpm, separated by commas; it is "
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("", "1: column 'speed_deg_s' is missing; the first line must name speed_deg_s, acceleration_deg_s2"),
-        ("speed,acceleration_deg_s2\n1,2\n", "1: column 'speed_deg_s' is missing; the first line must name speed_deg_s, acceleration_deg_s2"),
-        ("speed_rpm\n1\n", "1: column 'acceleration_deg_s2' is missing; the first line must name speed_rpm, acceleration_deg_s2"),
-        ("speed_rpm,acceleration_deg_s2\n1,2\n2\n", "3: 1 values instead of 2"),
-        ("speed_rpm,acceleration_deg_s2\n1,x\n", "2: it is not SPEED:ACCELERATION, two numbers"),
+        ("", f"{HEAD}''"),
+        ("speed,acceleration_deg_s2\n1,2\n", f"{HEAD}'speed, acceleration_deg_s2'"),
+        ("speed_rpm\n1\n", f"{HEAD}'speed_rpm'"),
+        ("speed_rpm;acceleration_deg_s2\n1;2\n", f"{HEAD}'speed_rpm;acceleration_deg_s2'"),
+        ("speed_rpm,speed_deg_s,acceleration_deg_s2\n1,6,2\n", f"{HEAD}'speed_rpm, speed_deg_s, acceleration_deg_s2'"),
+        ("speed_rpm,acceleration_deg_s2,speed_rpm\n1,2,1\n", f"{HEAD}'speed_rpm, acceleration_deg_s2, speed_rpm'"),
+        ("n" * 200, f"{HEAD}'{'n' * 100}'"),
+        ("speed_rpm,acceleration_deg_s2\n1,2\n2\n", "3: '2' has 1 values instead of 2"),
+        ("speed_rpm,acceleration_deg_s2\n1,x\n", "2: speed_rpm '1' and acceleration_deg_s2 'x' are not two numbers"),
+        ("acceleration_deg_s2,speed_deg_s\n,\n8,\"1,5\"\n", "3: speed_deg_s '1,5' and acceleration_deg_s2 '8' are not two numbers"),
         ("speed_rpm,acceleration_deg_s2\n1,-2\n", "2: acceleration -2 °/s² is not above 0 and up to 1e+08"),
     ],
 )  # fmt: skip
 def test_point_files_that_are_none(text, reason):
     assert refusal(parse_point_file, text, "p.csv") == f"P-ERR-27042 point file p.csv:{reason}; nothing was fitted"
+
+
+def test_the_line_of_a_point_file_from_which_on_the_speeds_do_not_ascend():
+    text = "acceleration_deg_s2,speed_rpm\n16000,2000\n\n8000,1000\n4000,500\n"
+    assert refusal(parse_point_file, text, "p.csv") == (
+        "P-ERR-27043 point file p.csv:4: point 6000:8000 comes after 12000:16000 (°/s:°/s²), speeds must ascend; nothing "
+        "was fitted"
+    )
+
+
+def test_columns_of_other_names_are_no_speeds():
+    text = "note speed_rpm,speed_deg_s,acceleration_deg_s2\n7,12000,16000\n"
+    assert parse_point_file(text, "p.csv") == PAGE_44[:1]
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,8 @@ SHORT_SCENARIO = """
 - {at: 0.9, to: channel, do: set_override, percent: 50}
 - {at: 1.3, to: channel, do: feed_hold, on: true}
 - {at: 1.6, to: channel, do: feed_hold, on: false}
+- {at: 1.65, to: channel, do: set_override, percent: 0}
+- {at: 1.85, to: channel, do: set_override, percent: 50}
 - {at: 1.9, to: s, do: set_override, percent: 80}
 - {at: 2.0, to: channel, do: set_override, percent: 120}
 - {at: 2.1, to: x, do: move_absolute, target: 20}
@@ -86,7 +88,7 @@ def verified(path, *, whole=True):
 
 
 def command(*arguments):
-    return [sys.executable, "-m", "cnc_ptp.cli", *map(str, arguments)]
+    return [sys.executable, "-m", "cnc_ptp", *map(str, arguments)]
 
 
 def run(*arguments, expect=0):

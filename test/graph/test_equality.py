@@ -68,6 +68,12 @@ def test_graph_equals_the_offline_run(folder, offline, options):
     assert "lost 0, computed twice 0" in output
     assert states_equal(offline, recording) == []
     assert len(verified(recording).states) == 5
+    assert held_by_override(recording) == held_by_override(offline) != []
+
+
+def held_by_override(recording):
+    """Cycle and text of each warning that a program waits because of override 0."""
+    return [(event.cycle, event.text) for event in read_recording(recording).events if event.error_id == 22024]
 
 
 def test_ptp_graph_equals_the_offline_run(folder):

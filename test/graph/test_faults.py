@@ -11,7 +11,7 @@ from cnc_ptp.machine.blocks import PlcBlock, Severity
 from cnc_ptp.nodes import convert, process, supervisor
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.recorder import RecorderNode
+from cnc_ptp.nodes.recorder import RecorderNode, require_writable
 from cnc_ptp.nodes.supervisor import Job, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
@@ -141,6 +141,20 @@ def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):
         "P-ERR-26105 the nodes did not find each other within 0.1 s (not there: x, plc, clock); the run ends"
     ]
     assert all(child.poll() is not None for child in run_of._processes.values())
+
+
+def test_looking_whether_a_recording_can_be_written_changes_nothing(tmp_path):
+    new, old, link, aim = (tmp_path / name for name in ("new.mcap", "old.mcap", "link.mcap", "aim.mcap"))
+    old.write_bytes(b"before")
+    link.symlink_to(aim)
+    for path in (new, old, link):
+        require_writable(str(path))
+    assert sorted(tmp_path.iterdir()) == [link, old] and link.is_symlink() and old.read_bytes() == b"before"
+    with pytest.raises(CncError) as refused:
+        require_writable(str(tmp_path))
+    assert (
+        str(refused.value) == f"P-ERR-26113 recording {tmp_path} cannot be written: Is a directory; nothing was started"
+    )
 
 
 @pytest.mark.parametrize(

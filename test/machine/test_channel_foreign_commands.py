@@ -286,6 +286,8 @@ def test_a_reset_does_not_stop_what_another_channel_has_taken_over() -> None:
 
 def test_what_the_reset_channel_has_waiting_is_forgotten() -> None:
     """The second channel changes the gear; the order of the first one waits when that is reset."""
+    machine = mill(m3=MVS_SVS)
+    second = replace(machine.channels["channel"], name="second", axes=())
     bench = MachineBench(
         None,
         MANUAL
@@ -295,7 +297,7 @@ def test_what_the_reset_channel_has_waiting_is_forgotten() -> None:
 - {at: 1, to: channel, do: reset}
 - {at: 1.5, to: s, do: gear_changed}
 """,
-        machine=mill(m3=MVS_SVS),
+        machine=replace(machine, channels={**machine.channels, "second": second}),
         end_when_idle=False,
     ).run(3.0)
     assert bench.last("s").gear[-1] == 2 and set(bench.column("s", "set_speed_rpm")[1000:]) == {0.0}

@@ -120,6 +120,12 @@ FAULTS = [
         "axis x: move_absolute refused: unknown argument 'taget'; nothing was changed. Known: target, velocity, "
         "acceleration, deceleration, jerk",
     ),
+    (
+        "- {at: 0, to: s, do: stop, source: plcs}",
+        "spindle s: stop refused: unknown source 'plcs'; nothing was changed. Known: plc, channel",
+    ),
+    ("- {at: 0, to: s, do: stop, source: 1}", "spindle s: stop refused: source = 1 is not a source; nothing was "
+     "changed"),
     ("- {at: 0, to: plc, do: acknowledge, id: one}", "plc plc: acknowledge refused: id = 'one' is not an integer; "
      "nothing was changed"),
     ("- {at: 0, at: 1, to: x, do: stop}", "'at' stands twice in the entry"),

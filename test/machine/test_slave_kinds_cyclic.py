@@ -223,7 +223,7 @@ def test_cam_refusals() -> None:
 FILES = {
     "": "1: column 'master' is missing; the first line must name master, slave",
     "master,slave,slave\n": "1: column 'slave' stands twice; the first line must name master, slave",
-    "master,slave\n0,0\n1\n": "3: 1 values instead of 2",
+    "master,slave\n0,0\n1\n": "3: '1' has 1 values instead of 2",
     "master,slave\n0,0\n1,x\n": "3: '1, x' are not two numbers",
     "master,slave\n0,0\n1,nan\n2,2\n": "3: '1, nan' are not two finite numbers",
     "master,slave\n0,0\n1,1\n1,2\n2,2\n": "4: master position 1 comes after 1; a cam table must ascend by 1e-06 or more",

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from machine_support import UnitBench, spindle_bench
+from channel_spindle_support import two_channels
+from machine_support import MachineBench, UnitBench, spindle_bench
 from spindle_support import bench_of, first_cycle, two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
@@ -28,17 +29,17 @@ def acknowledged(bench: UnitBench) -> list[tuple[int, int]]:
     return [pair for pair, before in zip(pairs, [None, *pairs], strict=False) if pair != before]
 
 
-@pytest.mark.parametrize(
-    ("command", "arguments"),
-    [
-        ("start", {"direction": "cw", "speed_rpm": 2000.0}),
-        ("set_speed", {"speed_rpm": 2000.0}),
-        ("stop", {}),
-        ("orient", {"position_deg": 0.0}),
-        ("home", {}),
-        ("select_gear", {"stage": 1}),
-    ],
-)
+MOTION_COMMANDS: list[tuple[str, dict[str, Any]]] = [
+    ("start", {"direction": "cw", "speed_rpm": 2000.0}),
+    ("set_speed", {"speed_rpm": 2000.0}),
+    ("stop", {}),
+    ("orient", {"position_deg": 0.0}),
+    ("home", {}),
+    ("select_gear", {"stage": 1}),
+]
+
+
+@pytest.mark.parametrize(("command", "arguments"), MOTION_COMMANDS)
 def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     """The first one has the spindle until its speed is reached; then anybody may have it."""
     bench, undisturbed = spindle_bench(), spindle_bench()
@@ -249,3 +250,21 @@ def test_who_has_commanded_a_gear_change_hears_that_it_was_overtaken(
     text = f"spindle s: {by} while the PLC changes the gear for 'one'; the spindle stays at rest"
     assert bench.last.refused == [f"one: P-ERR-24017 {text}"]
     assert bench.events[-1].text == text
+
+
+def test_a_source_that_the_machine_does_not_have() -> None:
+    """The PLC and the channels of the machine are known, nobody else."""
+    machine = two_channels()
+    disturbed, undisturbed = (MachineBench(machine=machine, end_when_idle=False) for _ in range(2))
+    for bench in (disturbed, undisturbed):
+        assert bench.give("s", "start", direction="cw", speed_rpm=500.0, source="second").accepted
+    for command, arguments in MOTION_COMMANDS:
+        assert disturbed.refused("s", command, **arguments, source="third") == (
+            f"P-ERR-22001 spindle s: {command} refused: unknown source 'third'; nothing was changed. Known: plc, channel, "
+            "second"
+        )
+    for bench in (disturbed, undisturbed):
+        bench.run(0.2)
+    for name in ("set_speed_rpm", "status_bits", "state"):
+        assert disturbed.column("s", name) == undisturbed.column("s", name)
+    assert disturbed.give("s", "stop", source="").accepted

@@ -1,0 +1,36 @@
+"""Entry points of the command line. Everything that takes time to load comes behind the handler of the interrupt."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable
+
+from cnc_ptp.interrupt import end_command
+
+
+def _entry(*command: str) -> Callable[[], object]:
+    """`cnc_ptp`, or one of its commands for itself, so that `ros2 run cnc_ptp simulate ...` serves the same."""
+
+    def call() -> object:
+        signal.signal(signal.SIGINT, end_command)
+        from cnc_ptp.cli import main
+
+        return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")
+
+    return call
+
+
+main = _entry()
+simulate = _entry("simulate")
+run = _entry("run")
+check = _entry("check")
+replay = _entry("replay")
+report = _entry("report")
+params = _entry("params")
+identify = _entry("identify")
+circle = _entry("circle")
+curve = _entry("curve")
+
+if __name__ == "__main__":
+    main()
