@@ -42,6 +42,8 @@ DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "dece
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
 """For whom a spindle is to do it: the name of a channel, or plc for the external commanding of the PLC."""
+OWNER: Arguments = {"owner": Argument("source", required=False)}
+"""Whose coupling it is."""
 OPTIONAL_SWITCH = Argument("switch", required=False)
 CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
 COUPLING: Arguments = {
@@ -133,9 +135,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         },
         "reset_limits": {},
         "stop_at_program_end": {"on": SWITCH},
-        "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER},
+        "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER, **OWNER},
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
-        "decouple": {},
+        "decouple": {**OWNER},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "reset": {},
@@ -167,7 +169,7 @@ COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flyin
 """Commands that make a slave of an axis."""
 INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
-OF_CHANNELS = frozenset({"own", "resume"})
+OF_CHANNELS = frozenset({"own", "resume", "owner"})
 """Arguments of spindle commands that channels give; services do not have them."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}

@@ -8,7 +8,7 @@ before M3, M4, M5, and these before S. Feedforward and compensations of axes act
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from enum import Enum
 
 from cnc_ptp.machine.blocks import Block, Command, HandshakeRequest, SpindleBit, SpindleBlock
@@ -49,6 +49,8 @@ class FunctionOutput:
         self._channel = channel
         self._request_numbers = request_numbers
         self.spindles = SpindleOutput(channel, units)
+        self._leaders: dict[str, str] = {}
+        """Slave -> master, by name, of couplings that have ended with the program."""
 
     @property
     def channel(self) -> str:
@@ -92,18 +94,24 @@ class FunctionOutput:
             for node, block in feedback.items()
             if isinstance(block, SpindleBlock) and block.status_bits[-1] & SpindleBit.STOP_AT_PROGRAM_END
         ]
-        return self._stop(wanted, source)
+        leaders, self._leaders = self._leaders, {}
+        turning = self.spindles.turning
+        return self._stop([name for name in turning if self.spindles[leaders.get(name, name)].node in wanted], source)
 
     def at_abort(self, source: Source, keep: Container[str] = ()) -> Outputs:
-        """M05 for every spindle that the channel has set turning, except the nodes in `keep`; couplings end."""
-        outputs = self._stop([node for node in self.spindles.turning if node not in keep], source)
-        outputs.commands += self.spindles.decouple_all()
+        """M05 for every spindle that the channel has set in motion, except the nodes in `keep`; couplings end first,
+        so that a slave stops whoever has commanded its master.
+        """
+        self._leaders = {}
+        names = [name for name in self.spindles.concern if self.spindles[name].node not in keep]
+        outputs = self._stop(names, source)
+        outputs.commands = self.spindles.decouple_all() + outputs.commands
         return outputs
 
-    def _stop(self, nodes: Container[str], source: Source) -> Outputs:
+    def _stop(self, names: Iterable[str], source: Source) -> Outputs:
         """The PLC need not acknowledge: nobody waits for it any more."""
         outputs = Outputs()
-        for name in self.spindles.give_up(nodes):
+        for name in names:
             spindle = self.spindles[name]
             outputs.commands += self.spindles.stop(name)
             outputs.told.append(Wait(spindle.node))
@@ -128,9 +136,11 @@ class FunctionOutput:
                 if function.command == "home":
                     outputs.told.append(Wait(self.spindles[function.spindle].node))
             case SpindleLink():
-                command, wait = self.spindles.link(function)
-                outputs.commands.append(command)
+                commands, wait = self.spindles.link(function)
+                outputs.commands += commands
                 outputs.add_wait(WAIT_BEFORE, wait)
+                if commands and not function.on and block.stop == "end":
+                    self._leaders[function.slave] = function.master
             case AuxiliaryFunction():
                 self._auxiliary(function, block, outputs)
             case AxisFeedforward() | CompensationSwitch():

@@ -24,6 +24,7 @@ NO_SOURCE = Source("", 0, 0, "")
 NO_MEASURING_EVENT = 22017
 COMMANDED_BY_OTHERS = 22022
 SPEED_WITHOUT_EFFECT = 22023
+COUPLING_ENDED = 22025
 
 
 class Phase(Enum):
@@ -103,6 +104,7 @@ class ProgramSequence:
         self.phase = Phase.RAMP_DOWN
         self._awaits_event = False
         self._outputs = Outputs(commands=[command for command in self._outputs.commands if command.command in ENDS])
+        self._functions.spindles.concern.withdraw()
         self._unsent = []
         if moving:
             self._motion.stop()
@@ -152,11 +154,14 @@ class ProgramSequence:
             wait.sent_cycle = first_cycle
         self._unsent = []
         self._watch.note(outputs.told, first_cycle)
+        self._functions.spindles.concern.send(first_cycle)
         return outputs
 
     def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
         """Blocks that the spindles have reported for the cycles before `cycle`."""
         self._feedback = feedback
+        ended = list(self._functions.spindles.read(cycle, feedback))
+        self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program goes on") for text in ended]
         self._watch.read(cycle, feedback)
         if self.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
             waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
@@ -220,11 +225,20 @@ class ProgramSequence:
         outputs = self._functions.of_block(self._block, Moment.AFTER) if self._block else Outputs()
         self._queue(outputs)
         self._waits, self._waits_after = self._waits_after + outputs.waits_after, []
+        if self._block is not None and self._block.stop == "end":
+            self._waits += self._answers()
         self.phase = Phase.WAIT_AFTER
+
+    def _answers(self) -> list[Wait]:
+        """The program ends when the spindles have had a block in which to refuse what they were told."""
+        answers = [Wait(wait.spindle, sent_cycle=wait.sent_cycle) for wait in self._watch.told]
+        unsent = [Wait(wait.spindle) for wait in self._outputs.told]
+        self._unsent += unsent
+        return answers + unsent
 
     def _begin_block(self) -> None:
         if self.blocks_done >= len(self.blocks):
-            self._waits = self._late_waits(machining=True, explicit=True)
+            self._waits = self._late_waits(machining=True, explicit=True) + self._answers()
             self.phase = Phase.WAIT_END
             return
         self._block = block = self.blocks[self.blocks_done]

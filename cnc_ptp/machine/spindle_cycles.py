@@ -129,21 +129,22 @@ class SpindleCycles:
         return not spindle.speed_was_reached and spindle.state in (S.CONTINUOUS_MOTION, S.STANDSTILL)
 
     def _watch_speed(self, cycle: int, reached: bool) -> None:
-        """Time monitoring: an error when the speed does not come (P-MACH-00050)."""
+        """Time monitoring: an error when the speed does not come, or does not come back (P-MACH-00050)."""
         spindle = self._spindle
+        spindle.note_speed(cycle, reached)
         if not self._awaits_speed:
             return
-        spindle.speed_was_reached = reached
         patience = spindle.parameters.speed_time / spindle.cycle_time
         held = spindle.wanted_speed == 0.0 and spindle.programmed_speed != 0.0
-        if reached or held or not patience or spindle.cycles_since_end(cycle) < patience:
+        if held or not patience or spindle.cycles_without_speed(cycle) < patience:
             return
         wanted = spindle.wanted_speed / DEG_S_PER_RPM
-        reason = (
-            f"speed {wanted:g} rpm was not reached {spindle.parameters.speed_time:g} s after the setpoint got there"
-        )
+        seconds = f"{spindle.parameters.speed_time:g} s"
+        missing = f"was not reached {seconds} after the setpoint got there"
+        if spindle.speed_lost_at > -inf:
+            missing = f"was lost and has not come back for {seconds}"
         limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
-        spindle.fault(cycle, SPEED_NOT_REACHED, f"{reason} ({limit}, P-MACH-00050)")
+        spindle.fault(cycle, SPEED_NOT_REACHED, f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)")
 
     def _in_position(self, actual: float) -> bool:
         spindle = self._spindle
@@ -206,7 +207,7 @@ class SpindleCycles:
         """The time for reaching the speed (P-MACH-00050) is over until `last_cycle`, if it is not reached before."""
         spindle = self._spindle
         patience = spindle.parameters.speed_time / spindle.cycle_time
-        late = bool(patience) and spindle.cycles_since_end(last_cycle) >= patience
+        late = bool(patience) and spindle.cycles_without_speed(last_cycle) >= patience
         return late and self._awaits_speed
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
@@ -244,8 +245,11 @@ class SpindleCycles:
             [state] * n,
             [spindle.error_id] * n,
         ]
+        if not all(reached) or not spindle.speed_was_reached:
+            for cycle, there in enumerate(reached, first_cycle):
+                spindle.note_speed(cycle, there)
         if spindle.unsettled and n:
-            self._settle(first_cycle + n - 1, any(reached))
+            self._settle(first_cycle + n - 1)
         return columns
 
     def _speeds_reached(self, actual_speeds: list[float]) -> list[bool]:
@@ -256,9 +260,6 @@ class SpindleCycles:
         band = self._spindle.parameters.speed_reached_band * abs(wanted)
         return [abs(speed - wanted) <= band for speed in actual_speeds]
 
-    def _settle(self, last_cycle: int, reached: bool) -> None:
-        spindle = self._spindle
-        if self._awaits_speed:
-            spindle.speed_was_reached = reached
+    def _settle(self, last_cycle: int) -> None:
         self._orders.watch()
         self._note_settled(last_cycle)

@@ -7,11 +7,12 @@ Source: TF5200 spindle 2.2, 2.4.1, 2.5, 2.8.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cnc_ptp.machine.blocks import Block, Command, SpindleBlock
 from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.machine.spindle_concern import SpindleConcern
 from cnc_ptp.machine.spindle_reports import Condition
 from cnc_ptp.machine.waits import StoredSpeed, Wait
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
@@ -35,12 +36,41 @@ class SpindleOutput:
         self._channel = channel
         self._spindles = {spindle.name: spindle for spindle in channel.spindles}
         self._units = units
+        self.concern = SpindleConcern(channel.name)
+        """What is to be stopped with the program."""
         self._directions: dict[str, str] = {}
+        """As the program knows it: what turns, and how."""
         self._standing_after_gear: set[str] = set()
         """A gear change has ended their rotation: the next speed starts them again."""
         self._full_override: set[str] = set()
         self._masters: dict[str, str] = {}
         """Slave -> master, both by name."""
+        self._coupled: set[str] = set()
+        """Slaves that have reported their master."""
+
+    # what the spindles report
+
+    def read(self, cycle: int, feedback: Mapping[str, Block]) -> Iterator[str]:
+        """Blocks for the cycles before `cycle`; a text for each coupling of the channel that others have ended."""
+        for name, spindle in self._spindles.items():
+            block = feedback.get(spindle.node)
+            if not isinstance(block, SpindleBlock):
+                continue
+            self.concern.read(cycle, name, block, follows=name in self._masters)
+            master = self._masters.get(name)
+            if master is None:
+                continue
+            if block.master == self[master].node:
+                self._coupled.add(name)
+            elif name in self._coupled:
+                self._release(name)
+                yield f"spindle {spindle.node} does not follow {self[master].node} any more"
+
+    def _release(self, slave: str) -> None:
+        self._masters.pop(slave, None)
+        self._coupled.discard(slave)
+
+    # functions
 
     def __getitem__(self, name: str) -> ChannelSpindle:
         return self._spindles[name]
@@ -74,12 +104,17 @@ class SpindleOutput:
 
     def acts(self, function: SpindleFunction) -> bool:
         """False for an S word while the spindle stands: the speed counts for the next M3 or M4. Notes the rotation."""
-        if function.m in DIRECTIONS:
-            self._directions[function.spindle] = DIRECTIONS[function.m]
-        elif function.m is not None:
-            self._directions.pop(function.spindle, None)
+        name = function.spindle
         if function.m is None:
-            return function.spindle in self._directions and function.speed_rpm is not None
+            return name in self._directions and function.speed_rpm is not None
+        if function.m in DIRECTIONS:
+            self._directions[name] = DIRECTIONS[function.m]
+        else:
+            self._directions.pop(name, None)
+        if function.m == 5 and self[name].plc_control:
+            self.concern.drop(name)
+        else:
+            self.concern.add(name)
         return True
 
     def stored(self, function: SpindleFunction) -> list[StoredSpeed]:
@@ -142,6 +177,7 @@ class SpindleOutput:
         """G74, DEFAULT_DYNAMIC_DATA: nobody waits for them."""
         if function.command == "home":
             self._directions.pop(function.spindle, None)
+            self.concern.add(function.spindle)
         if function.spindle in self._masters:
             return []
         return [self._command(self[function.spindle].node, function.command)]
@@ -171,42 +207,45 @@ class SpindleOutput:
             return None
         if change.spindle in self._directions:
             self._standing_after_gear.add(change.spindle)
+        self.concern.add(change.spindle)
         wait = Wait(node, Condition.GEAR, change.stage)
         return self._command(node, "select_gear", stage=change.stage, resume=False), wait
 
     # synchronous operation
 
-    def link(self, link: SpindleLink) -> tuple[Command, Wait]:
-        """Begin and end of a coupling: the path goes on when the slave reports it."""
+    def link(self, link: SpindleLink) -> tuple[list[Command], Wait]:
+        """Begin and end of a coupling: the path goes on when the slave reports it. What others have ended is over."""
         slave, master = self[link.slave].node, self[link.master].node
         if link.on:
             self._masters[link.slave] = link.master
-            command = self._command(slave, "couple", master=master)
-            return command, Wait(slave, Condition.MASTER, master=master)
-        self._masters.pop(link.slave, None)
-        return self._command(slave, "decouple"), Wait(slave, Condition.ALONE)
+            command = Command(slave, "couple", {"master": master, "owner": self._channel.name})
+            return [command], Wait(slave, Condition.MASTER, master=master)
+        return self._decouple(link.slave), Wait(slave, Condition.ALONE)
+
+    def _decouple(self, slave: str) -> list[Command]:
+        if slave not in self._masters:
+            return []
+        self._release(slave)
+        return [Command(self[slave].node, "decouple", {"owner": self._channel.name})]
 
     # ends
 
     def decouple_all(self) -> list[Command]:
         """Ends all couplings of the channel at once: its program was aborted."""
-        slaves, self._masters = list(self._masters), {}
-        return [self._command(self[slave].node, "decouple") for slave in slaves]
-
-    def give_up(self, nodes: Container[str]) -> list[str]:
-        """Names of those of `nodes` that the channel has set turning; from now on they are none of its concern."""
-        names = [name for name in self._directions if self[name].node in nodes]
-        for name in names:
-            del self._directions[name]
-        self._standing_after_gear -= set(names)
-        return names
+        return [command for slave in list(self._masters) for command in self._decouple(slave)]
 
     def stop(self, name: str) -> list[Command]:
-        """M05, unless somebody else has commanded the spindle since; none where there is no unit."""
+        """M05, unless somebody else has commanded the spindle since; none where there is no unit.
+
+        From now on the spindle is none of the channel's concern.
+        """
+        self.concern.drop(name)
+        self._directions.pop(name, None)
+        self._standing_after_gear.discard(name)
         spindle = self[name]
         return [] if spindle.plc_control else [self._command(spindle.node, "stop", own=True)]
 
     @property
-    def turning(self) -> set[str]:
-        """Nodes of the spindles that the channel has set turning."""
-        return {self[name].node for name in self._directions}
+    def turning(self) -> list[str]:
+        """Names of the spindles that turn, as the program knows it."""
+        return list(self._directions)

@@ -90,6 +90,11 @@ def held_by_override(block: SpindleBlock) -> bool:
     return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
 
 
+def at_rest(block: SpindleBlock, channel: str) -> bool:
+    """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is in work for `channel`."""
+    return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel
+
+
 def turns(block: SpindleBlock) -> bool:
     """In endless rotation."""
     return block.state[-1] == S.CONTINUOUS_MOTION

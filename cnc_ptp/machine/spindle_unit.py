@@ -91,7 +91,7 @@ class SpindleUnit(Unit):
     def command(self, command: Command, cycle: int) -> CommandRecord:
         """As every unit; the source of a refused command finds the refusal in the next block."""
         record = super().command(command, cycle)
-        source = command.arguments.get("source")
+        source = command.arguments.get("source") or command.arguments.get("owner")
         if not record.accepted and source and command.command != "upstream_lost":
             self._refused.append(f"{source}: P-ERR-{record.error_id} {record.message}")
         return record
@@ -116,6 +116,8 @@ class SpindleUnit(Unit):
             return (
                 f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
             )
+        if own:
+            arguments["own"] = True
         self._orders.check(command, source, self._coupling.master)
         order = Order(command, arguments, source, self.next_order)
         self.next_order += 1
@@ -194,19 +196,21 @@ class SpindleUnit(Unit):
             self._tell_overtaken(cycle, "power off")
             self._orders.clear()
             if self.spindle.work.gear_request:
-                self._passed_on.append(Command(self.name, "stop", {}))
+                self._passed_on.append(Command(self.name, "stop", {"own": True}))
         return self._power.do_power(cycle, on=on)
 
     def do_reset(self, cycle: int) -> None:
         """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
         self._power.do_reset(cycle)
         self._orders.clear()
-        self._passed_on.append(Command(self.name, "stop", {}))
+        self._passed_on.append(Command(self.name, "stop", {"own": True}))
 
-    def do_decouple(self, cycle: int) -> None:
+    def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """As CouplingCommands.do_decouple; what waits because the master was told so is forgotten."""
-        self._coupling.do_decouple(cycle)
-        self._orders.forget_master()
+        message = self._coupling.do_decouple(cycle, owner=owner)
+        if message is None:
+            self._orders.leave_master(self._coupling.owner)
+        return message
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
@@ -269,7 +273,7 @@ class SpindleUnit(Unit):
 
     def _act_as_slave(self, cycle: int, order: Order) -> None:
         """What the slave cannot do is an error."""
-        self._orders.commander = order.commander
+        self._orders.obey(order)
         try:
             self._group_handler(order.command)(cycle, **order.arguments)
         except CncError as error:

@@ -27,6 +27,11 @@ class SpindleWatch:
             if wait.condition is not Condition.SPEED:
                 self._turned.discard(wait.spindle)
 
+    @property
+    def told(self) -> list[Wait]:
+        """The last command to each spindle that has gone out."""
+        return list(self._told.values())
+
     def forget(self) -> None:
         """What earlier programs have commanded is of no concern any more."""
         self._told.clear()

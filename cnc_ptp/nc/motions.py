@@ -190,7 +190,7 @@ class _Arc:
 
 def dwell(channel: Channel, state: ModalState, block: Block, code: GCode) -> Dwell:
     """G04, alone in its block: seconds as a bare number, by the first main axis or F; revolutions by S."""
-    times = {word: value for word, value in block.words.items() if word in ("F", "S", channel.axes[0])}
+    times = {word: value for word, value in block.words.items() if word in ("F", "S", *channel.axes[:1])}
     others = [word for word in block.words if word not in times]
     others += [m.name for m in block.m] + [words.name for words in (*block.spindles, *block.controls)]
     others += [other.name for other in block.codes if other is not code]

@@ -97,4 +97,20 @@ def tool_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
             yield problem(channel, errors.NO_SUCH_AXIS, "P-TOOL-00012", (tool,), text)
 
 
-SPINDLE_LIST_CHECKS = (one_synchronisation, gear_synchronisation, gear_records, coupled_pairs, tool_spindles)
+def tool_speeds(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
+    """The lowest speed of a tool against the highest, where that is given; without it there is none."""
+    for tool in channel.used_indexes("wz"):
+        low, high = (channel.number(number, tool) for number in ("P-TOOL-00013", "P-TOOL-00014"))
+        if channel.is_given("P-TOOL-00014", tool) and low > high:
+            text = f"value {low} is above the maximum {high} (0.001°/s) of P-TOOL-00014 wz[{tool}].vb_max"
+            yield problem(channel, errors.CONTRADICTION, "P-TOOL-00013", (tool,), text)
+
+
+SPINDLE_LIST_CHECKS = (
+    one_synchronisation,
+    gear_synchronisation,
+    gear_records,
+    coupled_pairs,
+    tool_spindles,
+    tool_speeds,
+)

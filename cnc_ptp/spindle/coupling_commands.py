@@ -24,6 +24,7 @@ from cnc_ptp.spindle.spindle import Spindle
 PASSED_ON = ("start", "set_speed", "stop", "orient", "home")
 """Commands of a master that its slaves carry out too."""
 OPPOSITE = {"cw": "ccw", "ccw": "cw"}
+SMALLEST_RATIO, LARGEST_RATIO = 1e-6, 1e6
 
 
 class CouplingCommands:
@@ -35,12 +36,16 @@ class CouplingCommands:
         self._spindles = spindles
         self.master = ""
         self.wanted = ""
+        self.owner = ""
+        """The channel that has coupled the spindle, empty for people."""
         self._ratio = self._wanted_ratio = 1.0
 
-    def do_couple(self, cycle: int, *, master: str, factor_num: float = 1.0, factor_den: float = 1.0) -> None:
+    def do_couple(
+        self, cycle: int, *, master: str, factor_num: float = 1.0, factor_den: float = 1.0, owner: str = ""
+    ) -> None:
         """Asks for a coupling to `master` with speeds and positions times factor_num / factor_den.
 
-        Refused with 24003, 24019–24021 and 24027.
+        `owner`: the channel that couples. Refused with 24003, 24019–24021 and 24027.
         """
         spindle = self._spindle
         spindle.require_ready("couple")
@@ -52,10 +57,14 @@ class CouplingCommands:
         for name, value in (("factor_num", factor_num), ("factor_den", factor_den)):
             if value == 0.0:
                 spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0")
+        ratio = factor_num / factor_den
+        if not SMALLEST_RATIO <= abs(ratio) <= LARGEST_RATIO:
+            bounds = f"within ±{SMALLEST_RATIO:g} ... ±{LARGEST_RATIO:g}"
+            spindle.refuse("couple", BAD_RATIO, f"factor_num / factor_den = {ratio:g} is not {bounds}")
         if self.master or self.wanted:
             reason = f"the spindle is a slave of {self.master or self.wanted}; decouple it first"
             spindle.refuse("couple", COUPLED_ALREADY, reason)
-        self.wanted, self._wanted_ratio = master, factor_num / factor_den
+        self.wanted, self._wanted_ratio, self.owner = master, ratio, owner
 
     def do_coupling_answer(self, cycle: int, *, granted: bool, reason: str) -> None:
         """The PLC: the coupling that was asked for begins, or not and why (24024)."""
@@ -66,11 +75,16 @@ class CouplingCommands:
             text = f"spindle {self._spindle.name}: not coupled to {master}: {reason}; nothing was changed"
             self._spindle.report_warning(cycle, COUPLING_CHAIN, text)
 
-    def do_decouple(self, cycle: int) -> None:
-        """The spindle goes on as it is, on its own. Refused with 24023."""
+    def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
+        """The spindle goes on as it is, on its own; a channel ends its own couplings only. Refused with 24023."""
+        if owner and owner != self.owner:
+            return f"spindle {self._spindle.name}: decouple without effect, it was not '{owner}' who has coupled it"
         if not (self.master or self.wanted):
+            if owner:
+                return f"spindle {self._spindle.name}: decouple without effect, the spindle is not coupled any more"
             self._spindle.refuse("decouple", NOT_COUPLED, "the spindle is not coupled")
         self.master = self.wanted = ""
+        return None
 
     def of_slave(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Arguments of the master's command, as they are for this spindle."""

@@ -46,6 +46,8 @@ class Orders:
         """For whom the spindle is at work: until its speed, position, reference or gear is there."""
         self.commander = ""
         """Who has commanded the spindle last, itself or as a slave; empty for people."""
+        self.obeys_master = False
+        """What the spindle does was told to its master."""
         self.taken = 0
         """Commands of the PLC so far."""
 
@@ -84,7 +86,7 @@ class Orders:
         job = self._spindle.work.job
         self.source = source
         if job is None or not job.resume:
-            self.commander = source
+            self.commander, self.obeys_master = source, False
         self._spindle.unsettled = True
 
     def next(self) -> Order | None:
@@ -100,9 +102,19 @@ class Orders:
         """What waits for `source`, itself or as a slave's, is not carried out."""
         self.waiting = deque(order for order in self.waiting if order.commander != source)
 
+    def obey(self, order: Order) -> None:
+        """The spindle does what its master was told."""
+        self.commander, self.obeys_master = order.commander, True
+
     def forget_master(self) -> None:
         """What waits because the master was told so is not carried out."""
         self.waiting = deque(order for order in self.waiting if order.master_source is None)
+
+    def leave_master(self, owner: str) -> None:
+        """The coupling is over: what goes on because the master was told so is in the hands of who has coupled."""
+        self.forget_master()
+        if self.obeys_master:
+            self.commander, self.obeys_master = owner, False
 
     def clear(self) -> None:
         """A stop, a reset or an error: nothing that waits is carried out."""

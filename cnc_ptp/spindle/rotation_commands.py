@@ -19,6 +19,13 @@ from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
 from cnc_ptp.spindle.states import SpindleMode
 from cnc_ptp.spindle.tool_limits import ToolLimits
 
+LIMIT_RANGES = {
+    "max_speed_rpm": (1e-3 / DEG_S_PER_RPM, 2e6 / DEG_S_PER_RPM, "P-TOOL-00014"),
+    "min_speed_rpm": (0.0, 2e6 / DEG_S_PER_RPM, "P-TOOL-00013"),
+    "max_acceleration": (1.0, 1e8, "P-TOOL-00015"),
+}
+"""What a tool may say: rpm, °/s²."""
+
 
 class RotationCommands:
     """`start`, `set_speed`, `stop`, override, limits of the tool, and what happens at the program's end."""
@@ -57,10 +64,11 @@ class RotationCommands:
         used_rpm = used / DEG_S_PER_RPM
         return f"spindle {self._spindle.name}: speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
 
-    def do_stop(self, cycle: int) -> None:
-        """M05: down to speed 0; after the control limit was exceeded the spindle homes before it stops.
+    def do_stop(self, cycle: int, *, own: bool = False) -> None:
+        """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.
 
-        While the PLC changes the gear the spindle stands; it stays at rest afterwards.
+        `own`: at an abort or reset; then nothing is homed. While the PLC changes the gear the spindle stands; it stays
+        at rest afterwards.
         """
         spindle = self._spindle
         if spindle.work.gear_request:
@@ -68,7 +76,8 @@ class RotationCommands:
             return
         if spindle.state in (S.ERROR_STOP, S.DISABLED):
             return
-        if spindle.reference_lost and spindle.parameters.automatic_homing and spindle.state == S.CONTINUOUS_MOTION:
+        turns = spindle.state == S.CONTINUOUS_MOTION and spindle.motion(cycle)[1] != 0.0
+        if turns and not own and spindle.reference_lost and spindle.parameters.automatic_homing:
             self._jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
         else:
             spindle.stop(cycle)
@@ -80,11 +89,15 @@ class RotationCommands:
         if not 0.0 <= percent <= limit:
             reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
             spindle.refuse("set_override", BAD_OVERRIDE, reason)
+        if percent == spindle.override_percent:
+            return None
         spindle.override_percent = float(percent)
         return self._override_changed(cycle, f"override {percent} %")
 
     def do_suppress_override(self, cycle: int, *, on: bool) -> str | None:
         """G167: the override does not act (100 %) until it is switched off again."""
+        if on == self._spindle.override_suppressed:
+            return None
         self._spindle.override_suppressed = on
         return self._override_changed(cycle, f"override suppression {'on' if on else 'off'}")
 
@@ -106,12 +119,12 @@ class RotationCommands:
     ) -> None:
         """Limits of a tool (P-TOOL-00013 … 00015), from standstill on; what is left out is free. Refused: 24018."""
         spindle = self._spindle
-        given = {"max_speed_rpm": max_speed_rpm, "max_acceleration": max_acceleration}
+        given = {"max_speed_rpm": max_speed_rpm, "min_speed_rpm": min_speed_rpm, "max_acceleration": max_acceleration}
         for name, value in given.items():
-            if value is not None and not value > 0.0:
-                spindle.refuse("set_limits", BAD_TOOL_LIMITS, f"{name} = {value} must be greater than 0")
-        if min_speed_rpm is not None and min_speed_rpm < 0.0:
-            spindle.refuse("set_limits", BAD_TOOL_LIMITS, f"min_speed_rpm = {min_speed_rpm} must not be negative")
+            low, high, parameter = LIMIT_RANGES[name]
+            if value is not None and not low <= value <= high:
+                reason = f"{name} = {value} is not within {low:g} ... {high:g} ({parameter})"
+                spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)
         if None not in (min_speed_rpm, max_speed_rpm) and float(min_speed_rpm or 0) > float(max_speed_rpm or 0):
             reason = f"min_speed_rpm = {min_speed_rpm} is above max_speed_rpm = {max_speed_rpm}"
             spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)

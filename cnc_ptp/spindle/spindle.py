@@ -72,6 +72,8 @@ class Spindle:
         self.target: float | None = None
         """Where positioning is to end, or has ended."""
         self.speed_was_reached = True
+        self.speed_lost_at = -inf
+        """First cycle in which a speed that was reached was there no more."""
         self.unsettled = True
         """Something may happen in the next cycles besides following the setpoint."""
         self.work = Work()
@@ -102,6 +104,18 @@ class Spindle:
     def cycles_since_end(self, cycle: int) -> float:
         """Cycles since the table has come to its end speed."""
         return cycle - self._origin - self._table.duration / self.cycle_time
+
+    def cycles_without_speed(self, cycle: int) -> float:
+        """Cycles for which the actual speed has been missing, from the end of the table on."""
+        return min(self.cycles_since_end(cycle), cycle - self.speed_lost_at)
+
+    def note_speed(self, cycle: int, reached: bool) -> None:
+        """Whether the actual speed is there; a rotation can lose it again."""
+        if reached:
+            self.speed_was_reached = True
+        elif self.speed_was_reached and self.state == S.CONTINUOUS_MOTION:
+            self.speed_was_reached, self.speed_lost_at = False, cycle
+            self.unsettled = True
 
     def follow(self, cycle: int, table: SpeedTable) -> None:
         """The setpoints come from `table` from `cycle` on."""
@@ -144,15 +158,18 @@ class Spindle:
         self.wanted_speed = self.limits.endless(self.programmed_speed * self.override)
         if abs(self.wanted_speed) > self.parameters.velocity_control_on and not self.parameters.open_loop:
             self.loop.velocity_control = True
-        self.speed_was_reached = False
+        self._await_speed()
         self.ramp_to(cycle, self.wanted_speed)
+
+    def _await_speed(self) -> None:
+        self.speed_was_reached, self.speed_lost_at = False, -inf
 
     def stop(self, cycle: int) -> None:
         """Down to speed 0 at once; a job in work is given up."""
         self.end_job()
         self.mode = SpindleMode.STOP
         self.programmed_speed = self.wanted_speed = 0.0
-        self.speed_was_reached = False
+        self._await_speed()
         self.state = S.STOPPING
         self.ramp_to(cycle, 0.0)
 
@@ -209,7 +226,7 @@ class Spindle:
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
-        had_job = self.work.job is not None
+        had_job = self.work.job is not None or not self.speed_was_reached
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
         self.stop(cycle)
@@ -222,4 +239,5 @@ class Spindle:
     def fail(self, command: str, cycle: int, error_id: int, reason: str) -> NoReturn:
         """A command that is refused and puts the spindle into ErrorStop."""
         self.fault(cycle, error_id, reason)
+        self.job_error = True
         raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; the spindle is in ErrorStop")

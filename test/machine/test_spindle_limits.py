@@ -128,9 +128,9 @@ def test_what_is_left_out_is_that_of_the_gear() -> None:
 @pytest.mark.parametrize(
     ("limits", "reason"),
     [
-        ({"max_speed_rpm": 0.0}, "max_speed_rpm = 0.0 must be greater than 0"),
-        ({"max_acceleration": -1.0}, "max_acceleration = -1.0 must be greater than 0"),
-        ({"min_speed_rpm": -0.5}, "min_speed_rpm = -0.5 must not be negative"),
+        ({"max_speed_rpm": 0.0}, "max_speed_rpm = 0.0 is not within 0.000166667 ... 333333 (P-TOOL-00014)"),
+        ({"max_acceleration": 0.5}, "max_acceleration = 0.5 is not within 1 ... 1e+08 (P-TOOL-00015)"),
+        ({"min_speed_rpm": -0.5}, "min_speed_rpm = -0.5 is not within 0 ... 333333 (P-TOOL-00013)"),
         ({"min_speed_rpm": 500.0, "max_speed_rpm": 400}, "min_speed_rpm = 500.0 is above max_speed_rpm = 400"),
     ],
 )

@@ -104,13 +104,16 @@ def test_tools() -> None:
         "wz.5: {log_ax_nr_spdl: 6, vb_min: 60000, vb_max: 3000000, a_max: 3000}",
         "wz.6: {log_ax_nr_spdl: 11, vb_max: 6000}",
         "wz.7: {log_ax_nr_spdl: 0, vb_max: 6000}",
+        "wz.8: {log_ax_nr_spdl: 6, vb_min: 60000, a_max: 3000}",
     )
     assert view.channels["ch"].tools == {
         5: ToolLimits("a", 10.0, 500.0, 3000.0),
         6: ToolLimits("b", None, 1.0, None),
+        8: ToolLimits("a", 10.0, None, 3000.0),
     }
     assert [text.partition(": ")[2] for text in view.warnings] == [
-        "P-TOOL-00015 wz[6].a_max of /ch: not given, tool 6 has no such limit"
+        "P-TOOL-00015 wz[6].a_max of /ch: not given, tool 6 has no such limit",
+        "P-TOOL-00014 wz[8].vb_max of /ch: not given, tool 8 has no such limit",
     ]
 
 
@@ -206,7 +209,7 @@ WRONG = {
     "tool upside down": (
         (TWO, "wz.5: {log_ax_nr_spdl: 6, vb_min: 5000, vb_max: 10, a_max: 10}"),
         "P-ERR-25009 m.yaml:8:39: tool list, P-TOOL-00013 wz[5].vb_min of /ch: "
-        "value 5000.0 is above the maximum 10.0 (0.001°/s) of P-TOOL-00014 wz[5].vb_max in line 8",
+        "value 5000.0 is above the maximum 10.0 (0.001°/s) of P-TOOL-00014 wz[5].vb_max",
     ),
 }
 
