@@ -2,14 +2,12 @@
 
 import math
 import re
-import sys
 
 import numpy as np
 import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill, paste, recording_of
 
-from cnc_ptp import cli
 from cnc_ptp.parameters import load_machine, read_machine
 from cnc_ptp.parameters.stability import stability_limit
 from cnc_ptp.recording.reader import read_recording
@@ -466,13 +464,3 @@ def test_an_ideal_rotary_axis():
     assert result.exit_code == 0, result.output
     assert "time constant Ta    0.000 ± 0.000 ms" in result.stdout
     assert "kg·m² (P-AXIS-00391)" in result.stdout
-
-
-@pytest.mark.parametrize("name", ["identify", "circle", "curve"])
-def test_commands_are_executables_of_their_own(name, monkeypatch, capsys):
-    """`ros2 run cnc_ptp identify ...`"""
-    monkeypatch.setattr(sys, "argv", [name, "--help"])
-    with pytest.raises(SystemExit) as ended:
-        getattr(cli, name)()
-    assert ended.value.code == 0
-    assert f"cnc_ptp {name}" in capsys.readouterr().out

@@ -82,6 +82,8 @@ def test_services_of_a_spindle(client):
     client.done("s", "reset_limits")
     text = "spindle s: select_gear refused: gear 4 has no record getriebe[i]; there are 1, 2; nothing was changed"
     client.refused("s", "select_gear", 24014, text, stage=4, source="")
+    text = "spindle s: stop refused: unknown source 'plcs'; nothing was changed. Known: plc"
+    client.refused("s", "stop", 22001, text, source="plcs")
     assert answer is None or answer.accepted
 
 
