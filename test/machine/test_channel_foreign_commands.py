@@ -352,7 +352,10 @@ def test_a_reset_leaves_a_slave_alone_that_it_has_not_commanded() -> None:
 - {at: 2, to: channel, do: reset}
 """
     bench = two(scenario).run(3.0)
-    assert bench.last("t").set_speed_rpm[-1] == 2000.0 and bench.last("t").master == "" and notes(bench) == []
+    assert bench.last("t").set_speed_rpm[-1] == 2000.0 and bench.last("t").master == ""
+    assert notes(bench) == [
+        "spindle t: stop of 'channel' without effect, 'second' has commanded the spindle since",
+    ]
 
 
 def test_a_stop_of_the_plc_is_told_to_a_program_that_does_not_wait() -> None:

@@ -60,6 +60,59 @@ def test_a_spindle_that_does_not_come_to_rest_in_time(zero_rpm: float) -> None:
     assert bench.state == S.ERROR_STOP
 
 
+def test_a_speed_that_is_lost_and_does_not_come_back() -> None:
+    """The drive gets stuck in steady rotation; for 20 ms only at first, then for good."""
+    drive = StuckDrive(stuck=False)
+    bench = bench_of(spindle_parameters(speed_time=0.25), drive=drive)
+    bench.accepted("start", direction="cw", speed_rpm=600.0)
+    bench.run(500)
+    for stuck, cycles in ((True, 20), (False, 1000), (True, 500)):
+        assert bench.events == []
+        drive.stuck = stuck
+        bench.run(cycles)
+    lost = first_cycle(bench, "speed_reached", lambda reached: not reached, begin=1500)
+    assert bench.events[0].cycle == lost + 250 and 1520 <= lost <= 1530
+    assert bench.event_texts() == [
+        "P-ERR-24013 spindle s: speed 600 rpm was lost and has not come back for 0.25 s (P-AXIS-00217, P-MACH-00050); "
+        "the spindle stops on its ramp (ErrorStop)"
+    ]
+
+
+def test_an_override_that_does_not_change_gives_no_more_time() -> None:
+    bench = bench_of(spindle_parameters(speed_time=0.25), drive=StuckDrive(stuck=False, limit=400.0 * RPM))
+    bench.accepted("start", direction="cw", speed_rpm=1000.0)
+    for _ in range(10):
+        bench.accepted("set_override", percent=100.0)
+        bench.accepted("suppress_override", on=False)
+        bench.run(100)
+    assert bench.events[0].cycle == math.ceil((1000.0 * RPM / UP + 0.25) * 1000.0 - 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("commands", "failed"),
+    [
+        ([("start", {"direction": "cw", "speed_rpm": 1000.0})], True),
+        ([("start", {"direction": "cw", "speed_rpm": 300.0}), ("power", {"on": False})], False),
+        ([("start", {"direction": "ccw", "speed_rpm": 300.0})], True),
+        ([("orient", {"position_deg": 10.0}), ("power", {"on": False})], True),
+    ],
+    ids=["speed not reached", "no job in work", "refused with an error", "positioning"],
+)
+def test_hli_job_error(commands: list[tuple[str, dict[str, object]]], failed: bool) -> None:
+    """What was in work, or was refused, has failed; a reset takes the bit back (2.9)."""
+    drive = StuckDrive(stuck=False, limit=400.0 * RPM)
+    bench = bench_of(spindle_parameters(speed_time=0.25, preferred_direction=1), drive=drive)
+    for command, arguments in commands:
+        bench.give(command, **arguments)
+        bench.run(1000 if command == "start" else 20)
+    bench.run(1000)
+    assert bench.state == S.ERROR_STOP
+    assert bool(bench.column("status_bits")[-1] & SpindleBit.JOB_ERROR) == failed
+    bench.accepted("reset")
+    bench.run(10)
+    assert not bench.column("status_bits")[-1] & SpindleBit.JOB_ERROR
+
+
 def test_without_a_time_limit_it_goes_on_trying() -> None:
     drive = StuckDrive(stuck=False, limit=400.0 * RPM)
     bench = bench_of(spindle_parameters(speed_time=0.0), drive=drive)

@@ -89,6 +89,10 @@ def test_dwell_forms():
     assert lines(text) == expected
 
 
+def test_dwell_in_a_channel_without_axes():
+    assert lines("G04 F1\nG04 2", axes=()) == ["dwell 1 s", "dwell 2 s"]
+
+
 def test_dwell_changes_neither_path_function_nor_feed_nor_speed():
     assert lines("G01 X1 F600 S100\nG04 F2\nG04 S50\nX2\nM03") == [
         "S[REV100] | line (1, 0, 0) feed 10",
