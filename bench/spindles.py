@@ -88,7 +88,7 @@ def program(axis: str, numbers: range, speeds: Sequence[int], hold: float, secon
     return "\n".join(["%SPINDLES", *lines, "M30", ""])
 
 
-def entries(speeds: Sequence[int], hold: float, seconds: float, *, paths: bool) -> list[Entry]:
+def entries(speeds: Sequence[int], hold: float, seconds: float, *, paths: bool = False) -> list[Entry]:
     """Both programs, loaded and started."""
     found = []
     for index, (channel, axis) in enumerate(CHANNELS.items()):

@@ -173,6 +173,7 @@ class ChannelUnit(Unit):
             if self._sequence.phase is Phase.RAMP_DOWN:
                 self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
             self._error_id = 0
+            self._sequence.stop_spindles(keep=self._turning_after_reset)
         elif self._sequence.phase is Phase.IDLE:
             self._sequence.stop_spindles(keep=self._turning_after_reset)
         else:
@@ -347,9 +348,12 @@ class ChannelUnit(Unit):
         if not self._had_axes:
             self._take_axes(first_cycle, inputs)
         self._just_started = False
-        if self._had_axes or self._sequence.phase is not Phase.IDLE:
-            for node, block in inputs.items():
+        in_use = self._had_axes or self._sequence.phase is not Phase.IDLE
+        for node, block in inputs.items():
+            if in_use:
                 self._check_member(first_cycle, node, block)
+            elif isinstance(block, SpindleBlock):
+                self._check_refused(first_cycle, node, block)
         self._sequence.read(first_cycle, inputs)
         self._warn(first_cycle)
         self._tell_held(first_cycle)
@@ -418,10 +422,14 @@ class ChannelUnit(Unit):
         if self._error_id:
             return
         idle = self._sequence.phase is Phase.IDLE
-        effect = "nothing moves" if idle else "the path stops on its ramp and the program is aborted"
+        effect = "the path stops on its ramp and the program is aborted"
+        if idle:
+            effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
         line = 0 if idle else self._sequence.source.line
         self._error_id = error_id
         self.event(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", line)
+        if idle:
+            self._sequence.stop_spindles()
         self._sequence.ramp_down()
 
     def _require_idle(self, command: str) -> None:

@@ -116,7 +116,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "power": {"on": SWITCH},
         "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER, **FOR},
         "set_speed": {"speed_rpm": NUMBER, **FOR},
-        "stop": {"own": OPTIONAL_SWITCH, **FOR},
+        "stop": {"own": OPTIONAL_SWITCH, "homes": OPTIONAL_SWITCH, **FOR},
         "orient": {
             "position_deg": NUMBER,
             "speed_rpm": OPTIONAL_POSITIVE,
@@ -169,7 +169,7 @@ COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flyin
 """Commands that make a slave of an axis."""
 INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
-OF_CHANNELS = frozenset({"own", "resume", "owner"})
+OF_CHANNELS = frozenset({"own", "homes", "resume", "owner"})
 """Arguments of spindle commands that channels give; services do not have them."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}

@@ -96,24 +96,35 @@ class FunctionOutput:
         ]
         leaders, self._leaders = self._leaders, {}
         turning = self.spindles.turning
-        return self._stop([name for name in turning if self.spindles[leaders.get(name, name)].node in wanted], source)
+        names = [name for name in turning if self.spindles[leaders.get(name, name)].node in wanted]
+        return self._stop(names, source, homes=True)
 
     def at_abort(self, source: Source, keep: Container[str] = ()) -> Outputs:
         """M05 for every spindle that the channel has set in motion, except the nodes in `keep`; couplings end first,
         so that a slave stops whoever has commanded its master.
         """
         self._leaders = {}
-        names = [name for name in self.spindles.concern if self.spindles[name].node not in keep]
-        outputs = self._stop(names, source)
+        others = [name for name in self.spindles if self.spindles[name].node not in keep]
+        moving = {*self.spindles.concern, *self.spindles.slaves}
+        outputs = self._stop([name for name in others if name in moving], source, homes=False)
         outputs.commands = self.spindles.decouple_all() + outputs.commands
+        for name in others:
+            self.spindles.forget(name)
         return outputs
 
-    def _stop(self, names: Iterable[str], source: Source) -> Outputs:
+    def acknowledged(self, request: HandshakeRequest) -> None:
+        """A spindle that only the PLC knows has come to its position: it stands."""
+        for name in self.spindles:
+            spindle = self.spindles[name]
+            if (request.kind, request.number, request.spindle) == ("M", 19, title(spindle)) and spindle.plc_control:
+                self.spindles.concern.drop(name)
+
+    def _stop(self, names: Iterable[str], source: Source, *, homes: bool) -> Outputs:
         """The PLC need not acknowledge: nobody waits for it any more."""
         outputs = Outputs()
         for name in names:
             spindle = self.spindles[name]
-            outputs.commands += self.spindles.stop(name)
+            outputs.commands += self.spindles.stop(name, homes=homes)
             outputs.told.append(Wait(spindle.node))
             if self.spindles.told_to_plc(name) and not self.spindles.follows(name):
                 outputs.requests.append(self._request(source, "M", title(spindle), 5, waits=False))
@@ -138,7 +149,8 @@ class FunctionOutput:
             case SpindleLink():
                 commands, wait = self.spindles.link(function)
                 outputs.commands += commands
-                outputs.add_wait(WAIT_BEFORE, wait)
+                if commands:
+                    outputs.add_wait(WAIT_BEFORE, wait)
                 if commands and not function.on and block.stop == "end":
                     self._leaders[function.slave] = function.master
             case AuxiliaryFunction():

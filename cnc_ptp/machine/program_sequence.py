@@ -118,7 +118,13 @@ class ProgramSequence:
 
     def stop_spindles(self, *, keep: Container[str] = ()) -> None:
         """M05 for the spindles that the channel has set turning, except the nodes in `keep`; its couplings end."""
+        self._watch.forget(keep)
         self._queue(self._functions.at_abort(self.source, keep))
+
+    @property
+    def spindles_move(self) -> bool:
+        """The channel has set spindles in motion."""
+        return any(True for _ in self._functions.spindles.concern)
 
     def end_couplings(self) -> None:
         """Couplings that manual blocks have left end before a program begins."""
@@ -141,7 +147,9 @@ class ProgramSequence:
     def acknowledge(self, request_id: int) -> None:
         """The PLC has carried out what it was asked for."""
         self.open_requests.discard(request_id)
-        self._asked.pop(request_id, None)
+        request = self._asked.pop(request_id, None)
+        if request is not None:
+            self._functions.acknowledged(request)
 
     def take_outputs(self, first_cycle: int) -> Outputs:
         """What is to go out with the block that begins at `first_cycle`; from there on its waits count."""
@@ -154,13 +162,13 @@ class ProgramSequence:
             wait.sent_cycle = first_cycle
         self._unsent = []
         self._watch.note(outputs.told, first_cycle)
-        self._functions.spindles.concern.send(first_cycle)
+        self._functions.spindles.send(first_cycle)
         return outputs
 
     def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
         """Blocks that the spindles have reported for the cycles before `cycle`."""
         self._feedback = feedback
-        ended = list(self._functions.spindles.read(cycle, feedback))
+        ended = self._functions.spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program goes on") for text in ended]
         self._watch.read(cycle, feedback)
         if self.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
@@ -231,10 +239,10 @@ class ProgramSequence:
 
     def _answers(self) -> list[Wait]:
         """The program ends when the spindles have had a block in which to refuse what they were told."""
-        answers = [Wait(wait.spindle, sent_cycle=wait.sent_cycle) for wait in self._watch.told]
-        unsent = [Wait(wait.spindle) for wait in self._outputs.told]
-        self._unsent += unsent
-        return answers + unsent
+        told = [*self._watch.told, *self._outputs.told]
+        answers = [Wait(wait.spindle, sent_cycle=wait.sent_cycle) for wait in told]
+        self._unsent += [answer for answer in answers if answer.sent_cycle is None]
+        return answers
 
     def _begin_block(self) -> None:
         if self.blocks_done >= len(self.blocks):

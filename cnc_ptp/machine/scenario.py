@@ -12,7 +12,7 @@ from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
-from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, check_command, sources_of
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, OF_CHANNELS, check_command, sources_of
 from cnc_ptp.machine.run_time import LONGEST_RUN
 from cnc_ptp.machine.setpoint_file import parse_setpoints
 from cnc_ptp.machine.setpoint_queue import SETPOINTS
@@ -100,6 +100,9 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     if do in CAMS and read and isinstance(arguments.get("file"), str) and "table" not in arguments:
         arguments["table"] = parse_cam(read("cam file", arguments["file"]), arguments["file"])
     check_command(kinds[to], to, do, arguments, sources_of(kinds))
+    for name in sorted(OF_CHANNELS & arguments.keys()):
+        text = f"{kinds[to]} {to}: {do} refused: argument '{name}' is for channels only; nothing was changed"
+        raise CncError(BAD_ARGUMENT, text)
     if do == "load" and "text" not in arguments and read:
         arguments["text"] = read("NC program", arguments["program"])
     return Entry(float(at), Command(to, do, arguments))

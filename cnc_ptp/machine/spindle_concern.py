@@ -18,7 +18,8 @@ class SpindleConcern:
     def __init__(self, channel: str) -> None:
         """`channel`: name of the channel, as spindles report for whom they are at work."""
         self._channel = channel
-        self._queued: dict[str, None] = {}
+        self._queued: dict[str, bool] = {}
+        """False for a function that ends the concern."""
         self._sent: dict[str, int] = {}
         """First cycle of the block with the last function."""
 
@@ -27,7 +28,15 @@ class SpindleConcern:
 
     def add(self, name: str) -> None:
         """A function for the spindle goes out with the next block."""
-        self._queued[name] = None
+        self._queued[name] = True
+
+    def keep(self, name: str) -> None:
+        """The spindle may be in motion already."""
+        self._sent.setdefault(name, -1)
+
+    def end(self, name: str) -> None:
+        """With the next block the spindle is told to stop, and nobody but the PLC knows when it stands."""
+        self._queued[name] = False
 
     def withdraw(self) -> None:
         """What has not gone out does not go out any more."""
@@ -35,7 +44,11 @@ class SpindleConcern:
 
     def send(self, first_cycle: int) -> None:
         """The functions go out with the block that begins at `first_cycle`."""
-        self._sent |= dict.fromkeys(self._queued, first_cycle)
+        for name, stays in self._queued.items():
+            if stays:
+                self._sent[name] = first_cycle
+            else:
+                self._sent.pop(name, None)
         self._queued.clear()
 
     def drop(self, name: str) -> None:
@@ -43,12 +56,7 @@ class SpindleConcern:
         self._queued.pop(name, None)
         self._sent.pop(name, None)
 
-    def read(self, cycle: int, name: str, block: SpindleBlock, *, follows: bool) -> None:
-        """What a spindle has reported before `cycle`; one that follows another of the channel may be set in motion by
-        others.
-        """
-        rests = at_rest(block, self._channel)
-        if follows and not rests:
-            self._sent.setdefault(name, cycle)
-        elif rests and cycle > self._sent.get(name, cycle):
+    def read(self, cycle: int, name: str, block: SpindleBlock) -> None:
+        """What a spindle has reported before `cycle`."""
+        if cycle > self._sent.get(name, cycle) and at_rest(block, self._channel):
             del self._sent[name]

@@ -46,7 +46,8 @@ class SpindleCycles:
         """All columns of a block."""
         columns: Columns = [[] for _ in range(FIELDS)]
         done = 0
-        if self._undisturbed(first_cycle, first_cycle + count - 1):
+        patience = self._spindle.parameters.speed_time / self._spindle.cycle_time
+        if not 0.0 < patience < count and self._undisturbed(first_cycle, first_cycle + count - 1):
             columns = self._undisturbed_cycles(first_cycle, count)
             done = len(columns[0])
         if done < count:

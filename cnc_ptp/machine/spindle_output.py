@@ -45,30 +45,43 @@ class SpindleOutput:
         self._full_override: set[str] = set()
         self._masters: dict[str, str] = {}
         """Slave -> master, both by name."""
-        self._coupled: set[str] = set()
-        """Slaves that have reported their master."""
+        self._linked: set[str] = set()
+        """Slaves to which their coupling has gone out."""
+        self.slaves: set[str] = set()
+        """Those that have reported their master."""
 
     # what the spindles report
 
-    def read(self, cycle: int, feedback: Mapping[str, Block]) -> Iterator[str]:
+    def send(self, first_cycle: int) -> None:
+        """What is queued goes out with the block that begins at `first_cycle`."""
+        self.concern.send(first_cycle)
+        self._linked = set(self._masters)
+
+    def read(self, cycle: int, feedback: Mapping[str, Block]) -> list[str]:
         """Blocks for the cycles before `cycle`; a text for each coupling of the channel that others have ended."""
+        ended = []
         for name, spindle in self._spindles.items():
             block = feedback.get(spindle.node)
             if not isinstance(block, SpindleBlock):
                 continue
-            self.concern.read(cycle, name, block, follows=name in self._masters)
-            master = self._masters.get(name)
-            if master is None:
+            self.concern.read(cycle, name, block)
+            if name not in self._linked:
                 continue
-            if block.master == self[master].node:
-                self._coupled.add(name)
-            elif name in self._coupled:
+            master = self[self._masters[name]].node
+            if block.master == master:
+                self.slaves.add(name)
+            elif name in self.slaves:
                 self._release(name)
-                yield f"spindle {spindle.node} does not follow {self[master].node} any more"
+                ended.append(f"spindle {spindle.node} does not follow {master} any more")
+        return ended
 
     def _release(self, slave: str) -> None:
-        self._masters.pop(slave, None)
-        self._coupled.discard(slave)
+        """What a slave goes on with after its coupling is the concern of who has coupled it."""
+        if slave in self.slaves:
+            self.concern.keep(slave)
+        del self._masters[slave]
+        self.slaves.discard(slave)
+        self._linked.discard(slave)
 
     # functions
 
@@ -112,7 +125,7 @@ class SpindleOutput:
         else:
             self._directions.pop(name, None)
         if function.m == 5 and self[name].plc_control:
-            self.concern.drop(name)
+            self.concern.end(name)
         else:
             self.concern.add(name)
         return True
@@ -220,7 +233,7 @@ class SpindleOutput:
             self._masters[link.slave] = link.master
             command = Command(slave, "couple", {"master": master, "owner": self._channel.name})
             return [command], Wait(slave, Condition.MASTER, master=master)
-        return self._decouple(link.slave), Wait(slave, Condition.ALONE)
+        return self._decouple(link.slave), Wait(slave)
 
     def _decouple(self, slave: str) -> list[Command]:
         if slave not in self._masters:
@@ -234,16 +247,21 @@ class SpindleOutput:
         """Ends all couplings of the channel at once: its program was aborted."""
         return [command for slave in list(self._masters) for command in self._decouple(slave)]
 
-    def stop(self, name: str) -> list[Command]:
-        """M05, unless somebody else has commanded the spindle since; none where there is no unit.
-
-        From now on the spindle is none of the channel's concern.
-        """
+    def forget(self, name: str) -> None:
+        """The spindle is none of the channel's concern any more, and does not turn as far as the next block knows."""
         self.concern.drop(name)
         self._directions.pop(name, None)
         self._standing_after_gear.discard(name)
+
+    def stop(self, name: str, *, homes: bool) -> list[Command]:
+        """M05, unless somebody else has commanded the spindle since; none where there is no unit."""
+        self.forget(name)
         spindle = self[name]
-        return [] if spindle.plc_control else [self._command(spindle.node, "stop", own=True)]
+        return [] if spindle.plc_control else [self._command(spindle.node, "stop", own=True, homes=homes)]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the channel's spindles."""
+        return iter(self._spindles)
 
     @property
     def turning(self) -> list[str]:

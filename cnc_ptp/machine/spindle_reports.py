@@ -26,7 +26,6 @@ class Condition(Enum):
     POSITION = "the position of spindle {spindle}"
     GEAR = "gear {value} of spindle {spindle}"
     MASTER = "the coupling of spindle {spindle} to {value}"
-    ALONE = "the end of the coupling of spindle {spindle}"
 
 
 TOLD = {
@@ -86,7 +85,10 @@ def is_there(block: SpindleBlock, condition: Condition) -> bool:
 
 def held_by_override(block: SpindleBlock) -> bool:
     """The spindle is on its way, and stands because of override 0."""
-    moves = block.state[-1] in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION)
+    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
+        return False
+    turns_on = block.state[-1] == S.CONTINUOUS_MOTION
+    moves = turns_on or (block.state[-1] == S.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
     return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
 
 

@@ -116,8 +116,6 @@ class SpindleUnit(Unit):
             return (
                 f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
             )
-        if own:
-            arguments["own"] = True
         self._orders.check(command, source, self._coupling.master)
         order = Order(command, arguments, source, self.next_order)
         self.next_order += 1
@@ -196,14 +194,14 @@ class SpindleUnit(Unit):
             self._tell_overtaken(cycle, "power off")
             self._orders.clear()
             if self.spindle.work.gear_request:
-                self._passed_on.append(Command(self.name, "stop", {"own": True}))
+                self._passed_on.append(Command(self.name, "stop", {"homes": False}))
         return self._power.do_power(cycle, on=on)
 
     def do_reset(self, cycle: int) -> None:
         """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
         self._power.do_reset(cycle)
         self._orders.clear()
-        self._passed_on.append(Command(self.name, "stop", {"own": True}))
+        self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """As CouplingCommands.do_decouple; what waits because the master was told so is forgotten."""

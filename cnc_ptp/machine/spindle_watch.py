@@ -32,10 +32,10 @@ class SpindleWatch:
         """The last command to each spindle that has gone out."""
         return list(self._told.values())
 
-    def forget(self) -> None:
-        """What earlier programs have commanded is of no concern any more."""
-        self._told.clear()
-        self._turned.clear()
+    def forget(self, keep: Container[str] = ()) -> None:
+        """What earlier programs have commanded is of no concern any more, except to the spindles in `keep`."""
+        self._told = {node: told for node, told in self._told.items() if node in keep}
+        self._turned &= set(self._told)
 
     def read(self, cycle: int, spindles: Mapping[str, Block]) -> None:
         """Notes which spindles turn as they were told, also while no block runs."""

@@ -78,11 +78,8 @@ class Wait:
         return self.sent_cycle is not None and cycle > self.sent_cycle
 
     def _reported(self, block: SpindleBlock) -> bool:
-        match self.condition:
-            case Condition.MASTER:
-                return self._coupled(block)
-            case Condition.ALONE:
-                return not block.master
+        if self.condition is Condition.MASTER:
+            return self._coupled(block)
         if not carries_out(block, self.condition, self.value, self.turn):
             if must_wait(block):
                 return False
@@ -117,7 +114,7 @@ class Wait:
     def held(self, cycle: int, spindles: Mapping[str, Block]) -> str:
         """What does not come because override 0 holds the spindle, if so."""
         block = spindles.get(self.spindle)
-        waits = self.sent_before(cycle) and self.condition not in (Condition.MASTER, Condition.ALONE)
+        waits = self.sent_before(cycle) and self.condition is not Condition.MASTER
         held = waits and isinstance(block, SpindleBlock) and not block.gear_request and held_by_override(block)
         return self._report() if held else ""
 

@@ -60,12 +60,14 @@ class Orders:
     def check(self, command: str, source: str, master: str) -> None:
         """Raises 24012 while the spindle is at work for another source, 24022 for a slave.
 
-        What comes from the PLC waits for its turn, a stop not even that.
+        What comes from the PLC waits for its turn, a stop not even that; nor does that of whose rotation a gear change
+        has interrupted.
         """
         if master and command != "stop":
             reason = f"the spindle is a slave of {master}; command {master} or decouple the spindle"
             self._spindle.refuse(command, SLAVE_LOCKED, reason)
-        if source and source != PLC and self.source and source != self.source:
+        stops_its_own = command == "stop" and source == self.commander
+        if source and source != PLC and self.source and source != self.source and not stops_its_own:
             reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
             self._spindle.refuse(command, AT_WORK, reason)
 

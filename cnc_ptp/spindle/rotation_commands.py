@@ -64,20 +64,20 @@ class RotationCommands:
         used_rpm = used / DEG_S_PER_RPM
         return f"spindle {self._spindle.name}: speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
 
-    def do_stop(self, cycle: int, *, own: bool = False) -> None:
+    def do_stop(self, cycle: int, *, homes: bool = True) -> None:
         """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.
 
-        `own`: at an abort or reset; then nothing is homed. While the PLC changes the gear the spindle stands; it stays
-        at rest afterwards.
+        Without `homes`, at an abort or reset, nothing is homed and a spindle that stands keeps its position. While the
+        PLC changes the gear the spindle stands; it stays at rest afterwards.
         """
         spindle = self._spindle
         if spindle.work.gear_request:
             spindle.work.forget_rotation()
             return
-        if spindle.state in (S.ERROR_STOP, S.DISABLED):
+        if spindle.state in (S.ERROR_STOP, S.DISABLED) or (spindle.state == S.STANDSTILL and not homes):
             return
         turns = spindle.state == S.CONTINUOUS_MOTION and spindle.motion(cycle)[1] != 0.0
-        if turns and not own and spindle.reference_lost and spindle.parameters.automatic_homing:
+        if turns and homes and spindle.reference_lost and spindle.parameters.automatic_homing:
             self._jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
         else:
             spindle.stop(cycle)

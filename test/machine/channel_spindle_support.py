@@ -54,13 +54,14 @@ def run(program: str, machine: MachineParameters, scenario: str = "", **options:
 
 
 def told(bench: MachineBench, unit: str = "s") -> list[tuple[str, dict[str, Any]]]:
-    """What a unit has accepted, without who said so and whether that counts only for what is its own."""
+    """What a unit has accepted, without who said so and how a stop counts."""
     of_unit = [record for record in bench.records if record.target == unit and record.accepted]
     records = [record for record in of_unit if record.command != "reset_feedforward"]
     arguments = [json.loads(record.arguments_json) for record in records]
     for words in arguments:
         words.pop("source", None)
-        words.pop("own", None)
+        for name in ("own", "homes"):
+            words.pop(name, None)
     return [(record.command, words) for record, words in zip(records, arguments, strict=True)]
 
 

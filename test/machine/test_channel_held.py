@@ -50,6 +50,12 @@ def test_a_spindle_that_override_0_holds(words: str, what: str) -> None:
     assert cycle_of(bench) == next_block(first) and bench.position("x") == 5.0
 
 
+def test_a_spindle_without_override_is_not_held() -> None:
+    """G167; what is waited for is the position window."""
+    bench = run("M19 G167 S100 S.POS90\nG04 0.1", machine_of(channel_spindle("S", "s", 4)), HOLD_S)
+    assert told(bench) == [] and bench.errors() == []
+
+
 def test_a_spindle_that_stops_on_its_way_up() -> None:
     """It is told when the spindle has come to rest, not before."""
     scenario = "- {at: 0.1, to: s, do: set_override, percent: 0}\n" + RELEASE_S

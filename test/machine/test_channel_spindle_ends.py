@@ -8,6 +8,9 @@ import pytest
 from channel_spindle_support import (
     MANUAL,
     MOS,
+    MVS_SLM,
+    MVS_SLP,
+    MVS_SNS,
     MVS_SVS,
     channel_spindle,
     machine_of,
@@ -21,6 +24,7 @@ from machine_support import MILL, MachineBench
 from spindle_support import RPM, two_gears
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
+from cnc_ptp.parameters import Synchronisation
 
 DIGITAL = replace(MILL.spindles["s"], automatic_homing=False)
 """Homes from standstill only."""
@@ -135,6 +139,92 @@ def test_a_reset_homes_nothing(override: str) -> None:
     assert not override or rests_from(bench, "s", 2000)
 
 
+@pytest.mark.parametrize("end", ["reset", "M5", "M30"])
+@pytest.mark.parametrize("at", [1.05, 1.9], ids=["on the way", "at the change position"])
+def test_a_gear_change_of_the_plc_does_not_take_the_rotation_from_the_channel(end: str, at: float) -> None:
+    """The interrupted rotation would go on after it; but its owner has stopped it meanwhile."""
+    machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": two_gears(change_position=90.0)})
+    words = {"reset": "G04 10", "M5": f"G04 {at}\nM5\nG04 10", "M30": f"G04 {at}"}[end]
+    scenario = (
+        MANUAL
+        + """
+- {at: 0, to: s, do: stop_at_program_end, on: on}
+- {at: 1, to: s, do: select_gear, stage: 2, source: plc}
+- {at: 2.5, to: s, do: gear_changed}
+"""
+        + (f"- {{at: {at}, to: channel, do: reset}}\n" if end == "reset" else "")
+    )
+    bench = MachineBench(f"%P\nM3 S400\n{words}\nM30", scenario, machine=machine, end_when_idle=False).run(4.0)
+    assert rests_from(bench, "s", 2500) and "stop" in dict(told(bench))
+
+
+@pytest.mark.parametrize("kind", [MOS, MVS_SVS])
+@pytest.mark.parametrize("at", [1.0, 1.01, 1.02, 1.03])
+def test_the_plc_hears_of_an_m5_that_a_reset_overtakes(kind: Synchronisation, at: float) -> None:
+    machine = machine_of(channel_spindle("S", "", 99, kind))
+    bench = run("M3 S1000\nG04 1\nM5\nG04 10", machine, f"- {{at: {at}, to: channel, do: reset}}")
+    assert {request.number for request in requests(bench)} == {3, 5}
+
+
+def test_a_position_that_the_plc_has_acknowledged_is_kept() -> None:
+    machine = machine_of(channel_spindle("S", "", 99, MVS_SVS))
+    bench = run("M19 S.POS90\nG04 10", machine, "- {at: 1, to: channel, do: reset}")
+    assert [request.number for request in requests(bench)] == [19]
+
+
+# the next program
+
+
+@pytest.mark.parametrize("speed", [MOS, MVS_SVS])
+@pytest.mark.parametrize(
+    ("program", "before"),
+    [
+        ("G01 X50 F600 M3 S300", "{at: 0, to: s, do: power, on: off}\n- {at: 3, to: s, do: power, on: on}"),
+        ("M3 S300\nG01 X50 F600", "{at: 0.01, to: channel, do: reset}"),
+        ("M3 S300\nG01 X5 F600", "{at: 2, to: s, do: stop}"),
+    ],
+    ids=["refused", "withdrawn", "stopped by people"],
+)
+def test_after_a_reset_the_channel_knows_that_nothing_turns(program: str, before: str, speed: Synchronisation) -> None:
+    """S alone commands nothing then, nobody waits for it, and nobody is warned."""
+    scenario = f"""
+- {before}
+- {{at: 3, to: channel, do: reset}}
+- {{at: 3.1, to: channel, do: mdi, text: "S500\\nG01 X1 F600"}}
+"""
+    machine = machine_of(channel_spindle("S", "s", 4, MOS, s=speed))
+    bench = MachineBench(f"%P\n{program}\nM30", scenario, machine=machine, end_when_idle=False).run(6.0)
+    late = [event.text for event in bench.events if event.cycle >= 3050]
+    assert late == [] and "set_speed" not in dict(told(bench)) and bench.position("x") == 1.0
+
+
+def test_a_fault_of_an_idle_channel_stops_what_its_program_has_left_turning() -> None:
+    bench = MachineBench("%P\nM3 S300\nM30", machine=machine_of(channel_spindle("S", "s", 4, MOS)), end_when_idle=False)
+    bench.run(1.0)
+    assert bench.last("s").set_speed_rpm[-1] == 300.0
+    assert bench.give("channel", "upstream_lost", source="x").accepted
+    bench.run(1.0)
+    assert stands(bench, "s") and bench.errors() == [
+        "P-ERR-26101 channel channel: no block of 'x' came within the watchdog time; its spindles stop"
+    ]
+
+
+@pytest.mark.parametrize("late", [MVS_SLM, MVS_SLP, MVS_SNS, MVS_SVS])
+@pytest.mark.parametrize("program", ["M3 S1000\nG04 2\nS500", "M3 S1000\nG04 2\nS500 M30", "M3 S1000\nS500"])
+def test_a_program_ends_after_a_speed_that_renews_a_late_wait(program: str, late: Synchronisation) -> None:
+    bench = run(program, machine_of(channel_spindle("S", "s", 4, late)))
+    assert bench.errors() == [] and len(bench.blocks["plc"]) < 500
+
+
+def test_the_stop_at_the_end_of_a_program_homes_as_m5_does() -> None:
+    """The control limit was exceeded; the reference comes back (2.7)."""
+    unit = replace(two_gears(), gears={1: replace(two_gears().gears[1], control_limit=60.0 * RPM)})
+    machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": unit})
+    scenario = "- {at: 0, to: s, do: stop_at_program_end, on: on}"
+    bench = MachineBench("%P\nM3 S500\nG04 2\nM30", scenario, machine=machine, end_when_idle=False).run(12.0)
+    assert S.HOMING in bench.column("s", "state") and bench.last("s").referenced[-1] and stands(bench, "s")
+
+
 # couplings
 
 
@@ -186,6 +276,38 @@ def test_an_abort_stops_a_slave_whose_master_another_channel_turns() -> None:
     bench = two(f"{LINK}G04 2\nM19 S.POS300000\nG04 2", "G04 0.5\nM3 S600\nG04 4")
     assert "24006" in bench.errors()[0]
     assert bench.column("t", "set_speed_rpm")[3000] == 0.0 and bench.column("s", "set_speed_rpm")[3000] == 600.0
+
+
+def test_a_refused_couple_stops_nobody() -> None:
+    """The slave stays with the channel that was first, whoever turns its master."""
+    bench = MachineBench(
+        f"%P\n{LINK}G04 10\nM30",
+        "- {at: 1, to: s, do: start, direction: cw, speed_rpm: 600}",
+        machine=two_channels(),
+        end_when_idle=False,
+    )
+    assert bench.give("second", "load", program="q.nc", text=f"%Q\nG04 2\n{LINK}G04 1\nM30").accepted
+    assert bench.give("second", "start").accepted
+    bench.run(5.0)
+    assert "24027" in bench.errors()[0] and not rests_from(bench, "t", 4990) and bench.last("t").master == "s"
+
+
+@pytest.mark.parametrize("at", [1.0, 1.01, 1.02, 1.03])
+def test_a_slave_does_not_start_while_the_reset_decouples_it(at: float) -> None:
+    scenario = f"- {{at: 1, to: s, do: start, direction: cw, speed_rpm: 600}}\n- {{at: {at}, to: channel, do: reset}}"
+    bench = run(f"{LINK}G04 10", machine_of(*three(MOS)[:2]), scenario)
+    assert rests_from(bench, "t", 2000) and bench.last("t").master == ""
+
+
+@pytest.mark.parametrize("again", ["master: s", "master: u"])
+@pytest.mark.parametrize("at", [1.0, 1.1])
+@pytest.mark.parametrize("end", ["", "#DISABLE AX LINK[1]"])
+def test_a_coupling_of_people_is_none_of_the_program(again: str, at: float, end: str) -> None:
+    """They have ended that of the program and made their own; the program does not wait for its end."""
+    scenario = f"- {{at: 1, to: t, do: decouple}}\n- {{at: {at}, to: t, do: couple, {again}}}"
+    machine = machine_of(*three(MOS))
+    bench = MachineBench(f"%P\n{LINK}G04 2\n{end}\nM30", scenario, machine=machine, end_when_idle=False).run(4.0)
+    assert bench.last("channel").done and bench.last("t").master == again[-1] and bench.errors() == []
 
 
 @pytest.mark.parametrize("own", [False, True])

@@ -92,6 +92,10 @@ FAULTS = [
     ("- {at: 0, to: x, do: upstream_lost, source: plc}", "'upstream_lost' is given by watchdogs only"),
     ("- {at: 0, to: plc, do: abort, reason: x}", "'abort' is given by watchdogs only"),
     (
+        "- {at: 0, to: s, do: stop, own: on}",
+        "spindle s: stop refused: argument 'own' is for channels only; nothing was changed",
+    ),
+    (
         "- {at: 0, to: x, do: fly}",
         "axis x: unknown command 'fly'; nothing was changed. Known: " + AXIS_COMMANDS,
     ),

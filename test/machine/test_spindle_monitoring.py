@@ -78,6 +78,19 @@ def test_a_speed_that_is_lost_and_does_not_come_back() -> None:
     ]
 
 
+@pytest.mark.parametrize("count", [1, 10, 100])
+def test_a_patience_below_the_length_of_a_block(count: int) -> None:
+    """The fault comes in the same cycle, however long blocks are."""
+    drive = StuckDrive(stuck=False)
+    bench = bench_of(spindle_parameters(speed_time=0.02), count=count, drive=drive)
+    bench.accepted("start", direction="cw", speed_rpm=600.0)
+    bench.run(1000)
+    drive.stuck = True
+    bench.run(100)
+    lost = first_cycle(bench, "speed_reached", lambda reached: not reached, begin=1000)
+    assert [event.cycle for event in bench.events] == [lost + 20] and lost < 1030
+
+
 def test_an_override_that_does_not_change_gives_no_more_time() -> None:
     bench = bench_of(spindle_parameters(speed_time=0.25), drive=StuckDrive(stuck=False, limit=400.0 * RPM))
     bench.accepted("start", direction="cw", speed_rpm=1000.0)
