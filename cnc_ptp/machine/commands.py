@@ -169,8 +169,8 @@ COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flyin
 """Commands that make a slave of an axis."""
 INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
-OF_CHANNELS = frozenset({"own", "homes", "resume", "owner"})
-"""Arguments of spindle commands that channels give; services do not have them."""
+OF_CHANNELS = frozenset({"own", "homes", "owner"})
+"""Arguments of spindle commands that only channels give; neither services nor scenarios have them."""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}
 

@@ -172,6 +172,15 @@ def test_a_position_that_the_plc_has_acknowledged_is_kept() -> None:
     assert [request.number for request in requests(bench)] == [19]
 
 
+@pytest.mark.parametrize("resume", ["on", "off"])
+def test_a_scenario_says_whether_the_rotation_goes_on_after_its_gear_change(resume: str) -> None:
+    machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": two_gears(change_position=90.0)})
+    scenario = f"- {{at: 1, to: s, do: select_gear, stage: 2, resume: {resume}}}"
+    bench = MachineBench("%P\nM3 S400\nM30", scenario, machine=machine, end_when_idle=False).run(4.0)
+    assert bench.last("s").gear[-1] == 2
+    assert bench.last("s").set_speed_rpm[-1] == (400.0 if resume == "on" else 0.0)
+
+
 # the next program
 
 
