@@ -173,11 +173,7 @@ class ChannelUnit(Unit):
             if self._sequence.phase is Phase.RAMP_DOWN:
                 self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
             self._error_id = 0
-            self._sequence.stop_spindles(keep=self._turning_after_reset)
-        elif self._sequence.phase is Phase.IDLE:
-            self._sequence.stop_spindles(keep=self._turning_after_reset)
-        else:
-            self._sequence.ramp_down(keep=self._turning_after_reset)
+        self._sequence.ramp_down(keep=self._turning_after_reset)
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
         """The PLC's answer to a handshake request."""
@@ -428,8 +424,6 @@ class ChannelUnit(Unit):
         line = 0 if idle else self._sequence.source.line
         self._error_id = error_id
         self.event(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", line)
-        if idle:
-            self._sequence.stop_spindles()
         self._sequence.ramp_down()
 
     def _require_idle(self, command: str) -> None:

@@ -96,9 +96,15 @@ class ProgramSequence:
         self.phase = Phase.NEXT
 
     def ramp_down(self, *, keep: Container[str] = ()) -> None:
-        """Aborts the program: the path comes to rest on its ramp, then the channel's spindles stop, except `keep`."""
+        """Aborts the program: the path comes to rest on its ramp, then the channel's spindles stop, except `keep`.
+
+        Without a program only the spindles are left to stop.
+        """
         self._keep = keep
-        if self.phase in (Phase.IDLE, Phase.RAMP_DOWN):
+        if self.phase is Phase.RAMP_DOWN:
+            return
+        if self.phase is Phase.IDLE:
+            self._stop_spindles()
             return
         moving = self.phase is Phase.MOTION and self._motion.on_path
         self.phase = Phase.RAMP_DOWN
@@ -116,10 +122,10 @@ class ProgramSequence:
         """The program has been carried out to its end."""
         return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
 
-    def stop_spindles(self, *, keep: Container[str] = ()) -> None:
-        """M05 for the spindles that the channel has set turning, except the nodes in `keep`; its couplings end."""
-        self._watch.forget(keep)
-        self._queue(self._functions.at_abort(self.source, keep))
+    def _stop_spindles(self) -> None:
+        """M05 for the spindles that the channel has set in motion, except those to keep; its couplings end."""
+        self._watch.forget(self._keep)
+        self._queue(self._functions.at_abort(self.source, self._keep))
 
     @property
     def spindles_move(self) -> bool:
@@ -170,11 +176,10 @@ class ProgramSequence:
         self._feedback = feedback
         ended = self._functions.spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program goes on") for text in ended]
-        self._watch.read(cycle, feedback)
-        if self.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
-            waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
-            lost = self._watch.lost(cycle, feedback, waited_for)
-            self.notes += [(COMMANDED_BY_OTHERS, f"{text}; the program goes on") for text in lost]
+        waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
+        runs = self.phase not in (Phase.IDLE, Phase.RAMP_DOWN)
+        lost = self._watch.read(cycle, feedback, waited_for, runs=runs)
+        self.notes += [(COMMANDED_BY_OTHERS, f"{text}; the program goes on") for text in lost]
 
     def waits_for(self) -> str:
         """What the program waits for that does not come with time alone; empty when it goes on by itself."""
@@ -223,7 +228,7 @@ class ProgramSequence:
         if self.phase is Phase.RAMP_DOWN:
             self._motion.abandon()
             self._end_program()
-            self.stop_spindles(keep=self._keep)
+            self._stop_spindles()
             return
         self._motion.finish()
         if self._awaits_event:

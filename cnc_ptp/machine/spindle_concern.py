@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cnc_ptp.machine.blocks import SpindleBlock
-from cnc_ptp.machine.spindle_reports import at_rest
+from cnc_ptp.machine.spindle_reports import stands
 
 
 class SpindleConcern:
@@ -58,5 +58,5 @@ class SpindleConcern:
 
     def read(self, cycle: int, name: str, block: SpindleBlock) -> None:
         """What a spindle has reported before `cycle`."""
-        if cycle > self._sent.get(name, cycle) and at_rest(block, self._channel):
+        if cycle > self._sent.get(name, cycle) and stands(block, self._channel):
             del self._sent[name]

@@ -46,8 +46,7 @@ class SpindleCycles:
         """All columns of a block."""
         columns: Columns = [[] for _ in range(FIELDS)]
         done = 0
-        patience = self._spindle.parameters.speed_time / self._spindle.cycle_time
-        if not 0.0 < patience < count and self._undisturbed(first_cycle, first_cycle + count - 1):
+        if not 0.0 < self._patience < count and self._undisturbed(first_cycle, first_cycle + count - 1):
             columns = self._undisturbed_cycles(first_cycle, count)
             done = len(columns[0])
         if done < count:
@@ -124,6 +123,11 @@ class SpindleCycles:
         return abs(actual_speed - wanted) <= spindle.parameters.speed_reached_band * abs(wanted)
 
     @property
+    def _patience(self) -> float:
+        """P-MACH-00050 in cycles, 0 for ever."""
+        return self._spindle.parameters.speed_time / self._spindle.cycle_time
+
+    @property
     def _awaits_speed(self) -> bool:
         """The speed of the rotation is still to come, or 0 after a stop."""
         spindle = self._spindle
@@ -135,7 +139,7 @@ class SpindleCycles:
         spindle.note_speed(cycle, reached)
         if not self._awaits_speed:
             return
-        patience = spindle.parameters.speed_time / spindle.cycle_time
+        patience = self._patience
         held = spindle.wanted_speed == 0.0 and spindle.programmed_speed != 0.0
         if held or not patience or spindle.cycles_without_speed(cycle) < patience:
             return
@@ -207,8 +211,7 @@ class SpindleCycles:
     def _patience_ends(self, last_cycle: int) -> bool:
         """The time for reaching the speed (P-MACH-00050) is over until `last_cycle`, if it is not reached before."""
         spindle = self._spindle
-        patience = spindle.parameters.speed_time / spindle.cycle_time
-        late = bool(patience) and spindle.cycles_without_speed(last_cycle) >= patience
+        late = bool(self._patience) and spindle.cycles_without_speed(last_cycle) >= self._patience
         return late and self._awaits_speed
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:

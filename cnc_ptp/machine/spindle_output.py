@@ -59,21 +59,23 @@ class SpindleOutput:
 
     def read(self, cycle: int, feedback: Mapping[str, Block]) -> list[str]:
         """Blocks for the cycles before `cycle`; a text for each coupling of the channel that others have ended."""
-        ended = []
-        for name, spindle in self._spindles.items():
-            block = feedback.get(spindle.node)
-            if not isinstance(block, SpindleBlock):
-                continue
-            self.concern.read(cycle, name, block)
-            if name not in self._linked:
-                continue
-            master = self[self._masters[name]].node
-            if block.master == master:
-                self.slaves.add(name)
-            elif name in self.slaves:
-                self._release(name)
-                ended.append(f"spindle {spindle.node} does not follow {master} any more")
-        return ended
+        for name in self.concern:
+            block = feedback.get(self[name].node)
+            if isinstance(block, SpindleBlock):
+                self.concern.read(cycle, name, block)
+        texts = [self._read_slave(name, feedback.get(self[name].node)) for name in sorted(self._linked)]
+        return [text for text in texts if text]
+
+    def _read_slave(self, name: str, block: Block | None) -> str:
+        if not isinstance(block, SpindleBlock):
+            return ""
+        master = self[self._masters[name]].node
+        if block.master == master:
+            self.slaves.add(name)
+        elif name in self.slaves:
+            self._release(name)
+            return f"spindle {self[name].node} does not follow {master} any more"
+        return ""
 
     def _release(self, slave: str) -> None:
         """What a slave goes on with after its coupling is the concern of who has coupled it."""

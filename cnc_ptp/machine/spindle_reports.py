@@ -92,7 +92,7 @@ def held_by_override(block: SpindleBlock) -> bool:
     return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
 
 
-def at_rest(block: SpindleBlock, channel: str) -> bool:
+def stands(block: SpindleBlock, channel: str) -> bool:
     """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is in work for `channel`."""
     return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel
 

@@ -37,26 +37,23 @@ class SpindleWatch:
         self._told = {node: told for node, told in self._told.items() if node in keep}
         self._turned &= set(self._told)
 
-    def read(self, cycle: int, spindles: Mapping[str, Block]) -> None:
-        """Notes which spindles turn as they were told, also while no block runs."""
-        self._turned |= {
-            node
-            for node, told, block in self._reports(cycle, spindles)
-            if carries_out(block, told.condition, told.value)
-            and (block.source == self._channel or not orders_wait(block))
-        }
+    def read(self, cycle: int, spindles: Mapping[str, Block], waited_for: Container[str], *, runs: bool) -> list[str]:
+        """Notes which spindles turn as they were told, also while no program `runs`.
 
-    def lost(self, cycle: int, spindles: Mapping[str, Block], waited_for: Container[str]) -> Iterator[str]:
-        """A text for each spindle that does not turn any more as it was told, once; not for those of `waited_for`.
-
+        Gives a text for each that does not any more, once and to a running program only; not for those of `waited_for`.
         A command that still waits behind others is not lost; one that was carried out is, in a gear change too.
         """
+        lost = []
         for node, told, block in self._reports(cycle, spindles):
-            in_turn = node in self._turned or not orders_wait(block)
-            if in_turn and node not in waited_for and not carries_out(block, told.condition, told.value):
+            waits = orders_wait(block)
+            if carries_out(block, told.condition, told.value):
+                if block.source == self._channel or not waits:
+                    self._turned.add(node)
+            elif runs and node not in waited_for and (node in self._turned or not waits):
                 del self._told[node]
                 self._turned.discard(node)
-                yield f"{what_it_was_told(node, told.condition, told.value)}, {what_it_does(block)}"
+                lost.append(f"{what_it_was_told(node, told.condition, told.value)}, {what_it_does(block)}")
+        return lost
 
     def _reports(self, cycle: int, spindles: Mapping[str, Block]) -> Iterator[tuple[str, Wait, SpindleBlock]]:
         """The spindles that were told a speed, with what they have reported since."""

@@ -44,7 +44,7 @@ OUTPUT = WAITING | T.MOS
 class Wait:
     """Something the path waits for: a report of a spindle and, or, the acknowledgement of request `request_id`.
 
-    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, gear stage, or the node of the master.
+    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, or gear stage; `master`: its node.
     """
 
     spindle: str = ""
