@@ -29,13 +29,12 @@ class Watched:
         self.bench.accepted(command, source="channel", speed_rpm=speed_rpm, **words)
         self.watch.note([Wait(self.name, Condition.SPEED, speed_rpm)], self.bench.cycle)
 
-    def hears(self, blocks: int, waited_for: tuple[str, ...] = ()) -> Iterator[str]:
+    def hears(self, blocks: int, waited_for: tuple[str, ...] = (), *, runs: bool = True) -> Iterator[str]:
         """Texts of the next blocks, without the name of the spindle."""
         for _ in range(blocks):
             self.bench.run(10)
             reports = {self.name: self.bench.last}
-            self.watch.read(self.bench.cycle, reports)
-            texts = self.watch.lost(self.bench.cycle, reports, waited_for)
+            texts = self.watch.read(self.bench.cycle, reports, waited_for, runs=runs)
             yield from (text.removeprefix(f"spindle {self.name} ") for text in texts)
 
 
@@ -97,6 +96,15 @@ def test_a_path_that_waits_hears_nothing() -> None:
     assert list(watched.hears(5, (watched.name,))) == []
     watched.bench.accepted("select_gear", stage=2)
     assert list(watched.hears(5, (watched.name,))) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
+
+
+def test_a_program_hears_what_has_happened_before_it() -> None:
+    """Between two manual blocks; only the second one is told."""
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(30, runs=False)) == []
+    watched.bench.accepted("select_gear", stage=2)
+    assert list(watched.hears(5, runs=False)) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
 
 
 def test_nothing_is_heard_of_earlier_programs() -> None:
