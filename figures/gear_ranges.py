@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from cnc_ptp.nc.gears import m_of
 from figures.colours import BAND, BLUE, PURPLE
 from figures.picture import LABEL_LINE, draw_commands, draw_panel, label_rows, shown_cycles
 from figures.run import FigureRun
@@ -19,7 +20,6 @@ from figures.spindle_states import stretches
 ROW, SPEED = 22.0, 150.0
 BETWEEN = 30.0
 """Points: of each gear, of the speed, below the scale of the ranges."""
-FIRST_M = 40
 TICKS = (50, 100, 200, 500, 1000, 2000, 5000)
 
 Range = tuple[float, float]
@@ -88,5 +88,5 @@ def draw_gears(plot: Axes, run: FigureRun, name: str, end: int, count: int) -> N
 
 def name_rows(plot: Axes, count: int) -> None:
     """M40 at the bottom."""
-    plot.set_yticks(range(count), [f"M{FIRST_M + row}" for row in range(count)], fontsize=SMALL)
+    plot.set_yticks(range(count), [f"M{m_of(row + 1)}" for row in range(count)], fontsize=SMALL)
     plot.set_ylim(-0.6, count - 0.4)

@@ -22,6 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from cnc_ptp.commissioning.curve_points import CurvePoint, parse_point
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import CurveParameters
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.acceleration_curves import raw_pieces
 from figures.colours import BLUE, FAINT, INK, RED, SOFT
 from figures.run import Column, FigureRun
@@ -29,7 +30,6 @@ from figures.scenario_head import FigureError, FigureScenario
 from figures.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 
 HEIGHT, BETWEEN = 300.0, 56.0
-DEG_S_PER_RPM = 6.0
 PLACES = 300
 """Of a drawn law."""
 SMALL_STEP = 40.0

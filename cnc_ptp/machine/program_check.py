@@ -28,6 +28,7 @@ from cnc_ptp.parameters import (
     SpindleParameters,
     catalogue,
 )
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 SOFT_LIMIT_POSITIVE = 120002
@@ -36,7 +37,6 @@ SPINDLE_TOO_FAST = 22010
 UNKNOWN_M_FUNCTION = 22011
 NO_FRICTION_COMPENSATION = 70495
 NO_CHANNEL = 26112
-DEG_S_PER_RPM = 6.0
 
 
 class ProgramCheck:

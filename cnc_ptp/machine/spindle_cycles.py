@@ -7,11 +7,12 @@ from typing import Any
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.control.control_loop import State
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import Orders
 from cnc_ptp.spindle.rotation_commands import RotationCommands
-from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
+from cnc_ptp.spindle.spindle import Spindle
 from cnc_ptp.spindle.states import SpindleBit
 
 SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)

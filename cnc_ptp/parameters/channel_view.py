@@ -7,12 +7,12 @@ from typing import NamedTuple
 from cnc_ptp.parameters.channels import ChannelAxisEntry, axis_entries, main_spindle_number, spindle_entries
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.synchronisation import Synchronisation, synchronisation
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
 GEAR_M_FUNCTIONS = range(40, 46)
 SPINDLES = 1
 """P-CHAN-00061: the pair consists of spindles."""
-DEG_S_PER_RPM = 6.0
 
 
 class ChannelAxis(NamedTuple):

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.parameters.channel_view import DEG_S_PER_RPM
 from cnc_ptp.parameters.channels import spindle_entries
 from cnc_ptp.parameters.control_notices import control_notices
 from cnc_ptp.parameters.encoder import CORRECTED
@@ -10,6 +9,7 @@ from cnc_ptp.parameters.friction_notices import friction_notices
 from cnc_ptp.parameters.lines import line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.spindle_view import control_limit, feedback, is_open_loop
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 
 UNIT_LISTS = {"channel": "P-MACH-00004", "axis": "P-MACH-00005", "spindle": "P-MACH-00006"}
 SERCOS = 2

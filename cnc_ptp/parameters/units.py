@@ -4,6 +4,8 @@ Every factor is the reciprocal of an integer, and list values are divided by tha
 nearest to the exact one.
 """
 
+DEG_S_PER_RPM = 6.0
+"""Speeds of spindles are rpm for people, °/s in the kernel."""
 DIVISORS: dict[str, int] = {
     "0.1 µm": 10_000,
     "0.0001°": 10_000,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.faults import (
     BAD_POSITION,
     BAD_SPEED,
@@ -18,7 +19,7 @@ from cnc_ptp.spindle.faults import (
 from cnc_ptp.spindle.job import Job, Step
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
-from cnc_ptp.spindle.spindle import DEG_S_PER_RPM, Spindle
+from cnc_ptp.spindle.spindle import Spindle
 
 LARGEST_POSITION = 214748.3647
 """°: a position of the lists, 32 bit of 0.0001°."""

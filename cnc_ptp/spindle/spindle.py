@@ -19,7 +19,6 @@ from cnc_ptp.spindle.speed_table import Motion, SpeedTable
 from cnc_ptp.spindle.states import SpindleMode
 from cnc_ptp.spindle.tool_limits import SpindleLimits, ToolLimits
 
-DEG_S_PER_RPM = 6.0
 Report = Callable[[int, int, str], None]
 """Takes an event: cycle, number, text."""
 
