@@ -15,7 +15,10 @@ from setuptools.command.build_ext import build_ext
 
 PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
-COMMANDS = ("simulate", "run", "check", "replay", "report", "params", "identify", "circle", "curve")
+COMMANDS = (
+    "simulate", "run", "status", "jog", "check", "replay", "report", "plot", "params", "identify", "circle", "curve",
+)  # fmt: skip
+"""Executables of their own. Not `do` and `watch`: one is a word of the shell, the other a program of every Linux."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 
@@ -45,7 +48,9 @@ class GenerateInterfaces(build_ext):
                 command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL
             )
         self.take_python_part(stage)
-        self.hand_on_prefix_part(stage)
+        self.hand_on(prefix_part(stage))
+        if {"bdist_wheel", "editable_wheel"} & {*self.distribution.commands}:  # colcon puts the scripts there itself
+            self.hand_on(ros_executables(build.parent / "executables"))
 
     def take_python_part(self, stage: Path) -> None:
         """Copies the generated modules into the package: in the build folder, or the source tree if editable."""
@@ -58,14 +63,8 @@ class GenerateInterfaces(build_ext):
             elif entry.suffix == ".so":
                 shutil.copy2(entry, package / entry.name)
 
-    def hand_on_prefix_part(self, stage: Path) -> None:
-        files: dict[str, list[str]] = {}
-        for folder in ("lib", "share"):
-            for path in sorted((stage / folder).rglob("*")):
-                relative = path.relative_to(stage)
-                inside_python = any(part.startswith("python3") or part == "site-packages" for part in relative.parts)
-                if path.is_file() and not inside_python and path.name != "package.xml":
-                    files.setdefault(str(relative.parent), []).append(os.path.relpath(path, ROOT))
+    def hand_on(self, files: dict[str, list[str]]) -> None:
+        """Adds data files, folder of the prefix -> files, to what setup() names."""
         data_files = self.distribution.data_files or []
         known = {folder for folder, _ in data_files}
         data_files.extend((folder, names) for folder, names in files.items() if folder not in known)
@@ -91,6 +90,30 @@ class BinaryDistribution(Distribution):
         return True
 
 
+def prefix_part(stage: Path) -> dict[str, list[str]]:
+    """Libraries and share files that CMake has staged."""
+    files: dict[str, list[str]] = {}
+    for folder in ("lib", "share"):
+        for path in sorted((stage / folder).rglob("*")):
+            relative = path.relative_to(stage)
+            inside_python = any(part.startswith("python3") or part == "site-packages" for part in relative.parts)
+            if path.is_file() and not inside_python and path.name != "package.xml":
+                files.setdefault(str(relative.parent), []).append(os.path.relpath(path, ROOT))
+    return files
+
+
+def ros_executables(folder: Path) -> dict[str, list[str]]:
+    """Writes what `ros2 run` and launch look for, lib/cnc_ptp/NAME: it calls bin/NAME of the same prefix."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    for name in (script.partition(" = ")[0] for script in console_scripts()):
+        file = folder / name
+        file.write_text(f'#!/bin/sh\nexec "$(dirname "$(readlink -f "$0")")/../../bin/{name}" "$@"\n')
+        file.chmod(0o755)
+        files.append(os.path.relpath(file, ROOT))
+    return {f"lib/{PACKAGE}": files}
+
+
 def share(folder: str, pattern: str) -> tuple[str, list[str]]:
     return f"share/{PACKAGE}/{folder}".rstrip("/"), sorted(str(path.relative_to(ROOT)) for path in ROOT.glob(pattern))
 
@@ -112,7 +135,7 @@ setup(
     packages=find_packages(
         include=[PACKAGE, f"{PACKAGE}.*"], exclude=[f"{PACKAGE}.{part}" for part in ("msg", "srv", "action")]
     ),
-    package_data={PACKAGE: ["parameters/*.yaml", "nodes/*.xml", "py.typed"]},
+    package_data={PACKAGE: ["parameters/*.yaml", "nodes/*.xml", "recording/*.js", "py.typed"]},
     ext_modules=[Extension(f"{PACKAGE}._interfaces", sources=[])],
     cmdclass={"build_ext": GenerateInterfaces},
     distclass=BinaryDistribution,

@@ -61,6 +61,7 @@ def _run(arguments: tuple[str, str | None, str | None, float, str, bool], compos
     from cnc_ptp.nodes.composed import run_composed
     from cnc_ptp.nodes.supervisor import Job, Supervisor
     from cnc_ptp.parameters import read_machine
+    from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS
 
     job = Job(*arguments)
     parameters, seconds = read_machine(job.machine), arguments[3]
@@ -78,7 +79,7 @@ def _run(arguments: tuple[str, str | None, str | None, float, str, bool], compos
     run.failures = failures + monitor.errors
     nodes = monitor.diagnostics.values()
     run.blocks, run.lost_blocks, run.duplicates = (
-        sum(int(node[key]) for node in nodes) for key in ("blocks", "lost_blocks", "duplicates")
+        sum(int(node[key]) for node in nodes) for key in (BLOCKS, LOST_BLOCKS, CAME_TWICE)
     )
     lateness = monitor.lateness()
     run.lateness_p50_ms = lateness.percentile_us(50.0) / 1000.0

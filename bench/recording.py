@@ -66,11 +66,11 @@ def unit_blocks(first: int) -> list[tuple[str, Block]]:
     blocks: list[tuple[str, Block]] = [("plc", PlcBlock(first, COUNT, first)), ("channel", channel)]
     for index, axis in enumerate(AXES):
         moving = [wave(1.0 + index + 0.1 * column) for column in range(8)]
-        rest = [flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(100.0)]
+        rest = [flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(100.0)]
         blocks.append((axis, AxisBlock(first, COUNT, *moving, *rest, [5] * COUNT, [256] * COUNT, zero)))
     turning = [wave(7.0), wave(7.1), flat(1000.0), flat(0.0), wave(8.0), wave(8.1), wave(8.0), flat(0.0), wave(9.0)]
     states = ([2] * COUNT, [1] * COUNT, on, off, off, on, off, [5] * COUNT, [4] * COUNT, zero)
-    return [*blocks, ("s", SpindleBlock(first, COUNT, *turning, flat(100.0), [12000] * COUNT, *states))]
+    return [*blocks, ("s", SpindleBlock(first, COUNT, *turning, flat(100.0), flat(0.0), [12000] * COUNT, *states))]
 
 
 def record_all(path: Path, run: Run) -> None:

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import click
 
+from cnc_ptp.commands.completion import complete_axis, complete_command, complete_unit, complete_word
 from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
-from cnc_ptp.number_range import DURATION, RATE
+from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
+from cnc_ptp.ros_arguments import namespace_option, ros_arguments
+from cnc_ptp.ros_arguments import split as split_ros_arguments
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
+CLIENTS = ("status", "do", "jog", "watch")
+STARTS_NODES = ("run", "replay", *CLIENTS)
+"""Commands that ROS arguments are for."""
 
 
 def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options that offline run and graph share."""
     for option in (
+        click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
         click.option("--duration", type=DURATION, help="Seconds; without it the run ends by itself."),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
@@ -30,7 +37,15 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class Group(click.Group):
-    """Prints a refusal as one text and ends with status 2; no traceback."""
+    """Prints a refusal as one text and ends with status 2; no traceback. ROS arguments are its context's object."""
+
+    def main(self, args: Sequence[str] | None = None, *rest: Any, **options: Any) -> Any:
+        try:
+            own, ros = split_ros_arguments(sys.argv[1:] if args is None else args)
+        except CncError as error:
+            print_error(error)
+            sys.exit(WRONG_INPUT)
+        return super().main(own, *rest, obj=ros, **options)
 
     def invoke(self, context: click.Context) -> Any:
         try:
@@ -42,8 +57,13 @@ class Group(click.Group):
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="cnc_ptp")
-def main() -> None:
+@click.pass_context
+def main(context: click.Context) -> None:
     """CNC and axis kernel: run NC programs and PLC scenarios offline or as a ROS 2 graph, record, replay, report."""
+    if context.invoked_subcommand not in STARTS_NODES:
+        ros_arguments().require_none(f"cnc_ptp {context.invoked_subcommand}")
+    if context.invoked_subcommand in CLIENTS:
+        ros_arguments().require_for_client(f"cnc_ptp {context.invoked_subcommand}")
 
 
 @main.command("simulate")
@@ -59,11 +79,82 @@ def simulate_command(**options: Any) -> None:
 @run_options
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
+@namespace_option
+@click.option("--stay", is_flag=True, help="Go on when everything stands, to be commanded, until Ctrl-C.")
+@click.option(
+    "--state-rate", type=STATES_PER_SECOND, help="Live states a second on /<unit>/state, 0 = none (P-MACH-00070)."
+)
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process a node, until the job is done."""
     from cnc_ptp.commands.run import run
 
+    if options["stay"] and options["duration"] is not None:
+        raise click.UsageError("--stay and --duration exclude each other: --duration stays for so many seconds.")
+    if options["stay"] and options["free_run"]:
+        raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
+    ros_arguments().require_for_all_nodes("cnc_ptp run")
     sys.exit(run(**options))
+
+
+COMPLETE_FROM = click.option(
+    "--machine", type=click.Path(dir_okay=False), help="Machine file that completion takes units from; without it asks."
+)
+UNIT = click.argument("unit", shell_complete=complete_unit)
+
+
+@main.command("status")
+@namespace_option
+def status_command(**options: Any) -> None:
+    """Show all units of the running machine: state, position, speed, override, error."""
+    from cnc_ptp.commands.status import status
+
+    sys.exit(status(**options))
+
+
+@main.command("do", context_settings={"ignore_unknown_options": True})
+@UNIT
+@click.argument("command", shell_complete=complete_command)
+@click.argument("words", nargs=-1, metavar="[NAME=VALUE]...", shell_complete=complete_word)
+@click.option("--wait", is_flag=True, help="Until the unit stands, turns at its speed, or its program has ended.")
+@COMPLETE_FROM
+@namespace_option
+def do_command(machine: str | None, **options: Any) -> None:
+    """Give one COMMAND to a UNIT of the running machine: `do x move_absolute target=100 velocity=50`.
+
+    Arguments are name=value; where a command must have just one, its value is enough: `do channel mdi "G1 X10 F500"`.
+    Status 1 when the machine refuses.
+    """
+    from cnc_ptp.commands.do import do
+
+    sys.exit(do(**options))
+
+
+@main.command("jog")
+@click.argument("axis", shell_complete=complete_axis)
+@click.argument("direction", type=click.Choice(["+", "-"]))
+@click.option("--speed", type=POSITIVE, required=True, help="mm/s, deg/s.")
+@click.option("--distance", type=POSITIVE, help="mm, deg: ends about there.")
+@click.option("--time", "seconds", type=POSITIVE, help="Seconds.")
+@COMPLETE_FROM
+@namespace_option
+def jog_command(machine: str | None, **options: Any) -> None:
+    """Move an AXIS of the running machine while this command runs; Ctrl-C halts it."""
+    from cnc_ptp.commands.jog import jog
+
+    sys.exit(jog(**options))
+
+
+@main.command("watch")
+@click.argument("units", nargs=-1, metavar="[UNIT]...", shell_complete=complete_unit)
+@click.option("--rate", type=RATE, default=5.0, show_default=True, help="Times a second.")
+@click.option("--time", "seconds", type=POSITIVE, help="Seconds; without it until Ctrl-C.")
+@COMPLETE_FROM
+@namespace_option
+def watch_command(machine: str | None, **options: Any) -> None:
+    """Show units of the running machine, all without a name, as a table that is kept up to date."""
+    from cnc_ptp.commands.status import watch
+
+    sys.exit(watch(**options))
 
 
 @main.command("check")
@@ -81,15 +172,41 @@ def check_command(**options: Any) -> None:
 @click.option("--verify", is_flag=True, help="Re-run the kernel and compare every setpoint to the bit (the default).")
 @click.option("--publish", is_flag=True, help="Put the recorded topics back on the graph.")
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="Speed of --publish.")
+@click.option("--inputs", is_flag=True, help="PLC inputs too with --publish: a machine on this ROS domain obeys them.")
+@namespace_option
 def replay_command(**options: Any) -> None:
     """Re-run the kernel from a recording, or publish the recording again."""
     from cnc_ptp.commands.replay import replay
 
+    if not options["publish"]:
+        ros_arguments().require_none("cnc_ptp replay without --publish")
     sys.exit(replay(**options))
+
+
+def split(text: str) -> list[str]:
+    """Words with commas or blanks between."""
+    return text.replace(",", " ").split()
+
+
+def words(_context: click.Context, _option: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
+    """The words of an option that may be given again and again."""
+    return tuple(word for value in values for word in split(value))
+
+
+def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Options of what draws a recording: which part of it."""
+    for option in (
+        click.option("--axes", callback=words, multiple=True, help="Axes and spindles, the others are left out: x,s"),
+        click.option("--to", "end", type=float, help="Seconds of the recording; without it to its end."),
+        click.option("--from", "begin", type=float, help="Seconds of the recording; without it from its begin."),
+    ):
+        function = option(function)
+    return function
 
 
 @main.command("report")
 @RECORDING
+@part_options
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:
     """Make one self-contained HTML page of a recording: plots, events, errors, statistics."""
@@ -98,13 +215,31 @@ def report_command(**options: Any) -> None:
     sys.exit(report(**options))
 
 
+@main.command("plot")
+@RECORDING
+@click.argument("more_topics", metavar="[TOPIC]...", nargs=-1)
+@click.option("--topics", callback=words, multiple=True, help="Fields to draw: x/set_velocity s/actual_speed_rpm")
+@part_options
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help=".svg, .png or .html; RECORDING.svg without it.")
+def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **options: Any) -> None:
+    """Draw a recording over time, as the figures of the documentation are drawn.
+
+    A TOPIC is a unit and a field of its state, x/set_velocity, or a field of all units that move, following_error.
+    Without one each axis that moves is drawn with position, velocity, acceleration and following error, each spindle
+    with its speed.
+    """
+    from cnc_ptp.commands.plot import plot
+
+    sys.exit(plot(topics=(*topics, *(word for text in more_topics for word in split(text))), **options))
+
+
 @main.command("params")
-@click.argument("name", required=False)
-def params_command(name: str | None) -> None:
-    """Show the parameter reference: all of it, or one parameter by ID (P-AXIS-00099) or name."""
+@click.argument("words", nargs=-1, metavar="[WORD]...")
+def params_command(words: tuple[str, ...]) -> None:
+    """Show the parameter reference: what the WORDs find (id, number, parts of names, text), or all groups."""
     from cnc_ptp.commands.params import params
 
-    sys.exit(params(name))
+    sys.exit(params(" ".join(words)))
 
 
 def identify_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -174,6 +309,11 @@ def identify_dynamics_command(**options: Any) -> None:
     "-o", "--output", "outputs", type=click.Path(dir_okay=False), multiple=True, help="Picture: .svg, .png or .html."
 )
 @click.option("--magnification", type=float, help="Of the deviations in the picture; without it as they fit.")
+@click.option(
+    "--record",
+    type=click.Path(dir_okay=False),
+    help="Keep the run in this MCAP file; those of --compare in FILE_1, FILE_2, … in their order.",
+)
 def circle_command(**options: Any) -> None:
     """Circle test of a machine, run offline: circular deviation (ISO 230-4), quadrant peaks, polar plot."""
     from cnc_ptp.commands.circle import circle

@@ -21,4 +21,5 @@ class NumberRange(click.FloatRange):
 
 
 DURATION = NumberRange(0.0, LONGEST_RUN)
-RATE = NumberRange(min=0.0, min_open=True)
+STATES_PER_SECOND = NumberRange(0.0, 10_000.0)
+RATE = POSITIVE = NumberRange(min=0.0, min_open=True)

@@ -8,10 +8,10 @@ from pathlib import Path
 import click
 from rich.console import Console
 
+from cnc_ptp.plots.svg import svg_text, write_if_changed
 from figures.kinds import draw
 from figures.run import run_figure
 from figures.scenario_head import ROOT, FigureError, read_head
-from figures.svg import svg_text, write_if_changed
 
 SCENARIOS, PICTURES = ROOT / "examples" / "figures", ROOT / "docs" / "figures"
 FOLDER = click.Path(file_okay=False, path_type=Path)

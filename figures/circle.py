@@ -22,10 +22,10 @@ from cnc_ptp.commissioning.circles import least_squares_circle
 from cnc_ptp.commissioning.roundness import CircleResult, evaluate_circle
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import ChannelBlock
-from figures.colours import BLUE, GREEN, GRID, INK, RED, SOFT, YELLOW
+from cnc_ptp.plots.colours import BLUE, GREEN, GRID, INK, RED, SOFT, YELLOW
+from cnc_ptp.plots.sheet import LEFT, SMALL, Sheet, number
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import LEFT, SMALL, Sheet, number
 
 DIAMETER, ROOM = 440.0, 460.0
 COLOURS = (BLUE.set, RED.set, GREEN.set, YELLOW.set)

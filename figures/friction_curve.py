@@ -16,10 +16,10 @@ from cnc_ptp.commissioning.timing import always
 from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters.control_view import PlantParameters
-from figures.colours import BLUE, FAINT, INK, RED
+from cnc_ptp.plots.colours import BLUE, FAINT, INK, RED
+from cnc_ptp.plots.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 
 HEIGHT, BETWEEN = 260.0, 56.0
 WIDE = 0.5 * (PLOT - BETWEEN)

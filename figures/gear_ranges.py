@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from cnc_ptp.nc.gears import m_of
-from figures.colours import BAND, BLUE, PURPLE
-from figures.picture import LABEL_LINE, draw_commands, draw_panel, label_rows, shown_cycles
+from cnc_ptp.plots.colours import BAND, BLUE, PURPLE
+from cnc_ptp.plots.over_time import LABEL_LINE, draw_commands
+from cnc_ptp.plots.sheet import GAP, HEADER, SMALL, Sheet, draw_header, note, style_plot
+from figures.picture import draw_panel, label_rows, shown_cycles
 from figures.run import FigureRun
 from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import GAP, HEADER, SMALL, Sheet, draw_header, note, style_plot
 from figures.spindle_states import stretches
 
 ROW, SPEED = 22.0, 150.0

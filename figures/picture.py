@@ -2,50 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cnc_ptp.machine.blocks import StatusBit
-from figures.colours import BAND, BY_AXIS, FAINT, SOFT
-from figures.panels import UNIT_KINDS, Panel
-from figures.run import Column, FigureRun
-from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import (
+from cnc_ptp.plots import over_time
+from cnc_ptp.plots.colours import BAND, BY_AXIS, SOFT
+from cnc_ptp.plots.over_time import (
+    Curve,
+    Label,
+    draw_commands,
+    draw_curves,
+    in_micrometres,
+    keep_peaks_out,
+    label_height,
+    write_values,
+)
+from cnc_ptp.plots.panels import UNIT_KINDS, Panel
+from cnc_ptp.plots.sheet import (
     GAP,
     HEADER,
-    LETTER,
-    PLOT,
-    RIGHT,
     TITLE_OFFSET,
     Name,
     Sheet,
     draw_header,
     note,
     style_plot,
-    write_value,
 )
+from figures.run import Column, FigureRun
+from figures.scenario_head import FigureError, FigureScenario
 
-LABEL_LINE = 13.0
 BANDS = {StatusBit.COMPENSATING: "compensating", StatusBit.EXT_SETPOINT: "external"}
 """What is tinted, by bits of the status."""
-FINE = 0.1
-"""mm; what stays below is shown in µm."""
 NEGLIGIBLE = 0.01
 """Of the largest lag; the rest is not waited for."""
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """A line of a panel: its name in the panel's header, its values, its colour, and whether it is a set value."""
-
-    name: str
-    values: Column
-    colour: str
-    is_set: bool
 
 
 def draw(figure: FigureScenario, run: FigureRun) -> Figure:
@@ -53,12 +46,12 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     end = shown_cycles(run)
     panels = list(chosen_panels(figure, run))
     labels = label_rows(run, end)
-    label_height = LABEL_LINE * (1 + max(label.row for label in labels)) if labels else 0.0
-    sheet = Sheet(figure, label_height + sum(HEADER + panel.height + GAP for _, panel in panels))
+    above = label_height(labels)
+    sheet = Sheet(figure, above + sum(HEADER + panel.height + GAP for _, panel in panels))
     upper = sheet.upper
     for title, panel in panels:
         first = (title, panel) == panels[0]
-        room = label_height if first else 0.0
+        room = above if first else 0.0
         plot = sheet.plot(upper + HEADER + room, panel.height)
         draw_panel(plot, title, run, end, room_above=room)
         draw_commands(plot, labels, with_texts=first)
@@ -99,46 +92,9 @@ def last_above(values: Column, part: float) -> int:
 # commands
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
-    """What was commanded at one moment (s); `row` is counted upwards from the panel, so that no two overlap."""
-
-    time: float
-    text: str
-    row: int
-    at_left: bool
-    """Of its line, where the right edge is near."""
-
-
 def label_rows(run: FigureRun, end: int) -> list[Label]:
     """The commands of each moment in the lowest row that has room."""
-    texts: dict[float, list[str]] = {}
-    for marker in run.markers:
-        texts.setdefault(marker.time, []).append(marker.text)
-    labels: list[Label] = []
-    row_ends: list[float] = []
-    for time, words in texts.items():
-        place, text = PLOT * time / ((end - 1) * run.cycle_time), ", ".join(words)
-        length = LETTER * len(text) + 12.0
-        at_left = place + length > PLOT + RIGHT
-        begin = place - length if at_left else place
-        row = next((row for row, row_end in enumerate(row_ends) if begin >= row_end), len(row_ends))
-        row_ends[row : row + 1] = [begin + length]
-        labels.append(Label(time, text, row, at_left))
-    return labels
-
-
-def draw_commands(plot: Axes, labels: Iterable[Label], *, with_texts: bool) -> None:
-    """A line down through the panel for each command; in the first panel it reaches up to its text."""
-    for label in labels:
-        plot.axvline(label.time, color=FAINT, linewidth=0.9, dashes=(3, 2), zorder=0.6)
-        if not with_texts:
-            continue
-        top, at = 3.0 + label.row * LABEL_LINE, (label.time, 1.0)
-        across, side = (-4.0, "right") if label.at_left else (4.0, "left")
-        note(plot, label.text, at, (across, top), of=("data", "axes fraction"), ha=side)
-        dashes = {"color": FAINT, "linewidth": 0.9, "linestyle": (0, (3, 2)), "shrinkA": 0, "shrinkB": 0}
-        note(plot, "", at, (0.0, top + 8.0), of=("data", "axes fraction"), arrowprops={"arrowstyle": "-", **dashes})
+    return over_time.label_rows(run.markers, 0.0, (end - 1) * run.cycle_time)
 
 
 # panels
@@ -148,9 +104,7 @@ def draw_panel(plot: Axes, title: str, run: FigureRun, end: int, *, room_above: 
     """Curves, header and scales of one panel; the first one has room for the texts of commands above it."""
     time = run.time[:end]
     drawn, unit = fine_unit(title, run, list(curves(title, run, end)))
-    for curve in sorted(drawn, key=lambda curve: curve.is_set):
-        width = 1.4 if curve.is_set else 3.2
-        plot.plot(time, curve.values, color=curve.colour, linewidth=width, solid_joinstyle="round")
+    draw_curves(plot, time, drawn)
     _, panel = next(drawn_panels(title, run))
     if panel.with_override:
         draw_override(plot, run, end, drawn)
@@ -186,9 +140,8 @@ def fine_unit(title: str, run: FigureRun, drawn: list[Curve]) -> tuple[list[Curv
     """The curves and their unit; where a panel may, small ways in µm."""
     units = [run.units[name].shown(panel.unit) for name, panel in drawn_panels(title, run)]
     fine = all(panel.fine for _, panel in drawn_panels(title, run)) and set(units) == {"mm"}
-    if not fine or any(np.abs(curve.values).max() >= FINE for curve in drawn):
-        return drawn, " or ".join(dict.fromkeys(units))
-    return [Curve(curve.name, 1000.0 * curve.values, curve.colour, curve.is_set) for curve in drawn], "µm"
+    micrometres = in_micrometres(drawn) if fine else None
+    return (drawn, " or ".join(dict.fromkeys(units))) if micrometres is None else (micrometres, "µm")
 
 
 def draw_override(plot: Axes, run: FigureRun, end: int, drawn: list[Curve]) -> None:
@@ -220,28 +173,3 @@ def draw_bands(plot: Axes, run: FigureRun, end: int, *, with_texts: bool) -> Non
                 plot.axvspan(begin, end_time, color=BAND, linewidth=0.0, zorder=0.1)
                 if with_texts:
                     note(plot, text, (begin, 1.0), (5.0, -12.0), of=("data", "axes fraction"))
-
-
-def keep_peaks_out(plot: Axes, drawn: list[Curve]) -> None:
-    """Where an actual value shoots far beyond all set values (a step of velocity), their scale is kept."""
-    sets = [curve.values for curve in drawn if curve.is_set]
-    if not sets:
-        return
-    low, high = min(0.0, *map(np.min, sets)), max(0.0, *map(np.max, sets))
-    bottom, top = plot.get_ylim()
-    if top - bottom > 3.0 * (high - low) > 0.0:
-        plot.set_ylim(low - 0.15 * (high - low), high + 0.15 * (high - low))
-
-
-def write_values(plot: Axes, drawn: list[Curve], *, at_end: bool) -> None:
-    """At the right: where the axis ends, or the highest and lowest set value."""
-    low, high = plot.get_ylim()
-    written: list[float] = []
-    for curve in (curve for curve in drawn if curve.is_set):
-        last = float(curve.values[-1])
-        for value in [last] if at_end else [float(curve.values.max()), float(curve.values.min())]:
-            near = any(abs(value - other) < 0.1 * (high - low) for other in written)
-            if near or (not at_end and abs(value) < 0.02 * (high - low)):
-                continue
-            written.append(value)
-            write_value(plot, value, curve.colour)

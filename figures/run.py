@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
@@ -17,28 +15,18 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.parameters.encoder import uses_feed_constant
-from figures.panels import UNIT_KINDS
+from cnc_ptp.plots.over_time import Column, Marker
+from cnc_ptp.plots.panels import UNIT_KINDS
+from cnc_ptp.recording.command_words import brief
 from figures.scenario_head import FigureError, FigureScenario
 
-Column = npt.NDArray[np.float64]
 NOT_SHOWN = INTERNAL | {"reset_feedforward"}
 """Commands that come by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
-class Marker:
-    """A command that took effect, or an error that is shown: when (s) and what.
-
-    Commands of cycle 0 are the set-up and have none.
-    """
-
-    time: float
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
 class DrawnUnit:
-    """What a unit is and counts in: `kind` of figures.panels, `way` mm or deg, `torque` N or Nm."""
+    """What a unit is and counts in: `kind` of cnc_ptp.plots.panels, `way` mm or deg, `torque` N or Nm."""
 
     kind: str
     way: str
@@ -53,7 +41,8 @@ class DrawnUnit:
 class FigureRun:
     """A run of `cycles` cycles.
 
-    `columns[unit][field]` has one value a cycle, fields as in the unit's block (mm, s, deg).
+    `columns[unit][field]` has one value a cycle, fields as in the unit's block (mm, s, deg). Commands of
+    cycle 0 are the set-up and have no marker.
     """
 
     cycle_time: float
@@ -93,7 +82,7 @@ def run_figure(figure: FigureScenario) -> FigureRun:
     program = str(figure.program_path) if figure.program_path else None
     try:
         machine = read_machine(figure.machine_path)
-        job = read_job(machine, program=program, scenario=str(figure.path))
+        job = read_job(machine, program=program, scenario=str(figure.path), may_be_empty=True)
     except CncError as error:
         raise FigureError(figure.path, error) from None
     for name in figure.axes:
@@ -139,7 +128,7 @@ def _markers(records: list[CommandRecord], cycle_time: float, *, named: bool) ->
     """What is given again and again (setpoints, block by block) is marked where it begins; `named`: with its axis."""
     last = ""
     for record in records:
-        text = f"{record.target}: {_text(record)}" if named else _text(record)
+        text = f"{record.target}: {brief(record)}" if named else brief(record)
         if record.cycle and text != last:
             last = text
             yield Marker(record.cycle * cycle_time, text)
@@ -155,25 +144,3 @@ def _columns(blocks: list[object], kind: str) -> dict[str, Column]:
         name: np.array([value for block in blocks for value in getattr(block, name)], dtype=np.float64)
         for name in UNIT_KINDS[kind].columns
     }
-
-
-SHOWN = {
-    "factor": "",
-    "target": "",
-    "distance": "",
-    "position": "",
-    "percent": " %",
-    "difference": "",
-    "weight_percent": " %",
-    "speed_rpm": " rpm",
-}
-"""The argument that stands behind the name of a command, and its unit where that is not the axis'."""
-SWITCHED = {True: "on", False: "off"}
-
-
-def _text(record: CommandRecord) -> str:
-    """`move_absolute` with its target 1000.0 becomes 'move absolute 1000'; its dynamics are in the caption."""
-    arguments = json.loads(record.arguments_json)
-    shown = [SWITCHED[arguments["on"]]] if "on" in arguments else []
-    shown += [f"{arguments[name]:g}{unit}" for name, unit in SHOWN.items() if name in arguments]
-    return " ".join([record.command.replace("_", " "), *shown]).replace("-", "−")

@@ -9,7 +9,7 @@ The head is the block of comment lines at the top of the file, `key: value` each
     # axes: x
 
 Besides there may be
-- `panels: velocity, following error`: these in this order (figures/panels.py) instead of the usual ones,
+- `panels: velocity, following error`: these in this order (cnc_ptp/plots/panels.py) instead of the usual ones,
 - `program: part.nc`: an NC program beside the scenario, which starts with it on the first channel,
 - `kind: circle`: another picture than panels over time (figures/kinds.py), with `turns:` (figures/circle.py)
   or `over:` and `points:` (figures/spindle_curve.py),

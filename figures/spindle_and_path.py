@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cnc_ptp.machine.blocks import ChannelBlock, ChannelStateCode
-from figures.colours import BAND, BLUE, FAINT, GREEN
+from cnc_ptp.plots.colours import BAND, BLUE, FAINT, GREEN
+from cnc_ptp.plots.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot
 from figures.spindle_states import stretches
 
 HEIGHT = 120.0

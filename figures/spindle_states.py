@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
-from figures.colours import BAND, FAINT, GREEN, PURPLE
-from figures.picture import LABEL_LINE, draw_commands, draw_panel, label_rows, shown_cycles
+from cnc_ptp.plots.colours import BAND, FAINT, GREEN, PURPLE
+from cnc_ptp.plots.over_time import LABEL_LINE, draw_commands
+from cnc_ptp.plots.sheet import GAP, HEADER, SMALL, Sheet, draw_header, note, style_plot
+from figures.picture import draw_panel, label_rows, shown_cycles
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureScenario
-from figures.sheet import GAP, HEADER, SMALL, Sheet, draw_header, note, style_plot
 
 SPEED, STATE = 150.0, 18.0
 """Heights in points: of the speed, of each state."""

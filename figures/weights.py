@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from cnc_ptp.control.friction_compensation import FrictionTable
 from cnc_ptp.parameters.control_view import FrictionParameters
-from figures.colours import BAND, GREEN, PURPLE, RED
+from cnc_ptp.plots.colours import BAND, GREEN, PURPLE, RED
+from cnc_ptp.plots.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot, write_value
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
-from figures.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot, write_value
 
 HEIGHT = 110.0
 BEFORE, AFTER = 2.0, 1.5

@@ -1,6 +1,7 @@
 """ros2 launch cnc_ptp machine.launch.py machine:=config/mill.yaml program:=examples/bracket.nc record:=runs/demo.mcap
 
-Thin on purpose: the supervisor of `cnc_ptp run` starts one process a node and ends them in order.
+One process that starts, watches and ends all nodes in order (`cnc_ptp run`), or with separate:=true each node as a Node
+of its own: to be taken over into other launch files, with what else belongs to the cell.
 """
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
@@ -9,18 +10,71 @@ from launch_ros.actions import Node
 
 from launch import LaunchDescription
 
-OPTIONS = ("program", "scenario", "duration", "record")
+OPTIONS = {
+    "program": "NC program for the first channel",
+    "scenario": "timed PLC commands (YAML)",
+    "duration": "seconds; without it the run ends by itself",
+    "record": "MCAP recording to write",
+    "state_rate": "live states a second, 0 = none",
+    "namespace": "ROS namespace of all nodes",
+}
+SWITCHES = {
+    "free_run": "as fast as all nodes follow, instead of in real time",
+    "stay": "go on when everything stands, to be commanded",
+    "separate": "a Node action for every node, instead of one for cnc_ptp run",
+}
 
 
 def start(context):
-    arguments = [LaunchConfiguration("machine").perform(context)]
-    for option in OPTIONS:
-        value = LaunchConfiguration(option).perform(context)
-        arguments += [f"--{option}", value] if value else []
-    return [Node(package="cnc_ptp", executable="run", arguments=arguments, output="screen", on_exit=Shutdown())]
+    given = {name: LaunchConfiguration(name).perform(context) for name in ("machine", *OPTIONS, *SWITCHES)}
+    switches = {name: given.pop(name).lower() in ("true", "1", "yes", "on") for name in SWITCHES}
+    given = {name: value for name, value in given.items() if value}
+    namespace = given.pop("namespace", None)
+    if switches["separate"]:
+        return separate_nodes(given, switches, namespace)
+    arguments = [given.pop("machine")]
+    for option, value in given.items():
+        arguments += [f"--{option.replace('_', '-')}", value]
+    arguments += ["--free-run"] if switches["free_run"] else []
+    arguments += ["--stay"] if switches["stay"] else []
+    return [node("run", arguments, namespace=namespace, on_exit=Shutdown())]
+
+
+def separate_nodes(given, switches, namespace):
+    """The end of the clock ends the launch; the recorder, told to end, first takes what still comes."""
+    from cnc_ptp.commands.paths import keep_inputs
+    from cnc_ptp.machine.gate import CLOCK
+    from cnc_ptp.machine.job import read_job
+    from cnc_ptp.nodes.supervisor import Job, command_lines
+    from cnc_ptp.nodes.topics import RECORDER
+    from cnc_ptp.parameters import read_machine
+
+    duration = float(given.pop("duration")) if "duration" in given else None
+    rate = float(given.pop("state_rate")) if "state_rate" in given else None
+    job = Job(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
+    keep_inputs(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
+    machine = read_machine(job.machine)
+    read_job(machine, program=job.program, scenario=job.scenario)
+    observers = [RECORDER] if job.record else []
+    return [
+        node(executable, arguments, name=name, namespace=namespace, on_exit=Shutdown() if name == CLOCK else refused)
+        for name, (executable, *arguments) in command_lines(machine, job, observers)
+    ]
+
+
+def refused(event, context):
+    """A node that refuses to start (status 2) ends the launch: the others would wait. A later death they notice."""
+    return Shutdown(reason=f"{event.process_name} was refused") if event.returncode == 2 else None
+
+
+def node(executable, arguments, **options):
+    return Node(package="cnc_ptp", executable=executable, arguments=arguments, output="screen", **options)
 
 
 def generate_launch_description():
     declared = [DeclareLaunchArgument("machine", description="machine file (ROS parameters YAML)")]
-    declared += [DeclareLaunchArgument(option, default_value="") for option in OPTIONS]
+    for name, text in OPTIONS.items():
+        declared.append(DeclareLaunchArgument(name, default_value="", description=text))
+    for name, text in SWITCHES.items():
+        declared.append(DeclareLaunchArgument(name, default_value="false", description=text))
     return LaunchDescription([*declared, OpaqueFunction(function=start)])

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import copysign, sqrt
+from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
+from cnc_ptp.axis.carried import CarriedMotion
 from cnc_ptp.axis.checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import ExternalSetpoints
 from cnc_ptp.axis.faults import (
+    FEED_WITHHELD,
     GANTRY_DIFFERENCE,
     GROUP_ERROR,
+    JOG_AT_LIMIT,
     SETPOINT_TOO_FAR,
     SETPOINTS_STOPPED,
     SOFT_LIMIT_NEGATIVE,
@@ -41,9 +44,9 @@ Report = Callable[[int, int, str], None]
 class Axis:
     """The setpoint side of an axis. Commands (one class a group) change it, the unit around it computes cycles.
 
-    The setpoint is the basic motion (PTP generator) plus what a compensation and external setpoints add. Every fault
-    ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time P-AXIS-00196), or on that of the motion in
-    work where this is stronger.
+    The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints and a
+    flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time
+    P-AXIS-00196), or on that of the motion in work where this is stronger.
     """
 
     def __init__(
@@ -65,7 +68,7 @@ class Axis:
             limits=self.own_limits._replace(velocity=parameters.max_velocity),
         )
         self.superposed = False
-        """Compensation or external setpoints add something to the basic motion."""
+        """Something is added to the basic motion."""
         self.override_filter = OverrideFilter(
             steps=parameters.override_steps, interval_cycles=round(parameters.override_interval / cycle_time)
         )
@@ -74,11 +77,17 @@ class Axis:
         )
         self.coupling: Coupling | None = None
         """To the master; it stays until a reset when an error has put the axis on its own ramp."""
+        self.carried: CarriedMotion | None = None
+        """What the coupling adds to the path of a channel; None where it is the basic motion itself."""
         self.slaves: set[str] = set()
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.error_id = 0
         self.has_been_stopped = False
+        self.path_direction = 0.0
+        """-1 or +1: the direction in which the path of a channel waits for the feed release."""
+        self._before: tuple[int, State] | None = None
+        """The last cycle with a superposition, and its setpoint."""
         self.override_percent = 100.0
         self._master_velocity = 0.0
         self._master_has_job = False
@@ -88,6 +97,12 @@ class Axis:
         self._report_error = report_error
         self._report_warning = report_warning
 
+    @property
+    def modulo_range(self) -> tuple[float, float]:
+        """Lower end and length of the modulo range, mm (deg); length 0 for an axis without one."""
+        low, high = self.parameters.modulo_low, self.parameters.modulo_high
+        return (low, high - low) if self.parameters.modulo else (0.0, 0.0)
+
     # setpoints
 
     def setpoint(self, cycle: int) -> State:
@@ -95,10 +110,14 @@ class Axis:
         return self.superimposed(cycle, self.ptp.state(cycle))
 
     def superimposed(self, cycle: int, base: State) -> State:
-        """The basic motion at `cycle` with compensation and external setpoints."""
+        """The basic motion at `cycle` with all that is added."""
         if not self.superposed:
             return base
-        return self.external.at(cycle, self.compensation.at(cycle, base))
+        p, v, a, j = self.external.at(cycle, self.compensation.at(cycle, base))
+        if self.carried is None:
+            return p, v, a, j
+        position, velocity, acceleration, jerk = self.carried.state(cycle)
+        return p + position, v + velocity, a + acceleration, j + jerk
 
     def shift(self, cycle: int) -> float:
         """Where the axis is beside its basic motion for good, mm (deg): targets of the axis lie there too."""
@@ -106,7 +125,8 @@ class Axis:
         return self.compensation.offset + self.external.zero(cycle)
 
     def moving(self, cycle: int) -> bool:
-        return not self.ptp.finished(cycle) or (self.superposed and self.external.moving(cycle))
+        added = self.superposed and (self.compensation.moving or self.external.moving(cycle))
+        return added or not self.ptp.finished(cycle)
 
     def absorb(self, cycle: int) -> None:
         """The basic motion takes over what compensation and external setpoints have added; both are over.
@@ -147,6 +167,7 @@ class Axis:
     def _end_superposition(self) -> None:
         self.compensation.reset()
         self.external.reset()
+        self.carried = None
         self.superposed = False
 
     def stop(self, cycle: int, *, locks: bool = True) -> None:
@@ -166,12 +187,23 @@ class Axis:
         self.override_percent = float(percent) if self.ptp.override else 0.0
         return acts
 
+    def release_feed(self, cycle: int, *, forward: bool, backward: bool) -> None:
+        """Releases each direction of motion, or withholds it."""
+        self.ptp.release(cycle, forward=forward, backward=backward)
+        if not self.ptp.withholds(self.path_direction):
+            self.path_direction = 0.0
+
+    @property
+    def feed_withheld(self) -> bool:
+        """A motion, or the path of the channel that moves the axis, waits for the feed release of its direction."""
+        return self.ptp.withheld or (self.on_path and self.path_direction != 0.0)
+
     # couplings
 
     @property
     def on_path(self) -> bool:
         """True while a channel moves the axis."""
-        return self.state == S.SYNCHRONIZED_MOTION and self.coupling is None
+        return self.state == S.SYNCHRONIZED_MOTION and (self.coupling is None or self.carried is not None)
 
     @property
     def coupled(self) -> bool:
@@ -193,8 +225,11 @@ class Axis:
         return self.ptp.target_velocity
 
     def give_up_coupling(self, cycle: int, error_id: int, reason: str) -> None:
-        """A coupling that cannot begin; the axis has not moved yet."""
+        """A coupling that cannot begin; it has not moved the axis yet. A path that counts on it must not go on."""
         assert self.coupling is not None
+        if self.carried is not None:
+            self.fault(cycle, error_id, f"cannot follow {self.coupling.master} on top of the path: {reason}")
+            return
         text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands, it is not coupled"
         self.coupling = None
         self.state = self.rest_state()
@@ -235,12 +270,28 @@ class Axis:
             return
         if self.state in (S.DISCRETE_MOTION, S.STOPPING):
             self.compensation.end()
+            if self.compensation.moving:
+                return
+        if self._jogs_to_limit:
+            self._tell_limit(cycle)
         if self.superposed and self.external.mode is not None:
             self._finish(S.CONTINUOUS_MOTION)
         elif self.superposed and self.external.moving(cycle):
             self._finish(S.STOPPING)
         else:
             self._finish(self.rest_state())
+
+    @property
+    def _jogs_to_limit(self) -> bool:
+        """Only a jog has a job with an end in ContinuousMotion: to stand at the soft limit, as far as it is let."""
+        return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
+
+    def _tell_limit(self, cycle: int) -> None:
+        position, parameters = self.ptp.state(cycle)[0], self.parameters
+        positive = position == parameters.soft_limit_positive
+        name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
+        text = f"axis {self.name}: the jog has come to the {name} soft limit {position} {self.unit} ({parameter})"
+        self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; the axis stands")
 
     def _finish(self, state: S) -> None:
         if state != self.state:
@@ -257,6 +308,8 @@ class Axis:
             bits |= StatusBit.PROTECTED
         if self.has_been_stopped:
             bits |= StatusBit.HAS_BEEN_STOPPED
+        if self.ptp.restricted and self.feed_withheld:
+            bits |= StatusBit.FEED_WITHHELD
         if self.superposed:
             bits |= StatusBit.COMPENSATING if self.compensation.active else 0
             bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0
@@ -280,7 +333,7 @@ class Axis:
 
         The state of the first cycle has been advanced already.
         """
-        if self.superposed or self.error_id:
+        if self.superposed or self.error_id or (self.ptp.restricted and self.state == S.SYNCHRONIZED_MOTION):
             return False
         last_cycle = first_cycle + len(setpoints) - 1
         if self.state in (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION) and self.ptp.arrived(last_cycle):
@@ -295,16 +348,61 @@ class Axis:
             return True
         return not self.target_window.watching
 
-    def watch(self, cycle: int, setpoint: State) -> None:
-        """What nothing has checked beforehand: soft limits, external setpoints that jump or stay away."""
-        if self.error_id:
-            return
-        if self.superposed:
-            self._watch_superposition(cycle, setpoint)
-        elif self.coupling is not None or self.state == S.CONTINUOUS_MOTION:
-            self._watch_soft_limits(cycle, setpoint)
+    def watch(self, cycle: int, setpoint: State) -> State:
+        """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
 
-    def _watch_superposition(self, cycle: int, setpoint: State) -> None:
+        Returns the setpoint to be used, which is another one where a fault prevents it.
+        """
+        if self.error_id:
+            return setpoint
+        if self.ptp.withholds(setpoint[1]) and not self._stops_in_time(cycle, setpoint[1]):
+            where = "forwards" if setpoint[1] > 0.0 else "backwards"
+            reason = f"it is moved {where}, which is not released (set_feed_release)"
+            return self._fault_before(cycle, FEED_WITHHELD, reason, setpoint)
+        if self.superposed:
+            return self._watch_superposition(cycle, setpoint)
+        if self.coupling is not None or (self.state == S.CONTINUOUS_MOTION and not self._jogs_to_limit):
+            self._watch_soft_limits(cycle, setpoint)
+        return setpoint
+
+    def _stops_in_time(self, cycle: int, velocity: float) -> bool:
+        """For a motion in a withheld direction: its own generator or its channel brakes it already, or will."""
+        if self.on_path:
+            return self._path_stops_in_time(cycle, velocity)
+        if self.coupled:
+            return False
+        if not self.superposed or self.state == S.STOPPING:
+            return True
+        driven = self.external.mode is not None and self.ptp.withholds(self.external.contribution(cycle)[1])
+        return not driven and self.ptp.withholds(self.ptp.state(cycle)[1])
+
+    def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
+        """The channel brakes its path; what is added to that must not drive the axis the withheld way."""
+        added = self.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
+        if self.ptp.withholds(velocity - added):
+            self.path_direction = copysign(1.0, velocity - added)
+        driven = self.carried is not None or self.external.mode is not None
+        return not (driven and self.ptp.withholds(added))
+
+    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: State) -> State:
+        """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
+
+        Without a superposition there, it begins at `setpoint`. The acceleration of a superposition ends at once.
+        """
+        begin = cycle
+        if self._before is not None and self._before[0] == cycle - 1:
+            begin, setpoint = self._before
+        position, velocity, acceleration, _ = setpoint
+        if self.superposed:
+            own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(begin)[2]
+            acceleration = self._bearable(velocity, own)
+        self.ptp.take_over(begin, position, velocity, acceleration)
+        self._end_superposition()
+        self.ptp.stop(begin, self.own_limits, at_least=True)
+        self.fault(cycle, error_id, reason)
+        return self.ptp.state(cycle)
+
+    def _watch_superposition(self, cycle: int, setpoint: State) -> State:
         if self.coupled and not self._master_has_job and setpoint[1] == 0.0:
             self.compensation.end()
         rejected, silence = self.external.rejected, self.external.silence(cycle)
@@ -314,16 +412,19 @@ class Axis:
                 f"external setpoint {packet.position} {self.unit} is {abs(way):g} {self.unit} away, farther than the "
                 f"axis gets at {self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
             )
-            self.fault(cycle, SETPOINT_TOO_FAR, reason)
+            self.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
         elif silence > self._longest_silence:
             timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
-            self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves")
+            self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
         elif abs(setpoint[1]) > self.parameters.max_velocity * (1.0 + ROUNDING):
             limit = f"{self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
-            reason = f"the superposed motions add up to {abs(setpoint[1]):g} {self.unit}/s, above the maximum {limit}"
-            self.fault(cycle, SUM_TOO_FAST, reason, setpoint)
+            total = f"{abs(setpoint[1]):g} {self.unit}/s"
+            reason = f"the superposed motions would add up to {total}, above the maximum {limit}"
+            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
         else:
             self._watch_soft_limits(cycle, setpoint)
+        self._before = cycle, setpoint
+        return setpoint
 
     def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
         position, velocity = setpoint[:2]

@@ -73,13 +73,10 @@ class MotionChecks:
             reason = f"{name} {value} {unit} is above the maximum {most} {unit} (P-AXIS-00008)"
             raise self.refusal(command, ACCELERATION_TOO_HIGH, reason)
 
-    def emergency_deceleration(self, command: str, value: float) -> None:
-        """Raises 23013 above the maximum, or above the emergency deceleration where this is larger."""
-        most = max(self._parameters.max_acceleration, self._parameters.emergency_deceleration)
-        if value > most:
-            unit = f"{self._unit}/s²"
-            reason = f"deceleration {value} {unit} is above the maximum {most} {unit} (P-AXIS-00008, P-AXIS-00003)"
-            raise self.refusal(command, ACCELERATION_TOO_HIGH, reason)
+    @property
+    def most_deceleration(self) -> float:
+        """The largest deceleration of an emergency stop, mm/s² (deg/s²): P-AXIS-00008, or P-AXIS-00003 if larger."""
+        return max(self._parameters.max_acceleration, self._parameters.emergency_deceleration)
 
     def rescaled_jerk(self, command: str, limits: Limits) -> tuple[Limits, str | None]:
         """A jerk that brings an acceleration up within less than a cycle is reduced to A/T, with a warning."""

@@ -6,13 +6,15 @@ and ends with r2: AK+ and AK- for D > 0, AK- and AK+ for D < 0. Its peak v solve
     |D| = v·T - v²/2·(1/r1 + 1/r2)      with v <= VK and v·(1/r1 + 1/r2) <= T
 
 and where no such v exists, the largest one is taken: what cannot be reached is cut. The compensation is tied to the
-basic motion: it goes in its direction, its velocity is multiplied by h = min(1, |v|/VP), and its time stands while the
-basic motion stands. So D is reached exactly where the basic motion keeps VP or more, and less of it otherwise.
+basic motion: it goes in its direction, its velocity follows that of the trapezoid times h = min(1, |v|/VP), and its
+time stands while both stand. It never changes faster than r1 and r2: where the basic motion takes h in or out faster,
+it lags behind, and may come to rest after the basic motion. As it stays within the trapezoid, D is never exceeded; it
+is reached exactly where the basic motion keeps VP or more, less of it otherwise.
 """
 
 from __future__ import annotations
 
-from math import sqrt
+from math import copysign, sqrt
 
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.profile import State
@@ -64,12 +66,15 @@ class Compensation:
     def __init__(self, *, cycle_time: float) -> None:
         """`cycle_time` in s."""
         self._cycle_time = cycle_time
-        self._direction = 1.0
+        self._direction = self._side = 1.0
         self._process_velocity = 1.0
+        self._rise = self._fall = 0.0
         self._profile: Profile | None = None
         self._ran = 0
         self._cycle = 0
         self._base = (0.0, 0.0)
+        self._speed = 0.0
+        self._lags = False
         self.offset = 0.0
         """Axis minus basic motion, mm (deg)."""
 
@@ -82,34 +87,48 @@ class Compensation:
     def active(self) -> bool:
         return self._profile is not None
 
+    @property
+    def moving(self) -> bool:
+        """True while it adds a velocity to the basic motion."""
+        return self._profile is not None and self._speed > 0.0
+
     def start(self, cycle: int, base: State, *, direction: float, process_velocity: float, profile: Profile) -> None:
         """Begins at `cycle`, where the basic motion has the state `base` and goes in `direction` (+1, -1)."""
-        self._profile = profile
-        self._direction = direction
+        sign = copysign(1.0, profile.rows[0][3])
+        self._profile = Profile([(t, sign * p, sign * v, sign * a, 0.0) for t, p, v, a, _ in profile.rows])
+        self._rise, self._fall = self._profile.rows[0][3], -self._profile.rows[-2][3]
+        self._direction, self._side = direction, direction * sign
         self._process_velocity = process_velocity
         self._ran = 0
         self._cycle, self._base = cycle, base[1:3]
-
-    def braking(self) -> bool:
-        """True in the last ramp of the trapezoid."""
-        return self._profile is not None and self._time >= self._profile.starts[-2]
+        self._speed, self._lags = 0.0, False
 
     def stop(self) -> bool:
-        """Ramps the compensation down with its last rate: D becomes what is reached then. False in its last ramp."""
+        """Ramps the compensation down with its last rate: D becomes what is reached then. False in its last ramp.
+
+        One that still rises after a rest of the basic motion rises no further.
+        """
         profile = self._profile
-        if profile is None or self.braking():
+        if profile is None:
             return False
         way, velocity, _, _ = profile.state_at(self._time)
-        rate = profile.rows[-2][3]
-        d = -velocity / rate
+        h = self._follow(self._base[0])[0]
+        if self._lags and self._speed < velocity * h:
+            velocity = self._speed / h
+        elif self._time >= profile.starts[-2]:
+            return False
+        d = velocity / self._fall
         end = (d, way + 0.5 * velocity * d, 0.0, 0.0, 0.0)
-        self._profile = Profile([(0.0, way, velocity, rate, 0.0), end]) if d > 0.0 else None
+        self._profile = Profile([(0.0, way, velocity, -self._fall, 0.0), end]) if d > 0.0 else None
         self._ran = 0
         return True
 
     def end(self) -> None:
-        """The basic motion has come to its end: so does the compensation."""
-        self._profile = None
+        """The basic motion has come to its end: so does the compensation, on its last ramp where it still adds some."""
+        if self.moving:
+            self.stop()
+        else:
+            self._profile = None
 
     def reset(self) -> None:
         """The offset has been taken over by the basic motion."""
@@ -122,18 +141,22 @@ class Compensation:
             self._advance(cycle, base)
         position, velocity, acceleration, jerk = base
         position += self.offset
-        profile = self._profile
-        if profile is None:
+        if self._profile is None:
             return position, velocity, acceleration, jerk
-        _, v, a, _ = profile.state_at(self._time)
-        h, dh, ddh = self._follow(velocity, acceleration, jerk)
-        s = self._direction
-        return (
-            position,
-            velocity + s * v * h,
-            acceleration + s * (a * h + v * dh),
-            jerk + s * (2.0 * a * dh + v * ddh),
-        )
+        rate, change = self._rates(self._profile, base)
+        s = self._side
+        return position, velocity + s * self._speed, acceleration + s * rate, jerk + s * change
+
+    def _rates(self, profile: Profile, base: State) -> tuple[float, float]:
+        """First and second derivative of the additional speed, the first one within the rates."""
+        _, w, dw, _ = profile.state_at(self._time)
+        h, dh, ddh = self._follow(*base[1:])
+        if self._lags:
+            return (self._rise if w * h > self._speed else -self._fall), 0.0
+        rate = dw * h + w * dh
+        if -self._fall <= rate <= self._rise:
+            return rate, 2.0 * dw * dh + w * ddh
+        return min(max(rate, -self._fall), self._rise), 0.0
 
     def _follow(self, velocity: float, acceleration: float = 0.0, jerk: float = 0.0) -> tuple[float, float, float]:
         """h = min(1, v/VP) along the direction of the compensation, and its two derivatives."""
@@ -146,23 +169,35 @@ class Compensation:
         return ratio, scale * acceleration, scale * jerk
 
     def _advance(self, cycle: int, base: State) -> None:
-        """Integrates the cycles since the last call: the way of the trapezoid times the mean of h."""
+        """The cycles since the last call: on to the speed that the basic motion asks for, as far as the rates allow."""
         profile = self._profile
         assert profile is not None
-        (v0, a0), self._base = self._base, base[1:3]
+        before, self._base = self._base, base[1:3]
         cycles, self._cycle = cycle - self._cycle, cycle
-        v1, a1 = base[1:3]
-        if v0 == 0.0 and v1 == 0.0:
+        if before[0] == 0.0 and base[1] == 0.0 and self._speed == 0.0:
             return
-        middle = 0.5 * (v0 + v1) + 0.125 * (a0 - a1) * cycles * self._cycle_time
-        h0, hm, h1 = (self._follow(v)[0] for v in (v0, middle, v1))
-        mean = (h0 + 4.0 * hm + h1) / 6.0
-        start = self._time
+        start, seconds = self._time, cycles * self._cycle_time
         self._ran += cycles
         end = min(self._time, profile.duration)
+        wanted = profile.state_at(end)[1] * self._follow(base[1])[0]
+        change = min(max(wanted - self._speed, -self._fall * seconds), self._rise * seconds)
+        reached = self._speed + change
+        late = abs(wanted - reached) > ROUNDING * (wanted + self._speed)
+        if late or self._lags:
+            way = seconds * (self._speed + 0.5 * change)
+        else:
+            way = self._way(profile, start, end, before, seconds)
+        self.offset += self._side * way
+        self._speed, self._lags = reached if late else wanted, late
+        if self._time >= profile.duration * (1.0 - ROUNDING) and not late:
+            self._profile = None
+
+    def _way(self, profile: Profile, start: float, end: float, before: tuple[float, float], seconds: float) -> float:
+        """The way of the trapezoid from `start` to `end` times the mean of h since the basic motion was as `before`."""
+        (v0, a0), (v1, a1) = before, self._base
+        middle = 0.5 * (v0 + v1) + 0.125 * (a0 - a1) * seconds
+        h0, hm, h1 = (self._follow(v)[0] for v in (v0, middle, v1))
+        mean = (h0 + 4.0 * hm + h1) / 6.0
         w0, wm, w1 = (profile.state_at(t)[1] for t in (start, 0.5 * (start + end), end))
         way = mean * (profile.state_at(end)[0] - profile.state_at(start)[0])
-        way += (end - start) / 6.0 * (w0 * (h0 - mean) + 4.0 * wm * (hm - mean) + w1 * (h1 - mean))
-        self.offset += self._direction * way
-        if self._time >= profile.duration * (1.0 - ROUNDING):
-            self._profile = None
+        return way + (end - start) / 6.0 * (w0 * (h0 - mean) + 4.0 * wm * (hm - mean) + w1 * (h1 - mean))

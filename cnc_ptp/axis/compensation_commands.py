@@ -18,7 +18,7 @@ from cnc_ptp.axis.faults import (
 from cnc_ptp.axis.ptp import Job
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
-from cnc_ptp.motion import Profile, plan_to_velocity
+from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
 from cnc_ptp.motion.profile import State
 
@@ -65,7 +65,7 @@ class CompensationCommands:
         used = min(length, abs(remaining))
         table = plan_compensation(used, difference, process_velocity, velocity_increase, rise, fall)
         direction = copysign(1.0, base[1] or remaining)
-        self._check_velocity(max(axis.ptp.highest_velocity(cycle), job.reduced_velocity), process_velocity, table)
+        self._check_velocity(max(axis.ptp.highest_velocity(cycle), job.reduced_velocity), table)
         if isfinite(job.target):
             axis.checks.soft_limits(START, job.target + axis.shift(cycle) + direction * table.end[0])
         axis.superposed = True
@@ -78,7 +78,7 @@ class CompensationCommands:
             axis.refuse(START, VIRTUAL_AXIS, "a virtual axis cannot compensate (P-AXIS-00020)")
         if axis.compensation.active:
             axis.refuse(START, COMPENSATION_LOCKED, "a position compensation is active; it cannot be started again")
-        if axis.coupled:
+        if axis.coupled and not axis.on_path:
             return
         if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:
             reason = f"no basic motion is in work (the axis is in {state_name(axis.state)})"
@@ -98,8 +98,7 @@ class CompensationCommands:
                 axis.refuse(START, NOTHING_TO_COMPENSATE, "the basic motion of the slave stands")
             velocity = axis.target_velocity()
             return base, Job(copysign(inf, base[1]), axis.own_limits._replace(velocity=velocity), velocity)
-        stop = plan_to_velocity(*base[:3], 0.0, job.limits).end[0]
-        if copysign(1.0, base[1]) * (stop - job.target) > 1e-9 * max(1.0, abs(job.target)) and base[1] != 0.0:
+        if base[1] != 0.0 and axis.ptp.passes_by(cycle, job) > 0.0:
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis stops in order to return to its target")
         return base, job
 
@@ -115,12 +114,11 @@ class CompensationCommands:
         for name in ("acceleration", "deceleration"):
             self._axis.checks.acceleration(START, name, positive[name])
 
-    def _check_velocity(self, velocity: float, process_velocity: float, table: Profile) -> None:
-        """The axis must keep its velocity limit, also backwards: there the most is v·(w/VP - 1) for the peak w > VP."""
+    def _check_velocity(self, velocity: float, table: Profile) -> None:
+        """The axis must keep its velocity limit, also backwards: there the most is the peak, over a standing base."""
         axis = self._axis
         forwards = velocity + max(row[2] for row in table.rows)
-        excess = max(-row[2] for row in table.rows) / process_velocity - 1.0
-        peak = max(forwards, excess * min(velocity, process_velocity))
+        peak = max(forwards, max(-row[2] for row in table.rows))
         highest, unit = axis.parameters.max_velocity, f"{axis.unit}/s"
         if peak > highest:
             reason = f"the axis would get up to {peak:g} {unit}, above the maximum {highest} {unit} (P-AXIS-00212)"

@@ -8,6 +8,7 @@ from typing import Any
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.cam import CamCoupling, CamTable
+from cnc_ptp.axis.carried import CarriedMotion
 from cnc_ptp.axis.coupling import Coupling, CyclicCoupling, LinearCoupling
 from cnc_ptp.axis.faults import (
     ACC_BOUND_UNSTABLE,
@@ -92,15 +93,26 @@ class CouplingCommands:
         slave_position: float,
         **others: Any,
     ) -> str | None:
-        """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on."""
+        """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on.
+
+        On the path of a channel it is added to that: `slave_position` counts from the path, as the coupling finds it.
+        """
         command, axis = "couple_flying_saw", self._axis
         group = {name: others.pop(name) for name in GROUP if name in others}
-        self._check(command, master, **(group | {"master_stands": True}))
+        self._check(command, master, **(group | {"master_stands": True, "on_path": self._can_be_carried(cycle)}))
         self._check_factor(command, factor)
         limits = axis.checks.dynamics(command, others)
-        axis.checks.soft_limits(command, slave_position)
+        if not axis.on_path:
+            axis.checks.soft_limits(command, slave_position)
         positions = {"master_position": float(master_position), "slave_position": float(slave_position)}
-        return self._couple(command, cycle, FlyingSaw(master, float(factor), limits=limits, **positions))
+        saw = FlyingSaw(master, float(factor), limits=limits, unit=axis.unit, **positions)
+        return self._couple(command, cycle, saw)
+
+    def _can_be_carried(self, cycle: int) -> bool:
+        """A path axis to which nothing else adds a motion."""
+        axis = self._axis
+        added = axis.superposed and (axis.external.mode is not None or axis.external.moving(cycle))
+        return axis.on_path and axis.coupling is None and not added
 
     def do_couple_cam(
         self,
@@ -152,7 +164,9 @@ class CouplingCommands:
         above: Sequence[str] = (),
         master_stands: bool = True,
         master_lost: bool = False,
+        on_path: bool = False,
     ) -> None:
+        """`on_path`: this coupling may be added to the path that moves the axis."""
         axis = self._axis
         if master == axis.name:
             axis.refuse(command, COUPLED_TO_ITSELF, "an axis cannot be its own master")
@@ -161,7 +175,7 @@ class CouplingCommands:
             axis.refuse(command, UNKNOWN_MASTER, f"there is no axis '{master}'. Known: {known}")
         if master_lost:
             axis.refuse(command, UNKNOWN_MASTER, f"the node of the master {master} is lost")
-        if axis.state != S.STANDSTILL:
+        if axis.state != S.STANDSTILL and not on_path:
             reason = f"the axis is in {state_name(axis.state)}, it must be in Standstill"
             axis.refuse(command, SLAVE_NOT_STANDING, reason)
         if axis.name in above:
@@ -185,7 +199,11 @@ class CouplingCommands:
     def _couple(self, command: str, cycle: int, coupling: Coupling) -> str | None:
         """A warning when slave and master are not equally late."""
         axis = self._axis
-        axis.absorb(cycle)
+        if axis.on_path:
+            axis.carried = CarriedMotion(cycle, cycle_time=self._cycle_time)
+            axis.superposed = True
+        else:
+            axis.absorb(cycle)
         axis.coupling = coupling
         axis.has_been_stopped = False
         axis.state = S.SYNCHRONIZED_MOTION
@@ -251,10 +269,23 @@ class CouplingCommands:
             axis.checks.velocity(command, velocity)
         if target is not None:
             axis.checks.soft_limits(command, target)
+        if axis.carried is not None:
+            self._put_down(cycle, axis.carried, target=target, velocity=velocity)
+            return None
         if axis.state == S.ERROR_STOP:
             axis.coupling = None
             return None
         return self._go_on(cycle, target, velocity)
+
+    def _put_down(self, cycle: int, carried: CarriedMotion, **arguments: float | None) -> None:
+        """What was added to the path comes to rest on the ramp of the axis; the path goes on beside its place."""
+        axis = self._axis
+        for name, value in arguments.items():
+            if value is not None:
+                reason = f"{name} = {value:g} is not permitted on the path of a channel; leave it out"
+                axis.refuse("decouple", BAD_COUPLING_VALUE, reason)
+        axis.external.brake(cycle, carried.state(cycle))
+        axis.carried = axis.coupling = None
 
     def _go_on(self, cycle: int, target: float | None, velocity: float | None) -> str | None:
         axis = self._axis
@@ -294,9 +325,9 @@ class CouplingCommands:
 
     # the group
 
-    def do_lead(self, cycle: int, *, slave: str, on: bool) -> None:
+    def do_lead(self, cycle: int, *, slave: str, enabled: bool) -> None:
         """The PLC: `slave` is coupled to this axis, or is not any more."""
-        (self._axis.slaves.add if on else self._axis.slaves.discard)(slave)
+        (self._axis.slaves.add if enabled else self._axis.slaves.discard)(slave)
 
     def do_group_error(self, cycle: int, *, source: str, error: int) -> None:
         """The PLC: an error of `source` reaches this axis of its group."""

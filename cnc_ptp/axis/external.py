@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable
 from itertools import pairwise
+from math import ulp
 from typing import NamedTuple
 
 from cnc_ptp.axis.tables import standing
@@ -14,6 +15,8 @@ from cnc_ptp.motion.profile import State
 
 LONGEST_PERIOD = 0.02
 """Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
+PLACES = 4
+"""Units in the last place of a position that are rounding."""
 NEGLIGIBLE_VELOCITY = 1e-9
 """mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
 ABSOLUTE = "absolute"
@@ -139,6 +142,11 @@ class ExternalSetpoints:
         if self._driving is not None and self._last_cycle is None:
             self._last_cycle = cycle
 
+    def brake(self, cycle: int, state: State) -> None:
+        """Another motion ends at `cycle` with `state`: it comes to rest here, beside what is contributed at rest."""
+        position, velocity = self.contribution(cycle)[0] + state[0], state[1]
+        self._rest, self._rest_cycle = plan_to_velocity(position, velocity, 0.0, 0.0, self._limits), cycle
+
     def reset(self) -> None:
         """The basic motion has taken over what was contributed."""
         self.mode = self._driving = self._last_cycle = self.rejected = None
@@ -205,7 +213,8 @@ class ExternalSetpoints:
                 continue
             driving = setpoint._replace(position=setpoint.position - self._reference)
             way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
-            if abs(way) > self._limits.velocity * self._cycle_time * (1.0 + 1e-9):
+            farthest = self._limits.velocity * self._cycle_time * (1.0 + 1e-9)
+            if abs(way) > farthest + PLACES * ulp(max(abs(setpoint.position), abs(self._reference))):
                 self.rejected = setpoint, way
                 self._waiting.clear()
                 return

@@ -30,13 +30,17 @@ class ExternalCommands:
         self._axis = axis
 
     def do_external_enable(self, cycle: int, *, mode: str, target: float | None = None) -> str | None:
-        """Lets external setpoints move the axis: `absolute`, or `relative` to where it is, also on top of PTP motion.
+        """Lets external setpoints move the axis: `absolute`, or `relative` to where it is, also on top of other motion.
+
+        On top of a PTP motion or of the path of a channel they are relative; beside a path they have no target.
 
         `target` (mm, deg; absolute, or relative like the setpoints) switches the target window monitoring to it. Called
         again in the same mode it takes over a new target. Refusals: 23005, 23025, 23026, 23028 – 23030, 120002, 120003.
         """
         axis = self._axis
         self._check_state(mode)
+        if axis.on_path:
+            self._check_path(mode, target)
         position = axis.setpoint(cycle)[0]
         goal = target if target is None or mode == ABSOLUTE else self._relative_goal(cycle, target)
         if goal is not None:
@@ -67,9 +71,10 @@ class ExternalCommands:
             axis.refuse(ENABLE, EXTERNAL_IN_ERROR, f"the axis has error {axis.error_id}; reset it")
         if not axis.powered:
             axis.refuse(ENABLE, EXTERNAL_NOT_ENABLED, "the axis is not enabled; power it on")
-        if axis.state == S.SYNCHRONIZED_MOTION:
-            leader = "the channel path moves" if axis.coupling is None else f"{axis.coupling.master} is the master of"
-            axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{leader} the axis")
+        if axis.ptp.restricted:
+            axis.refuse(ENABLE, EXTERNAL_NOT_ENABLED, "both directions must be released (set_feed_release)")
+        if axis.coupled and axis.coupling is not None:
+            axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{axis.coupling.master} is the master of the axis")
         if axis.state == S.STOPPING:
             axis.refuse(ENABLE, NOT_READY, f"the axis is in {state_name(axis.state)}")
         if axis.external.mode not in (None, mode):
@@ -78,6 +83,15 @@ class ExternalCommands:
         if mode == ABSOLUTE and (axis.state == S.DISCRETE_MOTION or axis.ptp.job is not None):
             reason = "absolute setpoints beside a PTP motion are not permitted; use relative"
             axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
+
+    def _check_path(self, mode: str, target: float | None) -> None:
+        """The axis does not know where the path ends, so there is no target to be watched."""
+        if mode == ABSOLUTE:
+            reason = "absolute setpoints beside the path of a channel are not permitted; use relative"
+            self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
+        if target is not None:
+            reason = f"a target ({target:g}) beside the path of a channel is not permitted; leave it out"
+            self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
 
     def do_external_disable(self, cycle: int) -> str | None:
         """The setpoint of this cycle counts once more; an axis that still moves then comes to rest on its ramp."""

@@ -9,6 +9,7 @@ While the slave still waits, a master with another velocity has the run-up plann
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import copysign, ulp
 
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
 from cnc_ptp.axis.faults import SAW_TOO_LATE
@@ -17,20 +18,30 @@ from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.profile import State
 
 ROUNDING = 1e-12
-"""s; what a run-up may be late or long: it can be planned anew in the very moment of its begin."""
+"""s; what a run-up may be late or long: it can be planned anew in the very moment of its begin …"""
+PLACES = 4
+"""… and so many units in the last place of the positions besides, which are seconds where the axes are slow."""
 
 
 class FlyingSaw(Coupling):
     """Runs up, then is a linear coupling through the two synchronous positions."""
 
     def __init__(
-        self, master: str, factor: float, *, master_position: float, slave_position: float, limits: Limits
+        self,
+        master: str,
+        factor: float,
+        *,
+        master_position: float,
+        slave_position: float,
+        limits: Limits,
+        unit: str = "mm",
     ) -> None:
-        """Synchronous from `master_position` and `slave_position` (mm, deg) on; `limits` of the run-up."""
+        """Synchronous from `master_position` and `slave_position` (in `unit`) on; `limits` of the run-up."""
         super().__init__(master, factor)
         self._master_position = master_position
         self._slave_position = slave_position
         self._limits = limits
+        self._unit = unit
         self._linear = LinearCoupling(master, factor)
         self._linear.offset = slave_position - factor * master_position
         self._table: Profile | None = None
@@ -65,21 +76,22 @@ class FlyingSaw(Coupling):
         Returns the moment 0.0 at which the table begins.
         """
         self._begin, self._speed = master[:2]
-        velocity = self.ratio * self._speed
+        velocity, unit = self.ratio * self._speed, self._unit
         if abs(velocity) > self._limits.velocity:
-            reason = f"it would have to run at {abs(velocity):g}, its velocity is limited to {self._limits.velocity:g}"
-            raise CncError(SAW_TOO_LATE, reason)
+            limit = f"its velocity is limited to {self._limits.velocity:g} {unit}/s"
+            raise CncError(SAW_TOO_LATE, f"it would have to run at {abs(velocity):g} {unit}/s, {limit}")
         ramp = plan_to_velocity(position, 0.0, 0.0, velocity, self._limits)
         meeting = (self._master_position - self._begin) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
         self._wait = meeting - ramp.duration - cruise
-        if cruise < -ROUNDING:
-            way = abs(ramp.end[0] - position)
-            reason = f"the run-up takes {way:g}, the synchronous position is {self._slave_position - position:g} away"
-            raise CncError(SAW_TOO_LATE, reason)
-        if self._wait < -ROUNDING:
-            reason = f"the run-up takes {ramp.duration + cruise:g} s, the master is there in {meeting:g} s"
-            raise CncError(SAW_TOO_LATE, reason)
+        if cruise < -ROUNDING - PLACES * ulp(max(abs(position), abs(self._slave_position))) / abs(velocity):
+            distance = (self._slave_position - position) * copysign(1.0, velocity)
+            where = f"{distance:g} {unit} away" if distance >= 0.0 else f"{-distance:g} {unit} behind the axis"
+            needed = f"the run-up takes {abs(ramp.end[0] - position):g} {unit}"
+            raise CncError(SAW_TOO_LATE, f"{needed}, the synchronous position is {where}")
+        if self._wait < -ROUNDING - PLACES * ulp(max(abs(self._begin), abs(self._master_position))) / abs(self._speed):
+            when = f"is there in {meeting:g} s" if meeting >= 0.0 else f"was there {-meeting:g} s ago"
+            raise CncError(SAW_TOO_LATE, f"the run-up takes {ramp.duration + cruise:g} s, the master {when}")
         self._wait = max(0.0, self._wait)
         rows = [(self._wait + t, p, v, a, j) for t, p, v, a, j in ramp.rows]
         self._table = Profile([(0.0, position, 0.0, 0.0, 0.0), *rows])
@@ -90,6 +102,14 @@ class FlyingSaw(Coupling):
         p, v, a, j = self._table.state_at(moment)
         r, dr, ddr = (value / self._speed for value in master[1:])
         return p, v * r, a * r * r + v * dr, j * r**3 + 3.0 * a * r * dr + v * ddr
+
+    def shift(self, distance: float) -> None:
+        """The slave's positions count from elsewhere: all are greater by `distance` from now on."""
+        assert self._linear.offset is not None
+        self._slave_position += distance
+        self._linear.offset += distance
+        if self._table is not None:
+            self._table = Profile([(t, p + distance, v, a, j) for t, p, v, a, j in self._table.rows])
 
     def change_source(self, before: float, now: float) -> None:
         self._begin += now - before

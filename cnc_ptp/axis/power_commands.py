@@ -1,4 +1,4 @@
-"""Enable and reset of an axis."""
+"""Enable, feed releases and reset of an axis."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from cnc_ptp.axis.states import AxisStateCode as S
 
 
 class PowerCommands:
-    """`power` and `reset`."""
+    """`power`, `set_feed_release` and `reset`."""
 
     def __init__(self, axis: Axis, *, actual_position: Callable[[], float]) -> None:
         """`actual_position` in mm or deg, as the encoder shows it."""
         self._axis = axis
         self._actual_position = actual_position
 
-    def do_power(self, cycle: int, *, on: bool) -> str | None:
+    def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """Enables or disables the axis; a moving axis is stopped on its ramp first.
 
         Where the position loop was open it is closed at the actual position, so that the enable moves nothing.
         """
         axis = self._axis
-        if on == axis.powered:
-            return f"axis {axis.name}: power is {'on' if on else 'off'} already"
-        if on:
+        if enabled == axis.powered:
+            return f"axis {axis.name}: power is {'on' if enabled else 'off'} already"
+        if enabled:
             self._switch_on(cycle)
         else:
             self._switch_off(cycle)
@@ -53,6 +53,14 @@ class PowerCommands:
             axis.state = S.STOPPING
             axis.has_been_stopped = True
 
+    def do_set_feed_release(self, cycle: int, *, forward: bool, backward: bool) -> None:
+        """Releases motion towards greater and towards smaller positions, each for itself.
+
+        A positioning in a direction that is withheld stops on its ramp and goes on when it is released. A path stops
+        with its channel; what only others can stop (a slave, external setpoints) is a fault, 23058.
+        """
+        self._axis.release_feed(cycle, forward=forward, backward=backward)
+
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""
         axis = self._axis
@@ -60,6 +68,8 @@ class PowerCommands:
             axis.stop(cycle)
             axis.state = S.STOPPING
             axis.has_been_stopped = True
+        if axis.on_path:
+            axis.external.disable(cycle)
         if axis.state != S.ERROR_STOP:
             return
         if not axis.ptp.finished(cycle):

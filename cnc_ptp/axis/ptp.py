@@ -6,7 +6,7 @@ import sys
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, copysign, inf, isinf
+from math import ceil, copysign, inf, isinf, ulp
 
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
@@ -27,8 +27,16 @@ State = tuple[float, float, float, float]
 STANDING = (0.0, 0.0, 0.0)
 """Velocity, acceleration and jerk of an axis at rest."""
 
+NEGLIGIBLE = 1e-9
+"""mm, mm/s (deg, deg/s): no direction."""
+
 SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
+
+INSTANT = 1e-9
+"""s; a stop that misses the target by what the axis moves in it, or by rounding (`PLACES`), ends there."""
+PLACES = 8
+"""Units in the last place of a position that are rounding."""
 
 REDUCTIONS = 8
 """Steps in which a new velocity that cannot be reached is brought nearer to the old one (TX1250 2.4)."""
@@ -79,6 +87,48 @@ class PtpGenerator:
         self.override_type = override_type
         self.job: Job | None = None
         self.override = 1.0
+        self._forward = self._backward = True
+        self._waits_for_release = False
+
+    # feed releases
+
+    @property
+    def restricted(self) -> bool:
+        """A direction is not released."""
+        return not (self._forward and self._backward)
+
+    @property
+    def withheld(self) -> bool:
+        """The job in work waits, or comes to rest, until its direction is released."""
+        return self.job is not None and self._waits_for_release
+
+    def withholds(self, direction: float) -> bool:
+        """True for a velocity or a distance in a direction that is not released; rounding has none."""
+        released = self._forward if direction > 0.0 else self._backward
+        return abs(direction) > NEGLIGIBLE and not released
+
+    def release(self, cycle: int, *, forward: bool, backward: bool) -> None:
+        """Releases each direction or withholds it; a job that goes in a withheld one stops on its ramp and waits."""
+        self._forward, self._backward = forward, backward
+        job = self.job
+        if job is None or self._in_brake_phase(cycle, job):
+            return
+        if self._must_wait(cycle, job) != self._waits_for_release:
+            self._lead(cycle, job, self._table(cycle, job))
+
+    def _must_wait(self, cycle: int, job: Job) -> bool:
+        """From where a stop would bring the axis to rest, the target lies in a withheld direction."""
+        if not self.restricted:
+            return False
+        position, velocity, acceleration, _ = self.state(cycle)
+        return self.withholds(job.target - plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0])
+
+    def _lead(self, cycle: int, job: Job, table: Profile) -> None:
+        """Puts a table of the job in work, or the ramp to standstill where it must wait."""
+        self._waits_for_release = self._must_wait(cycle, job)
+        if self._waits_for_release:
+            table = plan_to_velocity(*self.state(cycle)[:3], 0.0, job.limits)
+        self._set(cycle, table, job.limits)
 
     # setpoints
 
@@ -120,6 +170,14 @@ class PtpGenerator:
     def can_redirect(self) -> bool:
         """True while there is a positioning, or a stop of one, that can be led to a new target."""
         return self.job is not None or self._stopped_job is not None
+
+    def brakes_to(self, cycle: int, target: float) -> bool:
+        """True in the brake phase of a job to `target`, in which nothing can be changed any more."""
+        return self.job is not None and self.job.target == target and self._in_brake_phase(cycle, self.job)
+
+    def halts(self, job: Job | None) -> bool:
+        """True while the axis is on the ramp that has ended `job`."""
+        return job is not None and self.job is None and self._stopped_job is job
 
     def highest_velocity(self, cycle: int) -> float:
         """The largest |v| (mm/s) that the positioning in work may still have, with a new velocity that is to come."""
@@ -170,7 +228,8 @@ class PtpGenerator:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
 
         It acts at once unless a stop runs or the brake phase is reached. Types 1 and 2 keep the old table when the new
-        velocity level cannot be reached; types 3 and 4 take the highest level that can.
+        velocity level cannot be reached; types 3 and 4 take the highest level that can, which is that of the old table
+        when the axis is faster than the new level.
         """
         self.override = ratio if ratio >= SMALLEST_OVERRIDE else 0.0
         job = self.job
@@ -179,7 +238,7 @@ class PtpGenerator:
         table = self._table(cycle, job)
         if self._level_is_missed(cycle, job, table):
             return False
-        self._set(cycle, table, job.limits)
+        self._lead(cycle, job, table)
         return True
 
     def stop(self, cycle: int, limits: Limits, *, at_least: bool = False, locks: bool = True) -> None:
@@ -196,8 +255,7 @@ class PtpGenerator:
         self._suspended = self._activation = self._due = None
         self._stop_locks = locks
         if at_least or not brakes:
-            position, velocity, acceleration, _ = self.state(cycle)
-            self._set(cycle, plan_to_velocity(position, velocity, acceleration, 0.0, ramp), ramp)
+            self._set(cycle, plan_to_velocity(*self._start(cycle), 0.0, ramp), ramp)
 
     def redirect(self, cycle: int, request: Request) -> None:
         """New target, with or without a new velocity, for the positioning in work (TX1250 2.3, 2.4).
@@ -249,7 +307,7 @@ class PtpGenerator:
 
     def _begin(self, cycle: int, job: Job, table: Profile) -> None:
         self.job, self._stopped_job = job, None
-        self._set(cycle, table, job.limits)
+        self._lead(cycle, job, table)
 
     def _set(self, cycle: int, profile: Profile, limits: Limits | None) -> None:
         self._origin = cycle
@@ -271,6 +329,27 @@ class PtpGenerator:
         """For a table without a job: it comes to rest; what was taken over in motion does not."""
         return self._profile.end[1:] == (0.0, 0.0)
 
+    def _start(self, cycle: int) -> tuple[float, float, float]:
+        """Position, velocity and acceleration from which a new table begins.
+
+        In the last jerk phase before standstill the velocity is exactly the one that this phase takes out, so that no
+        rounding makes the axis miss its standstill.
+        """
+        position, velocity, acceleration, jerk = self.state(cycle)
+        starts = self._profile.starts
+        last_phase = len(starts) > 1 and (cycle - self._origin) * self._cycle_time >= starts[-2]
+        if last_phase and self._is_stop_ramp() and acceleration * jerk < 0.0:
+            velocity = acceleration * acceleration / (2.0 * jerk)
+        return position, velocity, acceleration
+
+    def passes_by(self, cycle: int, job: Job) -> float:
+        """How far (mm, deg) behind the target of `job`, seen in the direction of motion, a stop would end; 0 at it."""
+        position, velocity, acceleration, _ = self.state(cycle)
+        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
+        rounding = abs(velocity) * INSTANT + PLACES * ulp(max(abs(position), abs(job.target)))
+        behind = copysign(1.0, velocity) * (ahead - job.target)
+        return 0.0 if abs(behind) <= rounding else behind
+
     def _in_brake_phase(self, cycle: int, job: Job) -> bool:
         """True when the table leads to the target and a stop would do the same: nothing can be changed any more.
 
@@ -281,9 +360,7 @@ class PtpGenerator:
         position, velocity, acceleration, _ = self.state(cycle)
         if velocity == 0.0 and acceleration == 0.0:
             return bool(position == job.target)
-        ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
-        tolerance = 1e-9 * max(1.0, abs(job.target), abs(position))
-        return abs(ahead - job.target) <= tolerance
+        return self.passes_by(cycle, job) == 0.0
 
     def _job_from_rest(self, position: float, target: float, limits: Limits) -> Job:
         return self._job_of(target, limits, plan_rest_to_rest(position, target, limits).rows)
@@ -292,8 +369,7 @@ class PtpGenerator:
         """The job to `target` for an axis in motion; where it stops and returns, the way back counts."""
         if isinf(target):
             return Job(target, limits, limits.velocity)
-        position, velocity, acceleration, _ = self.state(cycle)
-        leg = last_leg(plan_to_position(position, velocity, acceleration, target, limits))
+        leg = last_leg(plan_to_position(*self._start(cycle), target, limits))
         if leg[0][2] == 0.0 and leg[0][3] == 0.0:
             return self._job_from_rest(leg[0][1], target, limits)
         return self._job_of(target, limits, leg)
@@ -310,7 +386,7 @@ class PtpGenerator:
 
     def _table(self, cycle: int, job: Job) -> Profile:
         """The way to the target at the velocity of the override; with override 0 the way to standstill."""
-        position, velocity, acceleration, _ = self.state(cycle)
+        position, velocity, acceleration = self._start(cycle)
         if self.override == 0.0:
             return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
         if isinf(job.target):
@@ -321,11 +397,18 @@ class PtpGenerator:
         return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
 
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
-        """Override types 1 and 2: the table in work leads to the target, and the new one does not reach its level."""
-        if self.override_type not in (1, 2) or self.override == 0.0 or not self._ends_at(job):
+        """The table in work leads to the target, and the new one does not reach its level.
+
+        Override types 3 and 4 take what can be reached instead, unless the axis would have to come down to the level:
+        it would brake for the level and then for the target, later and rougher than with the table that it has.
+        """
+        if self.override == 0.0 or not self._ends_at(job):
             return False
         _, velocity, acceleration, _ = self.state(cycle)
-        return (velocity != 0.0 or acceleration != 0.0) and not reaches(table, self._level(job).velocity)
+        if (velocity == 0.0 and acceleration == 0.0) or reaches(table, self._level(job).velocity):
+            return False
+        left = velocity + acceleration * abs(acceleration) / (2.0 * job.limits.jerk)
+        return self.override_type in (1, 2) or abs(left) > self._level(job).velocity
 
     # new target, new velocity
 
@@ -343,7 +426,7 @@ class PtpGenerator:
         direction = copysign(1.0, velocity or goal - position)
         self._activation = self._due = None
         job = self._job_on_the_way(cycle, request.target, before.limits)
-        leg = last_leg(plan_to_position(*self.state(cycle)[:3], request.target, before.limits))
+        leg = last_leg(plan_to_position(*self._start(cycle), request.target, before.limits))
         returns = velocity != 0.0 and leg[0][2] == 0.0
         if returns and request.velocity is not None and request.velocity <= job.reduced_velocity < job.limits.velocity:
             job = replace(job, limits=job.limits._replace(velocity=request.velocity), reduced_velocity=request.velocity)
@@ -386,7 +469,7 @@ class PtpGenerator:
             return True
         level = velocity * (self.override or 1.0)
         limits = job.limits._replace(velocity=max(level, SMALLEST_LIMIT))
-        return reaches(plan_to_position(*self.state(cycle)[:3], job.target, limits), limits.velocity)
+        return reaches(plan_to_position(*self._start(cycle), job.target, limits), limits.velocity)
 
     def _crossing(self, cycle: int, activation: Activation) -> int | None:
         """The first cycle at which the table in work is at or past the activation position, None when it never is."""

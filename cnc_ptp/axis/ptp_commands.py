@@ -25,6 +25,16 @@ OVERRIDE_DECIMALS = 4
 OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
+def refuse_other_source(axis: Axis, command: str) -> None:
+    """Raises 23027 and 23040 where external setpoints or a master move the axis."""
+    if axis.external.mode is not None:
+        reason = "external setpoints are enabled; a PTP start beside them is not permitted"
+        axis.refuse(command, START_BESIDE_EXTERNAL, reason)
+    if axis.coupled and axis.coupling is not None:
+        reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
+        axis.refuse(command, SLAVE_LOCKED, reason)
+
+
 class PtpCommands:
     """Commands that start and change a positioning; each is refused as a whole or carried out."""
 
@@ -56,12 +66,7 @@ class PtpCommands:
 
     def _start(self, command: str, cycle: int, target: float, dynamics: dict[str, float]) -> str | None:
         axis = self._axis
-        if axis.external.mode is not None:
-            reason = "external setpoints are enabled; a PTP start beside them is not permitted"
-            axis.refuse(command, START_BESIDE_EXTERNAL, reason)
-        if axis.coupled and axis.coupling is not None:
-            reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
-            axis.refuse(command, SLAVE_LOCKED, reason)
+        refuse_other_source(axis, command)
         if axis.state != S.STANDSTILL:
             axis.refuse(command, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill")
         limits = axis.checks.dynamics(command, dynamics)

@@ -29,6 +29,8 @@ class StatusBit(IntEnum):
     CONSTANT_VELOCITY = 1 << 12
     COMPENSATING = 1 << 13
     EXT_SETPOINT = 1 << 14
+    FRICTION_COMPENSATION = 1 << 16
+    FEED_WITHHELD = 1 << 17
     ERROR = 1 << 31
 
 

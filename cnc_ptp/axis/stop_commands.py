@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from math import inf, nan
+
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import EMERGENCY_TOO_WEAK, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
+from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
 from cnc_ptp.motion import Limits
@@ -51,10 +53,11 @@ class StopCommands:
             self._axis.state = S.STOPPING
         self._axis.has_been_stopped = True
 
-    def do_emergency_stop(self, cycle: int, *, deceleration: float, jerk: float) -> str | None:
-        """Stops with a deceleration (mm/s²) and a jerk (mm/s³) that are both larger than those of the start.
+    def do_emergency_stop(self, cycle: int, *, deceleration: object = None, jerk: object = None) -> str | None:
+        """Stops with a deceleration (mm/s²) and a jerk (mm/s³), which are at least those of the start.
 
-        Refusals: 23003, 23005, 23013, 23016 (not larger), 23017 (brake phase, natural or by a stop).
+        No value keeps the axis from stopping; warning 23016 says what was corrected. The ramp of a stop or halt
+        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase).
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
@@ -62,25 +65,48 @@ class StopCommands:
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
         if axis.state == S.STOPPING and axis.ptp.drop_suspended():
             return f"axis {axis.name}: {command} takes the new target back; the axis stops"
-        if axis.state == S.STOPPING or (axis.state == S.DISCRETE_MOTION and axis.ptp.braking(cycle)):
+        brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
+        if brakes and not axis.compensation.moving:
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
-        axis.checks.positive(command, {"deceleration": deceleration, "jerk": jerk})
-        axis.checks.emergency_deceleration(command, deceleration)
-        start = axis.own_limits if axis.ptp.job is None else axis.ptp.job.limits
-        self._require_stronger(start, deceleration, jerk)
-        emergency = Limits(start.velocity, deceleration, deceleration, jerk)
-        ramp, warning = axis.checks.rescaled_jerk(command, emergency)
+        ramp, warning = self._emergency_ramp(command, deceleration, jerk)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
         return warning
 
-    def _require_stronger(self, start: Limits, deceleration: float, jerk: float) -> None:
+    def _emergency_ramp(self, command: str, deceleration: object, jerk: object) -> tuple[Limits, str | None]:
+        """The ramp that comes nearest to the two values without being weaker than the start, and what was corrected."""
         axis = self._axis
-        for name, value, limit, unit in (
-            ("deceleration", deceleration, start.deceleration, "s²"),
-            ("jerk", jerk, start.jerk, "s³"),
-        ):
-            if value <= limit:
-                reason = f"{name} {value} {axis.unit}/{unit} is not larger than {limit} {axis.unit}/{unit} of the start"
-                axis.refuse("emergency_stop", EMERGENCY_TOO_WEAK, f"{reason}; use stop")
+        start = axis.own_limits if axis.ptp.job is None else axis.ptp.job.limits
+        a, weak = self._at_least(start.deceleration, "deceleration", deceleration, "s²")
+        j, slow = self._at_least(start.jerk, "jerk", jerk, "s³")
+        most, strong = axis.checks.most_deceleration, ""
+        if a > most:
+            limit = f"the maximum {most} {axis.unit}/s² (P-AXIS-00008, P-AXIS-00003)"
+            a, strong = most, f"deceleration {deceleration} {axis.unit}/s² is above {limit}, which is used"
+        ramp, rescaled = axis.checks.rescaled_jerk(command, Limits(start.velocity, a, a, j))
+        corrected = "; ".join(filter(None, (weak, strong, slow)))
+        warning = f"P-WARN-{EMERGENCY_CORRECTED} axis {axis.name}: {command}: {corrected}" if corrected else None
+        return ramp, "; ".join(filter(None, (warning, rescaled))) or None
+
+    def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:
+        """The value given, or that of the start where it is no use or less, and what to say then."""
+        value = number(given)
+        if value >= least:
+            return value, ""
+        unit = f"{self._axis.unit}/{seconds}"
+        if given is None:
+            return least, f"{name} is not given; {least} {unit} of the start is used"
+        if not value > 0.0:
+            return least, f"{name} = {given} must be greater than 0; {least} {unit} of the start is used"
+        return least, f"{name} {given} {unit} is less than {least} {unit} of the start, which is used"
+
+
+def number(value: object) -> float:
+    """`value` as a number, NaN if it is none (what is recorded has NaN and infinity as text)."""
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except OverflowError:
+        return inf
+    except (TypeError, ValueError):
+        return nan

@@ -145,9 +145,9 @@ def drive(data: AxisData, motions: Sequence[Motion], *, label: str, record: str 
     name = data.axis.name
     entries = []
     if not data.axis.powered_at_start:
-        entries.append(Entry(0.0, Command(name, "power", {"on": True})))
+        entries.append(Entry(0.0, Command(name, "power", {"enabled": True})))
     if data.axis.control.friction.permitted:
-        entries.append(Entry(0.0, Command(name, "set_friction_compensation", {"on": False})))
+        entries.append(Entry(0.0, Command(name, "set_friction_compensation", {"enabled": False})))
     entries += [
         Entry(motion.at, Command(name, "move_relative", {"distance": motion.distance, "velocity": motion.velocity}))
         for motion in motions

@@ -10,7 +10,6 @@ from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.machine.blocks import Severity, event_note
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.program_check import ProgramCheck
-from cnc_ptp.machine.wiring import MACHINE_NOTICE
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.parameters import MachineParameters, read_machine
 
@@ -40,5 +39,5 @@ def check(program: str, machine: str | None) -> int:
 def print_notices(machine: MachineParameters) -> None:
     """What deserves a look in a machine file, on standard error."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
-    for text in machine.warnings:
-        console.print(event_note(Severity.WARNING, MACHINE_NOTICE, text), style="yellow", markup=False)
+    for notice in machine.warnings:
+        console.print(event_note(Severity.WARNING, notice.error_id, str(notice)), style="yellow", markup=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -13,7 +14,7 @@ from cnc_ptp.commands.circle_page import circle_page
 from cnc_ptp.commands.circle_picture import circle_picture
 from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, circle_lines
 from cnc_ptp.commands.console import RUN_FAILED
-from cnc_ptp.commands.output_file import write_output
+from cnc_ptp.commands.output_file import check_output, write_output
 from cnc_ptp.commands.picture_file import check_picture, picture_kind
 from cnc_ptp.commands.trial_run import run_trial
 from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_program, find_plane, measured_turn
@@ -57,8 +58,9 @@ def circle(
     compare: str | None,
     outputs: Sequence[str],
     magnification: float | None,
+    record: str | None = None,
 ) -> int:
-    """Runs the circle test of all variants. Status 1 when a run failed."""
+    """Runs the circle test of all variants; `record` keeps the runs. Status 1 when a run failed."""
     check_numbers(radius=radius, feed=feed, centre=centre, magnification=magnification)
     for output in outputs:
         check_picture(output, machine_file=machine)
@@ -81,7 +83,10 @@ def circle(
         for variant in chosen
     ]
     check_time(programs[0], feed)
-    results = run_variants(parameters, place, list(zip(chosen, programs, strict=True)), feed)
+    records = record_files(record, len(chosen))
+    for path in records:
+        check_output(path, machine_file=machine)
+    results = run_variants(parameters, place, list(zip(chosen, programs, records, strict=True)), feed, text)
     if results is None:
         return RUN_FAILED
     others = tuple(axis for axis in found.axes if axis not in compensated)
@@ -89,15 +94,27 @@ def circle(
     return 0
 
 
+def record_files(record: str | None, runs: int) -> list[str | None]:
+    """The recording of each run: `record`, of several runs with their number behind its name."""
+    if record is None or runs == 1:
+        return [record] * runs
+    path = Path(record)
+    return [str(path.with_name(f"{path.stem}_{number}{path.suffix}")) for number in range(1, runs + 1)]
+
+
 def run_variants(
-    machine: MachineParameters, place: Place, runs: Sequence[tuple[Variant, CircleProgram]], feed: float
+    machine: MachineParameters,
+    place: Place,
+    runs: Sequence[tuple[Variant, CircleProgram, str | None]],
+    feed: float,
+    machine_text: str,
 ) -> tuple[VariantResult, ...] | None:
     """The results of all runs, None when one failed. Raises ProgramError before the first of them."""
-    for _, program in runs:
+    for _, program, _ in runs:
         check_program(machine, program.text, FILE)
     results = []
-    for variant, program in runs:
-        result = run_variant(machine, place, program, variant, feed)
+    for variant, program, record in runs:
+        result = run_variant(machine, place, program, variant, feed, record, machine_text)
         if result is None:
             return None
         results.append(result)
@@ -113,9 +130,11 @@ def check_numbers(
     if magnification is not None:
         numbers.append(("magnification", magnification, 0.0, ""))
     for name, value, least, unit in numbers:
-        if not least <= value <= LARGEST or (value == 0.0 and least == 0.0):
+        above = least == 0.0
+        if not least <= value <= LARGEST or (above and value == 0.0):
             shown = f"{value:g} {unit}".rstrip()
-            raise CncError(BAD_CIRCLE, f"{name} {shown} is not within {least:g} … {LARGEST:g}; nothing was started")
+            permitted = f"above 0 and up to {LARGEST:g}" if above else f"within {least:g} … {LARGEST:g}"
+            raise CncError(BAD_CIRCLE, f"{name} {shown} is not {permitted}; nothing was started")
 
 
 def check_time(program: CircleProgram, feed: float) -> None:
@@ -195,7 +214,13 @@ def _feeds_forward(axis: AxisParameters) -> bool:
 
 
 def run_variant(
-    machine: MachineParameters, place: Place, program: CircleProgram, variant: Variant, feed: float
+    machine: MachineParameters,
+    place: Place,
+    program: CircleProgram,
+    variant: Variant,
+    feed: float,
+    record: str | None,
+    machine_text: str,
 ) -> VariantResult | None:
     """The result of one run, None when it failed (told on standard error)."""
     job = [
@@ -208,6 +233,8 @@ def run_variant(
         fields={place.channel: ("line", "path_velocity"), **dict.fromkeys(place.nodes, ("actual_position",))},
         seconds=machine_time(program, feed),
         label=variant.name,
+        record=record,
+        machine_text=machine_text,
     )
     if trial.failed:
         trial.print_faults()

@@ -11,6 +11,8 @@ from cnc_ptp.commissioning.roundness import CircleResult
 UM = 1000.0
 """µm a mm."""
 FEED_TOLERANCE = 0.01
+NOTHING = 5e-6
+"""mm; less is shown as 0.00 µm."""
 OFF_AND_ON = {False: "without", True: "with"}
 MAGNIFICATIONS = (1.0, 2.0, 5.0)
 
@@ -123,11 +125,13 @@ def comparison_lines(test: CircleTest) -> Iterator[str]:
 
 
 def _change(before: float, after: float) -> str:
-    """How often one is in the other, and in which way."""
+    """How often one is in the other, and in which way; against nothing that is no number."""
     small, large = sorted((before, after))
-    ratio = large / small if small > 0.0 else math.inf
-    if large == small or round(ratio, 1) == 1.0:
+    if large == small or large < NOTHING or (small >= NOTHING and round(large / small, 1) == 1.0):
         return "as large"
+    if small < NOTHING:
+        return "practically zero" if after < before else "from practically zero"
+    ratio = large / small
     return f"{ratio:.1f} times {'smaller' if after < before else 'larger'}"
 
 

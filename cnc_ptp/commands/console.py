@@ -16,27 +16,30 @@ IDLE_STOP = ": stop without effect in "
 
 def print_error(error: CncError) -> None:
     """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
-    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     console.print(str(error), style="red", markup=False)
     caret = getattr(error, "caret", "")
     if caret:
         console.print(caret, markup=False)
 
 
-def print_note_of_idle_run(*job: object) -> None:
-    """Where none of --program, --scenario, --duration was given, that there was nothing to do."""
+def print_note_of_idle_run(*job: object, options: str = "--program, --scenario or --duration") -> None:
+    """Where none of the `options` was given, that there was nothing to do."""
     if all(part is None for part in job):
-        text = "note: there was nothing to do, give --program, --scenario or --duration"
+        text = f"note: there was nothing to do, give {options}"
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
 
 
-def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool) -> None:
-    """Errors of a run; commands that were refused or carried out with a warning.
+def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool, refused: int = 0) -> None:
+    """Errors of a run, on standard error; commands that were refused, with their number, or carried out with a warning.
 
     `stopped`: everything was stopped; that some axes stood already then is no news.
     """
+    console_of_errors = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     for text in errors:
-        console.print(f"error: {text}", style="red", markup=False)
+        console_of_errors.print(f"error: {text}", style="red", markup=False)
     for text in notes:
         if not (stopped and IDLE_STOP in text):
             console.print(text, style="yellow", markup=False)
+    if refused:
+        console.print(f"{refused} {'command was' if refused == 1 else 'commands were'} refused", style="yellow")

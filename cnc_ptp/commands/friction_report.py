@@ -41,6 +41,9 @@ def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
         yield f"left out, driven in one direction only: {speeds_shown(curve.one_way)} {data.unit}/s"
     if curve.uneven:
         yield f"left out, uneven motion (stick-slip, or not settled): {speeds_shown(curve.uneven)} {data.unit}/s"
+    if curve.standing:
+        reason = "the torque does not come above the friction (torque limit?)"
+        yield f"left out, the axis stands still: {speeds_shown(curve.standing)} {data.unit}/s; {reason}"
     doubt = doubtful(data, curve)
     if doubt is not None:
         yield f"warning: {doubt}"

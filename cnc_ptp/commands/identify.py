@@ -45,6 +45,7 @@ def identify_friction(
     """Writes the friction table. Status 1 when the run failed."""
     data = open_axis(axis, machine, recording)
     check_files(output, record, machine, recording)
+    warn_of_cut_recording(data)
     timing = Timing(data.kv)
     if data.recorded is not None:
         trace, source = recorded_trace(data, data.recorded), f"from {recording}"
@@ -83,6 +84,7 @@ def identify_dynamics(
     data = open_axis(axis, machine, recording)
     check_files(output, record, machine, recording)
     require_velocity_command(data)
+    warn_of_cut_recording(data)
     if data.recorded is not None:
         trace, source = recorded_trace(data, data.recorded), f"from {recording}"
     else:
@@ -109,6 +111,15 @@ def require_velocity_command(data: AxisData) -> None:
     interface = data.axis.control.drive.interface
     if interface in NO_VELOCITY_COMMAND:
         raise refusal(NO_COMMAND, data.axis.name, f"{NO_VELOCITY_COMMAND[interface]}; nothing was started")
+
+
+def warn_of_cut_recording(data: AxisData) -> None:
+    """On standard error, where the recording is not whole."""
+    recorded = data.recorded
+    if recorded is not None and not recorded.complete:
+        reason = recorded.missing or "its end is missing"
+        text = f"warning: {recorded.path} was cut off ({reason}); only what it holds is evaluated"
+        Console(stderr=True, highlight=False, soft_wrap=True).print(text, style="yellow", markup=False)
 
 
 def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:

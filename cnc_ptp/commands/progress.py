@@ -1,18 +1,27 @@
-"""The progress line of a run: block, position, feed. On a terminal only."""
+"""The live line of a run: program, axes, spindles. On a terminal only."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from types import TracebackType
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
 
-from cnc_ptp.machine.blocks import ChannelBlock
+from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
 from cnc_ptp.machine.offline import Outputs
+from cnc_ptp.machine.unit_view import VIEWS, UnitView, view_of
 
 PERIOD = 0.1
+SMALLEST_BAR = 10
+LARGEST_BAR = 30
+QUIET = ("Standstill", "SynchronizedMotion")
+"""States of an axis that need no word where there is little room."""
+KINDS: dict[type, str] = {AxisBlock: "axis", SpindleBlock: "spindle", ChannelBlock: "channel"}
 
 
 class RunProgress:
@@ -21,55 +30,114 @@ class RunProgress:
     def __init__(self) -> None:
         console = Console(stderr=True)
         self._on = console.is_terminal
-        self._progress = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.fields[where]}"),
-            TimeElapsedColumn(),
-            console=console,
-        )
-        self._task = self._progress.add_task("program", total=None, where="")
+        self._line = LiveLine()
+        self._live = Live(self._line, console=console, refresh_per_second=round(1.0 / PERIOD))
         self._next = 0.0
         self._told: set[str] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
-            self._progress.start()
+            self._live.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._on:
-            self._progress.stop()
+            self._live.stop()
+
+    @property
+    def visible(self) -> bool:
+        """True on a terminal."""
+        return self._on
+
+    @property
+    def due(self) -> bool:
+        """True when somebody looks and the line is a tenth of a second old."""
+        return self._on and time.monotonic() >= self._next
 
     def tell(self, notes: Iterable[str]) -> None:
-        """Shows what has come to `notes`, above the progress line: a run that waits for somebody says so at once."""
+        """Shows what has come to `notes`, above the line: a run that waits for somebody says so at once."""
         for note in notes:
             if self._on and note not in self._told:
                 self._told.add(note)
-                self._progress.console.print(note, style="yellow", markup=False, highlight=False, soft_wrap=True)
+                self._live.console.print(note, style="yellow", markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""
-        if not self._on or time.monotonic() < self._next:
-            return
-        for output in outputs.values():
-            block = output.block
-            if isinstance(block, ChannelBlock):
-                last = range(block.count - 1, len(block.set_position), block.count)
-                position = {axis: block.set_position[index] for axis, index in zip(block.axes, last, strict=True)}
-                self.show(
-                    block.blocks_done, block.blocks_total, block.line[-1], position, block.path_velocity[-1] * 60.0
-                )
-                return
+        if self.due:
+            blocks = {name: output.block for name, output in outputs.items()}
+            kinds = {name: KINDS.get(type(block), "") for name, block in blocks.items()}
+            self.show([view_of(n, shown, blocks[n]) for shown in VIEWS for n, kind in kinds.items() if kind == shown])
 
-    def show(self, done: int, total: int, line: int, position: Mapping[str, float], feed_mm_per_min: float) -> None:
-        """`done` of `total` program blocks, line number, axis positions in mm, feed in mm/min."""
-        if not self._on or time.monotonic() < self._next:
+    def show(self, views: Sequence[UnitView]) -> None:
+        """Units in the order in which they are to stand in the line."""
+        if self.due:
+            self._next = time.monotonic() + PERIOD
+            self._line.views = views
+
+
+class LiveLine:
+    """One line that fits its terminal: what there is no room for is left out, the least important first."""
+
+    def __init__(self) -> None:
+        self.views: Sequence[UnitView] = ()
+        self._started = time.monotonic()
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        text = line_text(self.views, time.monotonic() - self._started, options.max_width)
+        room = min(LARGEST_BAR, options.max_width - len(text) - 1)
+        total = sum(view.blocks_total for view in self.views)
+        if not total or room < SMALLEST_BAR:
+            yield Text(text, no_wrap=True, overflow="crop")
             return
-        self._next = time.monotonic() + PERIOD
-        where = " ".join(f"{axis.upper()}{value:9.3f}" for axis, value in position.items())
-        text = f"block {done}/{total} line {line}  {where}  F{feed_mm_per_min:6.0f}"
-        text = text if position else "the nodes are starting"
-        self._progress.update(self._task, completed=done, total=total or None, where=text)
+        row = Table.grid(padding=(0, 1, 0, 0))
+        done = sum(view.blocks_done for view in self.views)
+        row.add_row(ProgressBar(total=total, completed=done, width=room), Text(text, no_wrap=True))
+        yield row
+
+
+def line_text(views: Sequence[UnitView], seconds: float, width: int) -> str:
+    """The most telling text about the units, `seconds` after the begin, that is at most `width` characters long."""
+    if not views:
+        return f"the nodes are starting  {clock_text(seconds)}"[:width]
+    channels = [view for view in views if view.kind == "channel"]
+    movers = [view for view in views if view.kind != "channel"]
+    short = [f"{view.name if channels[1:] else 'block'} {view.blocks_done}/{view.blocks_total}" for view in channels]
+    long = [f"{text} line {view.line} F{view.speed or 0.0:.0f}" for text, view in zip(short, channels, strict=True)]
+    texts = (
+        "  ".join([*programs, *(mover_text(view, decimals, states) for view in movers), *time])
+        for programs in (long, short)
+        for time in ([clock_text(seconds)], [])
+        for decimals, states in ((3, "all"), (3, "moving"), (3, "none"), (2, "none"))
+    )
+    fitting = next((text for text in texts if len(text) <= width), None)
+    shortest = [*short, *(mover_text(view, 1, "none") for view in movers)]
+    return fitting if fitting is not None else as_many_as_fit(shortest, width)
+
+
+def as_many_as_fit(texts: Sequence[str], width: int) -> str:
+    """The first of the texts, and how many there are besides."""
+    for number in range(len(texts), 0, -1):
+        more = [f"+{len(texts) - number}"] if number < len(texts) else []
+        text = "  ".join([*texts[:number], *more])
+        if len(text) <= width:
+            return text
+    return texts[0][:width]
+
+
+def mover_text(view: UnitView, decimals: int, states: str) -> str:
+    """`states`: all, moving (those that are no matter of course), none."""
+    value = view.speed if view.kind == "spindle" else view.position
+    text = f"{view.name.upper()}{value or 0.0:{6 + decimals}.{decimals}f}"
+    if view.kind == "spindle":
+        text = f"{view.name.upper()}{value or 0.0:8.1f} rpm"
+    if states == "all" or (states == "moving" and view.state not in QUIET):
+        text += f" {view.state}"
+    return text
+
+
+def clock_text(seconds: float) -> str:
+    """h:mm:ss"""
+    minutes, second = divmod(int(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{second:02d}"

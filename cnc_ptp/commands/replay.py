@@ -7,15 +7,16 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from cnc_ptp.commands.console import RUN_FAILED
-from cnc_ptp.machine.blocks import Block, Command
+from cnc_ptp.machine.blocks import Block, Command, CommandRecord
+from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import PLC, build_units
-from cnc_ptp.parameters import load_machine
+from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.verify import verify as verify_recording
 
 
-def replay(recording: str, verify: bool, publish: bool, rate: float) -> int:
+def replay(recording: str, verify: bool, publish: bool, rate: float, inputs: bool = False) -> int:
     """Verifies unless only publishing is asked for. Status 1 when a setpoint differs."""
     status = 0
     if verify or not publish:
@@ -28,7 +29,7 @@ def replay(recording: str, verify: bool, publish: bool, rate: float) -> int:
     if publish:
         from cnc_ptp.nodes.player import publish_recording
 
-        status = publish_recording(recording, rate=rate) or status
+        status = publish_recording(recording, rate=rate, inputs=inputs) or status
     return status
 
 
@@ -38,11 +39,16 @@ def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, Block]]:
     offline = OfflineMachine(machine, build_units(machine, end_when_idle=False))
     commands: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
     for record in recorded.commands:
-        if record.target != PLC:
+        if record.target != PLC and not is_refused_coupling(record, machine):
             commands[record.cycle][record.target].append(Command.from_record(record))
     for first_cycle in range(0, end_of(recorded), machine.block_cycles):
         outputs = offline.replay_tick(commands.get(first_cycle, {}))
         yield from ((name, output.block) for name, output in outputs.items())
+
+
+def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
+    """It changed nothing, and what the PLC had against it is not recorded: fed in again, it might be carried out."""
+    return not record.accepted and record.command in COUPLINGS and record.target in machine.axes
 
 
 def end_of(recorded: Recorded) -> int:

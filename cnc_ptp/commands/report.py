@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.report import write_report
+from cnc_ptp.recording.selection import selected
 
 
-def report(recording: str, output: str) -> int:
-    """Writes the page; tells when the recording was cut off."""
+def report(recording: str, output: str, begin: float | None, end: float | None, axes: Sequence[str]) -> int:
+    """Writes the page, of a part if asked for; tells when the recording was cut off."""
     check_page(output, recording=recording)
-    recorded = read_recording(recording)
+    whole = read_recording(recording)
+    recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
-    write_report(recorded, output, program=program_of(recorded), date=made)
+    write_report(recorded, output, program=program_of(whole), date=made)
     size = Path(output).stat().st_size / 1e6
-    print(f"{output}: {size:.1f} MB, cycles 0 to {recorded.last_cycle}")
+    first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
+    print(f"{output}: {size:.1f} MB, cycles {first} to {recorded.last_cycle}")
     if not recorded.complete:
         print(f"note: {recorded.missing}")
     return 0

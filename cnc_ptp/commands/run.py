@@ -13,6 +13,7 @@ from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import Job, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
 
 
 def run(
@@ -23,27 +24,35 @@ def run(
     record: str | None,
     free_run: bool,
     composed: bool,
+    stay: bool = False,
+    strict: bool = False,
+    state_rate: float | None = None,
 ) -> int:
-    """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died."""
+    """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
+
+    `stay`: until it is told to end (Ctrl-C), which is no error where everything stands. `strict`: status 1 also when a
+    command was refused.
+    """
     keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     read_job(parameters, program=program, scenario=scenario)
-    job = Job(machine, program, scenario, duration, record, free_run)
+    job = Job(machine, program, scenario, duration, record, free_run, stay, state_rate)
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
-            at = monitor.progress
             progress.tell(monitor.notes)
-            progress.show(at.blocks_done, at.blocks_total, at.line, at.position, at.feed_mm_per_min)
+            if progress.due:
+                progress.show(monitor.views())
 
         if composed:
-            monitor, failures = run_composed(parameters, job, show=show)
+            monitor, failures = run_composed(parameters, job, show=show, watched=progress.visible)
         else:
-            supervisor = Supervisor(parameters, job, show=show)
+            supervisor = Supervisor(parameters, job, show=show, watched=progress.visible)
             monitor, failures = supervisor.run(), supervisor.failures
     print_summary(parameters, monitor, failures, duration)
-    print_note_of_idle_run(program, scenario, duration)
-    return RUN_FAILED if failures or monitor.run_failed else 0
+    given = (program, scenario, duration, stay or None)
+    print_note_of_idle_run(*given, options="--program, --scenario, --duration or --stay")
+    return RUN_FAILED if failures or monitor.run_failed or (strict and monitor.refused) else 0
 
 
 def print_summary(
@@ -55,16 +64,14 @@ def print_summary(
     console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
     for line in time_lines(monitor.programs, cycle_time):
         console.print(line, markup=False)
-    total = {
-        key: sum(int(node[key]) for node in monitor.diagnostics.values())
-        for key in ("blocks", "lost_blocks", "duplicates")
-    }
-    nodes, lost, twice = len(monitor.diagnostics), total["lost_blocks"], total["duplicates"]
-    console.print(f"blocks {total['blocks']} in {nodes} nodes, lost {lost}, computed twice {twice}")
+    blocks, lost, twice = (
+        sum(int(node[key]) for node in monitor.diagnostics.values()) for key in (BLOCKS, LOST_BLOCKS, CAME_TWICE)
+    )
+    console.print(f"blocks {blocks} in {len(monitor.diagnostics)} nodes, lost {lost}, computed twice {twice}")
     for name, axis in machine.axes.items():
-        if "following_error_max" in monitor.diagnostics.get(name, {}):
-            error = float(monitor.diagnostics[name]["following_error_max"])
-            console.print(f"largest following error {name}: {error:.4f} {'deg' if axis.rotary else 'mm'}")
+        unit = "deg" if axis.rotary else "mm"
+        if error := monitor.diagnostics.get(name, {}).get(following_error(unit)):
+            console.print(f"largest following error {name}: {float(error):.4f} {unit}")
     lateness = monitor.lateness()
     if lateness.counts:
         p50, p99 = lateness.percentile_us(50.0) / 1000.0, lateness.percentile_us(99.0) / 1000.0
@@ -74,4 +81,7 @@ def print_summary(
     for text in failures:
         console.print(f"failed: {text}", style="bold red", markup=False)
     notes = [*monitor.notes, *([] if failures else cut_off_notes(monitor.programs, duration))]
-    print_faults(console, monitor.errors, notes, stopped=bool(failures) or monitor.run_failed)
+    stopped = bool(failures or monitor.ending) or monitor.run_failed
+    print_faults(console, monitor.errors, notes, stopped=stopped, refused=monitor.refused)
+    if monitor.ending:
+        console.print(monitor.ending, markup=False)

@@ -22,6 +22,7 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     Severity,
     command_note,
+    error_note,
     event_note,
     keep_note,
 )
@@ -45,6 +46,7 @@ class Result:
     following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     errors: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    refused: int = 0
 
     def add(self, outputs: Outputs) -> None:
         for name, output in outputs.items():
@@ -59,8 +61,11 @@ class Result:
                 # The PLC knows of a fault a block later, which may not come any more.
                 self.failed = block.run_failed or any(error_of(other.block) for other in outputs.values())
             self.errors += [
-                f"P-ERR-{event.error_id} {event.text}" for event in output.events if event.severity == Severity.ERROR
+                error_note(event.error_id, event.text, event.cycle, event.line)
+                for event in output.events
+                if event.severity == Severity.ERROR
             ]
+            self.refused += sum(not record.accepted for record in output.records)
             notes = (command_note(record.accepted, record.error_id, record.message) for record in output.records)
             warnings = (event_note(event.severity, event.error_id, event.text) for event in output.events)
             for note in (*notes, *warnings):
@@ -68,9 +73,14 @@ class Result:
 
 
 def simulate(
-    machine: str, program: str | None, scenario: str | None, duration: float | None, record: str | None
+    machine: str,
+    program: str | None,
+    scenario: str | None,
+    duration: float | None,
+    record: str | None,
+    strict: bool = False,
 ) -> int:
-    """Runs offline; prints a summary. Status 1 when a unit ended in error."""
+    """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     job = read_job(parameters, program=program, scenario=scenario)
@@ -96,7 +106,7 @@ def simulate(
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started, duration)
     print_note_of_idle_run(program, scenario, duration)
-    return RUN_FAILED if result.failed or result.interrupted else 0
+    return RUN_FAILED if result.failed or result.interrupted or (strict and result.refused) else 0
 
 
 def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: EndRequest) -> bool:
@@ -140,4 +150,5 @@ def print_summary(
         console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
     else:
         notes = [*notes, *cut_off_notes(result.programs, duration)]
-    print_faults(console, result.errors, notes, stopped=result.failed or bool(result.interrupted))
+    stopped = result.failed or bool(result.interrupted)
+    print_faults(console, result.errors, notes, stopped=stopped, refused=result.refused)

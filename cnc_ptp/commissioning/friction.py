@@ -25,6 +25,8 @@ SAME_SPEED = 0.01
 """Relative difference of set velocities that are taken as one."""
 LARGEST_RIPPLE = 0.3
 """Standard deviation of the actual velocity over its mean, above which the axis sticks and slips."""
+EVEN = 0.01
+"""Seconds; an axis that sticks and slips does it more slowly."""
 LARGEST_DEVIATION = 0.05
 """Relative deviation of the mean actual velocity from the set one, above which it has not settled."""
 
@@ -61,7 +63,9 @@ class FrictionCurve:
     one_way: tuple[float, ...] = ()
     """Set velocities (with sign) that were driven in one direction only …"""
     uneven: tuple[float, ...] = ()
-    """… and those at which the axis did not move evenly (stick-slip, or not settled)."""
+    """… those at which the axis did not move evenly (stick-slip, or not settled) …"""
+    standing: tuple[float, ...] = ()
+    """… and those at which it did not move: the torque does not come above the friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +88,11 @@ def friction_curve(trace: AxisTrace, *, settling: Seconds, half_digit: float = 0
     if not phases:
         raise _nothing_steady(trace, settling)
     even = [phase for phase in phases if moves_evenly(trace, phase)]
-    uneven = tuple(sorted({phase.velocity for phase in phases if phase not in even}))
+    standing = [phase for phase in phases if stands(trace, phase)]
+    held = tuple(sorted({phase.velocity for phase in standing}))
+    uneven = tuple(sorted({phase.velocity for phase in phases if phase not in even and phase not in standing}))
+    if not even and not uneven:
+        raise _stands_still(trace, torque, standing)
     if not even:
         shown = ", ".join(f"{velocity:g}" for velocity in uneven)
         raise refusal(
@@ -103,7 +111,18 @@ def friction_curve(trace: AxisTrace, *, settling: Seconds, half_digit: float = 0
             f"no speed was driven in both directions (constant velocities: {shown}); weight and friction "
             "cannot be told apart, no table was made, drive each speed forth and back",
         )
-    return FrictionCurve(trace.axis, points, one_way, uneven)
+    return FrictionCurve(trace.axis, points, one_way, uneven, held)
+
+
+def _stands_still(trace: AxisTrace, torque: Array, phases: Sequence[SteadyPhase]) -> CncError:
+    largest = max(float(np.max(np.abs(torque[phase.first : phase.end]))) for phase in phases)
+    shown = ", ".join(f"{velocity:g}" for velocity in sorted({phase.velocity for phase in phases}))
+    return refusal(
+        NOT_STEADY,
+        trace.axis,
+        f"stands still at every constant velocity ({shown}), the torque comes up to {largest:.4g} and not above the "
+        "friction: is the torque limit of the drive too low, or the axis blocked? no table was made",
+    )
 
 
 def _torque(trace: AxisTrace) -> Array:
@@ -144,13 +163,31 @@ def _nothing_steady(trace: AxisTrace, settling: Seconds) -> CncError:
     )
 
 
+def stands(trace: AxisTrace, phase: SteadyPhase) -> bool:
+    """Whether the axis does not move in a phase, or hardly."""
+    position = trace.actual_position[phase.first : phase.end]
+    set_way = abs(phase.velocity) * (len(phase) - 1) * trace.cycle_time
+    return float(np.ptp(position)) < LARGEST_DEVIATION * set_way
+
+
 def moves_evenly(trace: AxisTrace, phase: SteadyPhase) -> bool:
-    """Whether the actual velocity of a phase is what was set, without sticking."""
-    actual = trace.actual_velocity[phase.first : phase.end]
-    speed = abs(phase.velocity)
-    way = float(trace.actual_position[phase.end - 1] - trace.actual_position[phase.first])
-    mean = way / ((len(phase) - 1) * trace.cycle_time) if len(phase) > 1 else float(actual[0])
-    return abs(mean - phase.velocity) <= LARGEST_DEVIATION * speed and float(np.std(actual)) <= LARGEST_RIPPLE * speed
+    """Whether the axis moves in a phase as it was set to, without sticking."""
+    speed, position = abs(phase.velocity), trace.actual_position[phase.first : phase.end]
+    way = float(position[-1] - position[0])
+    mean = way / ((len(phase) - 1) * trace.cycle_time) if len(phase) > 1 else float(trace.actual_velocity[phase.first])
+    return abs(mean - phase.velocity) <= LARGEST_DEVIATION * speed and _ripple(trace, phase) <= LARGEST_RIPPLE * speed
+
+
+def _ripple(trace: AxisTrace, phase: SteadyPhase) -> float:
+    """Standard deviation of the velocity, or of the way of EVEN seconds by its time where that is steadier.
+
+    Noise of a measured velocity is no motion, digits of a position are none either; sticking shows in both.
+    """
+    span, window = slice(phase.first, phase.end), round(EVEN / trace.cycle_time)
+    measured, position = float(np.std(trace.actual_velocity[span])), trace.actual_position[span]
+    if not 1 < window < len(position):
+        return measured
+    return min(measured, float(np.std(position[window:] - position[:-window])) / (window * trace.cycle_time))
 
 
 def _sample(trace: AxisTrace, torque: Array, phase: SteadyPhase) -> _Sample:

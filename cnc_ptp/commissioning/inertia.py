@@ -1,9 +1,13 @@
 """Inertia from torque and velocity: M = k·a + c·sign(v) + b·v + load, summed up over time.
 
 Summing avoids differentiating the velocity: over a window of cycles 1 … n that does not change direction,
-T·ΣM = k·(v_n - v_0) + c·(±nT) + b·(x_n - x_0) + load·nT; least squares give k in N (Nm) a mm/s² (deg/s²).
+T·ΣM = k·(v_n - v_0) + c·(±nT) + b·(x_n - x_0) + load·nT + d·(M_n - M_0); d is the time by which the torque is older
+than its row, as far as the sum is. The measured columns are noisy, which would draw k towards 0 in a least squares
+fit. So each has an instrument, the same column of the velocity that the axis was to have, behind the lag of its
+position loop, which knows nothing of that noise: Zᵀ·(columns·solution - impulses) = 0.
 Friction is no straight line at low speeds, so the windows contradict each other more than noise would have it: how much
 k differs between speeding up and slowing down, and between slow and fast, belongs to its deviation.
+Source: instrumental variables, Söderström and Stoica, System Identification, 8.
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.signal import lfilter
 
 from cnc_ptp.commissioning.trace import Array, AxisTrace, Span
 
@@ -22,16 +27,22 @@ LOWEST_PART = 0.05
 """Of the highest speed: slower windows are left out, there friction is no straight line."""
 LEAST_TIME = 0.2
 """Seconds that all windows together must begin in."""
-CORRELATED = 0.05
+CORRELATED = 0.1
 """Seconds after which what the model does not explain is taken for independent."""
 CHANGING = 0.2
 """Part of the largest change of velocity above which a window says something about the inertia."""
-LARGEST_UNCERTAINTY = 0.2
+LARGEST_UNCERTAINTY = 0.3
+LAGS = np.concatenate([[0.0], np.geomspace(5e-4, 0.5, 40)])
+"""Seconds; lags of the position loop that are tried."""
+RANK = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
 class InertiaFit:
-    """`torque_per_acceleration` k in N (Nm) a mm/s² (deg/s²), its deviation, Coulomb part c in N (Nm)."""
+    """`torque_per_acceleration` k in N (Nm) a mm/s² (deg/s²), its deviation, Coulomb part c in N (Nm).
+
+    `deviation`: two standard deviations, and by how much the windows contradict each other.
+    """
 
     torque_per_acceleration: float
     deviation: float
@@ -42,10 +53,13 @@ class InertiaFit:
 
 @dataclass(frozen=True, slots=True)
 class _Windows:
-    """Rows (change of velocity, ± time, way, time) (n, 4) and impulses (n,) of windows that begin in cycles (n,)."""
+    """Rows (change of velocity, ± time, way, time, change of torque) (n, 5) and impulses (n,) of windows that begin in
+    cycles (n,); `instruments` (n, 5) are the rows of the velocity that was wanted.
+    """
 
     cycles: Array
     rows: Array
+    instruments: Array
     impulses: Array
 
 
@@ -56,75 +70,102 @@ def fit_inertia(trace: AxisTrace) -> InertiaFit | None:
     windows = _windows(trace, trace.actual_torque)
     if len(windows.rows) * trace.cycle_time < LEAST_TIME:
         return None
-    solution, rank = _solve(windows.rows, windows.impulses)
-    if rank < len(solution):
+    inverse = _inverse(windows.instruments, windows.rows)
+    if inverse is None:
         return None
+    solution = inverse @ (windows.instruments.T @ windows.impulses)
     k, coulomb, viscous = (float(value) for value in solution[:3])
     block = max(1, round(CORRELATED / trace.cycle_time))
-    deviation = math.hypot(_scatter(windows, solution, block), _contradiction(windows))
+    deviation = math.hypot(2.0 * _scatter(windows, solution, inverse[0], block), _contradiction(windows))
     if k <= 0.0 or deviation > LARGEST_UNCERTAINTY * k:
         return None
     return InertiaFit(k, deviation, coulomb, viscous)
 
 
-def _solve(rows: Array, impulses: Array) -> tuple[Array, int]:
-    """Least squares solution and rank of the columns, each brought to the size 1."""
-    scale = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), 1e-300)
-    solution, _, rank, _ = np.linalg.lstsq(rows / scale, impulses, rcond=1e-9)
-    return solution / scale, int(rank)
+def _inverse(instruments: Array, rows: Array) -> Array | None:
+    """(Zᵀ·X)⁻¹; None where the columns do not differ."""
+    product = instruments.T @ rows
+    scale = np.sqrt(np.mean(rows**2, axis=0)), np.sqrt(np.mean(instruments**2, axis=0))
+    if not (np.all(scale[0]) and np.all(scale[1])):
+        return None
+    scaled = product / np.outer(scale[1], scale[0]) / len(rows)
+    if np.linalg.matrix_rank(scaled, tol=RANK) < len(scaled):
+        return None
+    inverse: Array = np.linalg.inv(scaled) / np.outer(scale[0], scale[1]) / len(rows)
+    return inverse
 
 
-def _scatter(windows: _Windows, solution: Array, block: int) -> float:
+def _scatter(windows: _Windows, solution: Array, weights: Array, block: int) -> float:
     """Standard deviation of k; residuals of windows that begin within `block` cycles may be alike (sandwich)."""
-    scale = np.sqrt(np.mean(windows.rows**2, axis=0))
-    scaled = windows.rows / scale
-    scores = scaled * (windows.impulses - windows.rows @ solution)[:, None]
+    scores = windows.instruments @ weights * (windows.impulses - windows.rows @ solution)
     starts = np.flatnonzero(np.diff(windows.cycles // block, prepend=-1.0))
-    sums = np.add.reduceat(scores, starts, axis=0)
-    weights = np.linalg.inv(scaled.T @ scaled)[0]
-    return float(np.sqrt(np.sum((sums @ weights) ** 2)) / scale[0])
+    sums = np.add.reduceat(scores, starts)
+    freedom = max(1, len(sums) - len(solution))
+    return float(np.sqrt(np.sum(sums**2) * len(sums) / freedom))
 
 
 def _contradiction(windows: _Windows) -> float:
     """Half the difference of k between speeding up and slowing down, and between slow and fast, both together."""
-    rows = windows.rows
-    changing = np.abs(rows[:, 0]) >= CHANGING * np.max(np.abs(rows[:, 0]))
-    way = np.abs(rows[:, 2])
-    faster = np.where(rows[:, 0] * rows[:, 1] > 0.0, 1.0, -1.0)
+    rows, instruments = windows.rows, windows.instruments
+    change, way = instruments[:, 0], np.abs(instruments[:, 2])
+    changing = np.abs(change) >= CHANGING * np.max(np.abs(change))
+    faster = np.where(change * instruments[:, 1] > 0.0, 1.0, -1.0)
     fast = np.where(way > np.median(way[changing]), 1.0, -1.0)
     sides = [side for side in (faster, fast) if np.ptp(side[changing]) > 0.0]
-    columns = np.column_stack([rows, *(rows[:, 0] * side for side in sides)])
-    return math.hypot(*_solve(columns, windows.impulses)[0][rows.shape[1] :])
+    columns, wanted = (
+        np.column_stack([values, *(values[:, 0] * side for side in sides)]) for values in (rows, instruments)
+    )
+    inverse = _inverse(wanted, columns)
+    if inverse is None:
+        return math.inf
+    return math.hypot(*(inverse @ (wanted.T @ windows.impulses))[rows.shape[1] :])
 
 
 def _windows(trace: AxisTrace, torque: Array) -> _Windows:
     """All windows of WINDOW seconds in one direction and fast enough, one beginning in each cycle."""
-    velocity, step = trace.actual_velocity, max(2, round(WINDOW / trace.cycle_time))
+    wanted, step = _wanted_velocity(trace), max(2, round(WINDOW / trace.cycle_time))
     position, time = trace.actual_position, step * trace.cycle_time
-    if trace.mean_velocity:  # half a cycle older than its row, so let all be that old
-        position, torque = _half_a_cycle_before(position), _half_a_cycle_before(torque)
-    first = np.concatenate([_one_way(velocity, span, step) for span in trace.unbroken()])
+    if trace.mean_velocity:  # half a cycle older than its row, so let the position be that old
+        position = 0.5 * (position + np.concatenate([position[:1], position[:-1]]))
+    first = np.concatenate([_one_way(trace.actual_velocity, wanted, span, step) for span in trace.unbroken()])
     end = first + step
-    impulse = np.cumsum(torque) * trace.cycle_time
-    rows = np.column_stack(
-        [
-            velocity[end] - velocity[first],
-            np.sign(velocity[first]) * time,
-            position[end] - position[first],
-            np.full(len(first), time),
-        ]
+    direction, constant = np.sign(wanted[first]) * time, np.full(len(first), time)
+
+    def change(values: Array) -> Array:
+        changed: Array = values[end] - values[first]
+        return changed
+
+    impulse, way = np.cumsum(torque) * trace.cycle_time, np.cumsum(wanted) * trace.cycle_time
+    rows = [change(trace.actual_velocity), direction, change(position), constant, change(torque)]
+    instruments = [change(wanted), direction, change(way), constant, change(np.gradient(wanted))]
+    return _Windows(
+        trace.cycle[first].astype(np.float64), np.column_stack(rows), np.column_stack(instruments), change(impulse)
     )
-    return _Windows(trace.cycle[first].astype(np.float64), rows, impulse[end] - impulse[first])
 
 
-def _one_way(velocity: Array, span: Span, step: int) -> npt.NDArray[np.intp]:
-    """Where windows of `step` cycles begin that are fast enough and do not turn back; not in the first cycle."""
-    lowest = LOWEST_PART * float(np.max(np.abs(velocity)))
-    part = velocity[span[0] + 1 : span[1]]
-    signs = np.concatenate([[0.0], np.cumsum(np.where(np.abs(part) >= lowest, np.sign(part), 0.0))])
+def _wanted_velocity(trace: AxisTrace) -> Array:
+    """The set velocity behind that lag of first order which makes it most like the actual one."""
+    spans = list(trace.unbroken())
+    candidates = (_lagged(trace.set_velocity, spans, lag / trace.cycle_time) for lag in LAGS)
+    return min(candidates, key=lambda velocity: float(np.sum((velocity - trace.actual_velocity) ** 2)))
+
+
+def _lagged(velocity: Array, spans: list[Span], cycles: float) -> Array:
+    """Each stretch without gaps behind a lag of so many cycles, settled at its beginning."""
+    pole = math.exp(-1.0 / cycles) if cycles else 0.0
+    parts = [velocity[first:end] for first, end in spans]
+    lagged = [lfilter([1.0 - pole], [1.0, -pole], part, zi=[pole * part[0]])[0] for part in parts]
+    joined: Array = np.concatenate(lagged)
+    return joined
+
+
+def _one_way(velocity: Array, wanted: Array, span: Span, step: int) -> npt.NDArray[np.intp]:
+    """Where windows of `step` cycles begin that are fast enough and do not turn back; not in the first cycle.
+
+    Which are fast enough is the wanted velocity's business: the noise of the actual one would choose for itself.
+    """
+    lowest = LOWEST_PART * float(np.max(np.abs(wanted)))
+    part, direction = wanted[span[0] + 1 : span[1]], np.sign(velocity[span[0] + 1 : span[1]])
+    good = (np.abs(part) >= lowest) & (np.sign(part) == direction)
+    signs = np.concatenate([[0.0], np.cumsum(np.where(good, direction, 0.0))])
     return np.flatnonzero(np.abs(signs[step + 1 :] - signs[: -step - 1]) == step + 1) + span[0] + 1
-
-
-def _half_a_cycle_before(values: Array) -> Array:
-    before: Array = 0.5 * (values + np.concatenate([values[:1], values[:-1]]))
-    return before

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Protocol
 
 from cnc_ptp.control.control_loop import ControlLoop
@@ -9,8 +10,21 @@ from cnc_ptp.control.feedforward import Feedforward
 from cnc_ptp.errors import CncError
 
 BAD_WEIGHT = 23060
+FEEDFORWARD_WAITS = 23061
+WEIGHT_LIMITED = 23062
 NO_FRICTION_COMPENSATION = 70495
 FULL_WEIGHT = 100.0
+
+
+def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) -> str | None:
+    """What to tell when feedforward waits at a constant set `velocity` (mm/s, deg/s) for room that is not there."""
+    limit = feedforward.take_wait()
+    if limit is None:
+        return None
+    return (
+        f"feedforward waits: at {abs(velocity):g} {unit}/s there is no room up to {limit:g} {unit}/s (P-AXIS-00212) to "
+        f"make up the following error; {feedforward.percent:g} % act, the rest does when the motion is slower"
+    )
 
 
 class FeedforwardLoop(Protocol):
@@ -35,23 +49,29 @@ class FeedforwardCommands:
         self._weight_percent = FULL_WEIGHT
 
     def do_set_feedforward(
-        self, cycle: int, *, on: bool | None = None, weight_percent: float | None = None
+        self, cycle: int, *, enabled: bool | None = None, weight_percent: float | None = None
     ) -> str | None:
-        """G135/G137 (`on`) and G136 (`weight_percent`, 0 … 100); what is left out stays. Refusal 23060.
+        """G135/G137 (`enabled`) and G136 (`weight_percent`); what is left out stays. Refusal 23060.
 
-        A warning when nothing is asked for, or when the axis has no feedforward (P-AXIS-00223).
+        A warning when nothing is asked for, when a weight above 100 is limited to it (TF5200 feedforward 3), or where
+        there is no feedforward (P-AXIS-00223).
         """
-        if on is None and weight_percent is None:
-            return f"{self._subject}: set_feedforward without effect, neither on nor weight_percent is given"
-        if weight_percent is not None and not 0.0 <= weight_percent <= FULL_WEIGHT:
-            reason = f"weight_percent = {weight_percent} is not within 0 ... 100 (G136)"
+        if enabled is None and weight_percent is None:
+            return f"{self._subject}: set_feedforward without effect, neither enabled nor weight_percent is given"
+        if weight_percent is not None and not 0.0 <= weight_percent < inf:
+            reason = f"weight_percent = {weight_percent} is no number of 0 or more (G136)"
             self._refuse("set_feedforward", BAD_WEIGHT, reason)
-        self._on = self._on if on is None else on
-        self._weight_percent = self._weight_percent if weight_percent is None else float(weight_percent)
+        self._on = self._on if enabled is None else enabled
+        if weight_percent is not None:
+            self._weight_percent = min(FULL_WEIGHT, float(weight_percent))
         self._feedforward_loop.select_feedforward(self._on, self._weight_percent)
-        if on and self._feedforward_loop.feedforward.mode == 0:
-            return f"{self._subject}: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
-        return None
+        warnings, number = [], ""
+        if weight_percent is not None and weight_percent > FULL_WEIGHT:
+            warnings.append(f"weight_percent = {weight_percent:g} is above 100 and limited to it (G136)")
+            number = f"P-WARN-{WEIGHT_LIMITED} "
+        if enabled and self._feedforward_loop.feedforward.mode == 0:
+            warnings.append("feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE")
+        return f"{number}{self._subject}: {'; '.join(warnings)}" if warnings else None
 
     def do_reset_feedforward(self, cycle: int) -> None:
         """Start of an NC program: feedforward off, weight 100 %; P-AXIS-00255 keeps it on."""
@@ -69,16 +89,16 @@ class ControlCommands(FeedforwardCommands):
         super().__init__(loop, subject)
         self._loop = loop
 
-    def do_set_friction_compensation(self, cycle: int, *, on: bool) -> str | None:
+    def do_set_friction_compensation(self, cycle: int, *, enabled: bool) -> str | None:
         """COMP ON FRICT and COMP OFF FRICT; stays after the program end. Refusal 70495.
 
         A warning when there is nothing to compensate with (P-COMP-00041 = 0, no table).
         """
-        if on and not self._loop.friction.permitted:
+        if enabled and not self._loop.friction.permitted:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             self._refuse("set_friction_compensation", NO_FRICTION_COMPENSATION, reason)
-        self._loop.friction.switch(on)
-        if on and not self._loop.friction.effective:
+        self._loop.friction.switch(enabled)
+        if enabled and not self._loop.friction.effective:
             reason = "P-COMP-00041 (frict_comp.mode) is 0, or the table has no entries"
             return f"{self._subject}: friction compensation without effect, {reason}"
         return None

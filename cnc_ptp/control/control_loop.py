@@ -23,7 +23,7 @@ from cnc_ptp.parameters.control_view import ControlParameters
 
 State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""
-Row = tuple[float, float, float, float, float, float, float, float, float]
+Row = tuple[float, float, float, float, float, float, float, float, float, float]
 """A ControlCycle without its names, which take their time."""
 Columns = Sequence[list[float]]
 """The values of ControlCycle over many cycles."""
@@ -45,6 +45,8 @@ class ControlCycle(NamedTuple):
     additive_torque: float
     friction_current: float
     actual_torque: float
+    feedforward_percent: float
+    """Weight with which feedforward acts in this cycle, 0 = off."""
 
 
 class ControlLoop:
@@ -69,7 +71,9 @@ class ControlLoop:
             delay_cycles=self.delay_cycles,
             samples_velocity=parameters.drive.interface == "torque",
         )
-        self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles)
+        self.friction = FrictionCompensation(parameters.friction, delay_cycles=self.delay_cycles, cycle_time=cycle_time)
+        self.torque_digits = scaling.torque
+        """Digits of the drive for 1 Nm (N)."""
         self._torque_per_digit = 1.0 / scaling.torque if scaling.torque else 0.0
         self._modulo = ModuloCompensation(parameters.modulo_error, origin=drive.position)
         self._interface = parameters.drive.interface
@@ -111,8 +115,13 @@ class ControlLoop:
         self._history = deque(((p + distance, v, a, j) for p, v, a, j in self._history), maxlen=HISTORY)
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
-        """G135 or G137 with the weight of G136."""
+        """G135 or G137 with the weight of G136: at once at a standstill, in motion softly.
+
+        Without a closed cycle before, nothing has gone out that could step.
+        """
         self.feedforward.select(on, weight_percent)
+        if self.feedforward.at_rest(self._history):
+            self.feedforward.settle()
 
     def monitored(self, setpoint: State) -> tuple[float, float]:
         """Following error and set velocity that the position controller has at `setpoint`, behind the delay line."""
@@ -129,6 +138,13 @@ class ControlLoop:
         following_error, velocity = self.monitored(setpoint)
         limit = f"{round(self.monitor.limit(velocity), 4)} {unit} ({self.monitor.source(velocity)})"
         return f"following error {following_error:.4f} {unit} exceeds {limit}"
+
+    def lag_share(self, positions: Sequence[float], velocities: Sequence[float], actual_position: float) -> float:
+        """Following error after cycles with these set values as a part of its limit, from 0; 1 and more is too far."""
+        behind = min(self.delay_cycles, len(positions) - 1)
+        lag = abs(positions[-1 - behind] - actual_position)
+        limit = self.monitor.limit(velocities[-1 - behind])
+        return lag / limit if limit else float(lag > 0.0)
 
     def step(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
         """Closes the loop for one cycle; open, the drive is to have `open_velocity` and nothing is remembered."""
@@ -170,7 +186,7 @@ class ControlLoop:
             for setpoint in setpoints[:n][-HISTORY:]:
                 self._remember(setpoint)
         none = [0.0] * n
-        return positions, velocities, errors, commands, none, none, none, none, torques
+        return positions, velocities, errors, commands, none, none, none, none, torques, none
 
     def _remember(self, setpoint: State) -> None:
         """Before the first setpoint the axis stood there."""
@@ -183,12 +199,12 @@ class ControlLoop:
         drive = self.drive
         if self._virtual is not None:
             self._virtual.follow(setpoint[0] - self.offset, setpoint[1])
-            return setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            return setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         position, velocity, torque = self.position, drive.velocity, drive.torque
         if closed:
             return self._closed_cycle(setpoint, position, velocity, torque)
         self._open(open_velocity)
-        return position, velocity, setpoint[0] - position, open_velocity, 0.0, 0.0, 0.0, 0.0, torque
+        return position, velocity, setpoint[0] - position, open_velocity, 0.0, 0.0, 0.0, 0.0, torque, 0.0
 
     def _closed_cycle(self, setpoint: State, position: float, velocity: float, torque: float) -> Row:
         self._remember(setpoint)
@@ -214,6 +230,7 @@ class ControlLoop:
             additive_torque,
             friction.current,
             torque,
+            feedforward.percent,
         )
 
     def _command(

@@ -8,6 +8,7 @@ Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
 from __future__ import annotations
 
 from collections import deque
+from itertools import islice
 from math import copysign, exp, floor, sqrt
 from typing import NamedTuple
 
@@ -19,6 +20,10 @@ ROUNDING = 1e-9
 """Part of a factor that is missing: it is reached."""
 EXCESS = 0.03
 """Part of the axis' acceleration that feedforward and motion may be above it together while it is coupled in or out."""
+NO_ROOM = 0.01
+"""Part of the axis' acceleration; what leaves less for the push, near the largest velocity, is no room …"""
+WAITED = 0.5
+"""… and seconds of constant velocity without room after which that is worth a warning."""
 DECAYED = 3.0
 """Time constants after which a lag that was made up does not count any more: e^3 · EXCESS > 1."""
 
@@ -35,6 +40,7 @@ class Feedforward:
         "_acceleration_at",
         "_always_active",
         "_coupling",
+        "_depth",
         "_jerk_at",
         "_means",
         "_parts",
@@ -72,6 +78,8 @@ class Feedforward:
         self._velocity_at = velocity_value(behind + velocity_delay, cycle_time)
         self._acceleration_at = MeanValue(behind + (torque_delay if mode & ADD_ACC else 0.0), cycle_time)
         self._jerk_at = MeanValue(behind + (torque_delay if mode & ADD_JERK else 0.0), cycle_time)
+        oldest = max(value.oldest for value in (self._velocity_at, self._acceleration_at, self._jerk_at))
+        self._depth = max(1, 1 + oldest)  # without feedforward there may be no delay line for the lead
         self._parts = _parts(parameters, kv, torque_per_acceleration)
         self._velocity_of_torque = 1.0 / (torque_per_acceleration * kv) if torque_per_acceleration else 0.0
         self._prefilter: deque[tuple[float, float, float]] = deque(maxlen=parameters.prefilter_cycles)
@@ -87,9 +95,33 @@ class Feedforward:
         """True while it puts anything out, also while it is being coupled out."""
         return self.mode != 0 and self._coupling.active
 
+    @property
+    def percent(self) -> float:
+        """Weight with which it acts now, on its way in and out as well; 0 = off."""
+        return 100.0 * self._coupling.factor if self.mode else 0.0
+
+    @property
+    def velocity_part(self) -> float:
+        """Part of a constant velocity that goes out beside the position controller."""
+        parts = self._parts
+        return self._coupling.factor * (parts.velocity + parts.additive_velocity) if self.mode else 0.0
+
     def select(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136; P-AXIS-00255 keeps it on. It is coupled in or out softly."""
         self._coupling.target = weight_percent / 100.0 if on or self._always_active else 0.0
+
+    def settle(self) -> None:
+        """What was selected holds at once: at a standstill nothing can step."""
+        self._coupling.settle()
+
+    def take_wait(self) -> float | None:
+        """The axis' largest velocity where the selection waits in vain for room up to it; told once."""
+        return self._coupling.take_wait()
+
+    def at_rest(self, history: deque[State]) -> bool:
+        """No setpoint that it has still to look at moves; `history` ends with the cycle before, newest at its left."""
+        seen = islice(history, self._depth)
+        return all(v == 0.0 and a == 0.0 for _, v, a, _ in seen) and not any(map(any, self._prefilter))
 
     def forget(self) -> None:
         """The loop is open: nothing goes out, what was selected holds from the next closed cycle on."""
@@ -168,16 +200,17 @@ class MeanValue:
     """Mean of velocity, acceleration or jerk over the cycle that began `behind` cycles before the newest setpoint.
 
     A fraction of a cycle takes the end of one setpoint's cycle and the begin of the next one's. Exact for a jerk that
-    is constant in each cycle.
+    is constant in each cycle. `oldest`: index of the oldest setpoint that it looks at.
     """
 
-    __slots__ = ("_first", "_index", "_second", "_split")
+    __slots__ = ("_first", "_index", "_second", "_split", "oldest")
 
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
         whole, fraction = _split(behind)
         self._index = whole
         self._split = fraction > 0.0
+        self.oldest = whole + 1 if fraction else whole
         t, s = cycle_time, (1.0 - fraction) * cycle_time
         self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
         self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
@@ -206,18 +239,18 @@ class MeanValue:
 
 
 class MomentaryVelocity:
-    """Velocity `behind` cycles before the newest setpoint."""
+    """Velocity `behind` cycles before the newest setpoint; `oldest`: index of the setpoint that it looks at."""
 
-    __slots__ = ("_index", "_time")
+    __slots__ = ("_time", "oldest")
 
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
         whole, fraction = _split(behind)
-        self._index = whole + 1 if fraction else whole
+        self.oldest = whole + 1 if fraction else whole
         self._time = (1.0 - fraction) * cycle_time if fraction else 0.0
 
     def velocity(self, history: deque[State]) -> float:
-        _, v, a, j = history[self._index]
+        _, v, a, j = history[self.oldest]
         t = self._time
         return v + t * (a + 0.5 * t * j)
 
@@ -241,7 +274,19 @@ class Coupling:
     An additive torque M counts as a velocity M/(k·Kv), for a velocity controller is faster than a position controller.
     """
 
-    __slots__ = ("_cycle_time", "_kv", "_last_command", "_limits", "_push", "_quantum", "_reserve", "factor", "target")
+    __slots__ = (
+        "_cycle_time",
+        "_kv",
+        "_last_command",
+        "_limits",
+        "_push",
+        "_quantum",
+        "_reserve",
+        "_told",
+        "_waited",
+        "factor",
+        "target",
+    )
 
     def __init__(self, limits: CouplingLimits, *, cycle_time: float, kv: float) -> None:
         self._limits, self._cycle_time, self._kv = limits, cycle_time, kv
@@ -249,6 +294,7 @@ class Coupling:
         self._reserve = kv / limits.jerk
         self._push = 0.0
         self._last_command: float | None = None
+        self._waited, self._told = 0, False
         self.factor = self.target = 0.0
 
     @property
@@ -258,6 +304,18 @@ class Coupling:
     def settle(self) -> None:
         """The factor is what was selected."""
         self.factor, self._push = self.target, 0.0
+        self._waited, self._told = 0, False
+
+    def take_wait(self) -> float | None:
+        """See Feedforward.take_wait; the next one is told after the selection has come into force."""
+        if self._told or self._waited * self._cycle_time < WAITED:
+            return None
+        self._told = True
+        return self._limits.velocity
+
+    def _note_room(self, velocity_room: float, acceleration: float) -> None:
+        waits = acceleration == 0.0 and velocity_room < NO_ROOM * self._limits.acceleration
+        self._waited = self._waited + 1 if waits else 0
 
     def forget(self) -> None:
         """The loop is open or nothing is put out: what was selected holds at once, nothing moves."""
@@ -318,5 +376,7 @@ class Coupling:
         if by_velocity < 0.0 or by_torque < 0.0:
             room = min(room, limit + drift)
         if by_velocity * velocity > 0.0 or by_torque * velocity > 0.0:
-            room = min(room, self._kv * (self._limits.velocity - max(abs(velocity), abs(command))))
+            velocity_room = self._kv * (self._limits.velocity - max(abs(velocity), abs(command)))
+            self._note_room(velocity_room, setpoint[2])
+            room = min(room, velocity_room)
         return max(0.0, room)

@@ -12,6 +12,8 @@ from itertools import pairwise
 from cnc_ptp.parameters.control_view import FrictionParameters
 
 State = tuple[float, float, float, float]
+COUPLING_TIME = 0.1
+"""Seconds in which the current comes or goes when it is switched in motion."""
 
 
 class FrictionTable:
@@ -44,16 +46,19 @@ class FrictionCompensation:
         "_behind",
         "_delayed",
         "_direction",
+        "_factor",
         "_lookahead",
+        "_moving",
         "_position_delay",
         "_reversed_at",
+        "_step",
         "_table",
         "current",
         "on",
         "permitted",
     )
 
-    def __init__(self, parameters: FrictionParameters, *, delay_cycles: int) -> None:
+    def __init__(self, parameters: FrictionParameters, *, delay_cycles: int, cycle_time: float) -> None:
         """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint."""
         self.permitted = parameters.permitted
         self._active = self.on = parameters.active
@@ -64,6 +69,8 @@ class FrictionCompensation:
         self._delayed: deque[float] = deque([0.0] * parameters.delay_cycles)
         self._direction = 0.0
         self._reversed_at: float | None = None
+        self._moving = False
+        self._factor, self._step = float(self.on), cycle_time / COUPLING_TIME
         self.current = 0.0
 
     @property
@@ -72,12 +79,17 @@ class FrictionCompensation:
         return self._active and self._table is not None
 
     def switch(self, on: bool) -> None:
-        """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off."""
+        """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off. At once at a standstill, else softly or
+        with the next reversal.
+        """
         self.on = on and self._active
+        if not self._moving:
+            self._factor = float(self.on)
 
     def forget(self) -> None:
         """The loop is open: no current, and no motion from which the next one could turn back."""
         self._direction, self._reversed_at, self.current = 0.0, None, 0.0
+        self._moving, self._factor = False, float(self.on)
         for index in range(len(self._delayed)):
             self._delayed[index] = 0.0
 
@@ -85,21 +97,34 @@ class FrictionCompensation:
         """The current of this cycle; `history` has the newest setpoint at its left end."""
         position, velocity, _, _ = history[self._behind]
         value = 0.0
-        if velocity != 0.0:
+        self._moving = velocity != 0.0
+        if self._moving:
             self._note_direction(position, velocity, history)
-            if self.on and self._table is not None:
-                value = self._table.current(velocity) * self._weight(position, velocity, history)
+            self._couple()
+            if self._factor and self._table is not None:
+                value = self._factor * self._table.current(velocity) * self._weight(position, velocity, history)
                 value = value if velocity > 0.0 else -value
+        else:
+            self._factor = float(self.on)
         if self._delayed:
             self._delayed.append(value)
             value = self._delayed.popleft()
         self.current = value
 
+    def _couple(self) -> None:
+        """One cycle nearer to on or off; the current would step, if it changed in motion at once."""
+        target = float(self.on)
+        self._factor = min(target, self._factor + self._step) if target else max(target, self._factor - self._step)
+
     def _note_direction(self, position: float, velocity: float, history: deque[State]) -> None:
-        """Notes where the axis has turned back: farther out than both its positions around that instant it was not."""
+        """Notes where the axis has turned back: farther out than both its positions around that instant it was not.
+
+        The current changes its sign there, so it may come or go.
+        """
         direction = 1.0 if velocity > 0.0 else -1.0
         if direction != self._direction:
             if self._direction != 0.0:
+                self._factor = float(self.on)
                 before = history[self._behind + 1][0]
                 self._reversed_at = min(position, before) if velocity > 0.0 else max(position, before)
             self._direction = direction

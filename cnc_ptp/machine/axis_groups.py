@@ -10,7 +10,7 @@ from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
 
 STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
-STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "external_enable"})
+STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
 
 
 class AxisGroups:
@@ -70,31 +70,25 @@ class AxisGroups:
             chain.append(name)
         return chain
 
-    def complete(self, commands: Iterable[Command], lost: Container[str]) -> list[Command]:
-        """The commands of a block, couplings with what their axis needs to know; masters are told of their slaves."""
-        started: set[str] = set()
-        completed = []
-        edges = {slave: [master] for slave, master in self._masters.items()}
+    def complete(self, commands: Iterable[Command], lost: Container[str]) -> tuple[list[Command], list[Command]]:
+        """The commands of a block, and those that have to wait for the next one.
+
+        Couplings get what their axis needs to know; masters are told of their slaves.
+        """
+        block = CommandsOfBlock(self._masters)
         for command in commands:
-            master = command.arguments.get("master")
-            if command.target in self._spindles:
-                pass  # couples otherwise (spindle_groups.py)
-            elif command.command in COUPLINGS and isinstance(master, str):
-                above = reachable(edges, master)
-                stands = self._stands(master) and not started & {master, *above}
-                group = {"above": above, "master_stands": stands, "master_lost": master in lost}
-                command.arguments = {**command.arguments, **group}
-                if command.target not in (master, *above):
-                    edges.setdefault(command.target, []).append(master)
-                    self._masters[command.target] = master
-            elif command.command in STARTS:
-                started.add(command.target)
-            elif command.command == "decouple":
-                self._masters.pop(command.target, None)
-                if not command.arguments:  # what has arguments may be refused for them
-                    edges.pop(command.target, None)
-            completed.append(command)
-        return completed + list(self._lead_commands())
+            if command.target in self._spindles:  # couples otherwise (spindle_groups.py)
+                block.completed.append(command)
+            elif not block.must_wait(command):
+                master = master_in(command)
+                if master is not None:
+                    above = block.above(master)
+                    stands = self._stands(master) and not block.started & {master, *above}
+                    group = {"above": above, "master_stands": stands, "master_lost": master in lost}
+                    command.arguments = {**command.arguments, **group}
+                block.add(command)
+        self._masters = block.masters
+        return block.completed + list(self._lead_commands()), block.waiting
 
     def _stands(self, name: str) -> bool:
         block = self._blocks.get(name)
@@ -110,18 +104,73 @@ class AxisGroups:
         now = {slave: master for slave, master in self._masters.items() if master in self._axes}
         for slave, master in self._leads.items():
             if now.get(slave) != master:
-                yield Command(master, "lead", {"slave": slave, "on": False})
+                yield Command(master, "lead", {"slave": slave, "enabled": False})
         for slave, master in now.items():
             if self._leads.get(slave) != master:
-                yield Command(master, "lead", {"slave": slave, "on": True})
+                yield Command(master, "lead", {"slave": slave, "enabled": True})
         self._leads = now
 
 
-def reachable(edges: Mapping[str, Iterable[str]], name: str) -> list[str]:
-    """All masters above an axis when each coupling that there was, or may come, in this block holds.
+class CommandsOfBlock:
+    """The commands of one block in their order. Whether their axes carry them out is seen in the next block only."""
 
-    An axis may refuse a `couple`, and a `decouple` with arguments: whatever it says, no circle can come about.
-    """
+    def __init__(self, masters: Mapping[str, str]) -> None:
+        """`masters`: slave -> master, as the axes have reported."""
+        self.masters = dict(masters)
+        """The same when all of these commands are carried out."""
+        self.started: set[str] = set()
+        self.completed: list[Command] = []
+        self.waiting: list[Command] = []
+        self._waiting_axes: set[str] = set()
+        """Axes that a coupling which waits concerns."""
+        self._certain = {slave: [master] for slave, master in masters.items()}
+        self._possible = {slave: [*above] for slave, above in self._certain.items()}
+
+    def above(self, master: str) -> list[str]:
+        """All masters above `master` when each coupling that there was, or may come, holds."""
+        return reachable(self._possible, master)
+
+    def must_wait(self, command: Command) -> bool:
+        """Keeps back a coupling that runs in a circle only if others of this block are carried out, or refused.
+
+        What comes after it for these axes waits as well, so that the order stays; stops go out at once.
+        """
+        axis, master = command.target, master_in(command)
+        waits = any(axis == before.target for before in self.waiting)
+        if master is not None:
+            undecided = axis in self.above(master) and axis not in reachable(self._certain, master)
+            waits = waits or undecided or bool({axis, master} & self._waiting_axes)
+        elif command.command in STARTS:
+            waits = waits or axis in self._waiting_axes
+        if waits:
+            self.waiting.append(command)
+            self._waiting_axes |= set() if master is None else {axis, master, *self.above(master)}
+        return waits
+
+    def add(self, command: Command) -> None:
+        """A command that goes out with this block."""
+        axis, master = command.target, master_in(command)
+        self.completed.append(command)
+        if command.command in STARTS:
+            self.started.add(axis)
+        elif master is not None and axis not in (master, *self.above(master)):
+            self._possible.setdefault(axis, []).append(master)
+            self.masters[axis] = master
+        elif command.command == "decouple":
+            self.masters.pop(axis, None)
+            self._certain.pop(axis, None)
+            if not command.arguments:  # what has arguments may be refused for them
+                self._possible.pop(axis, None)
+
+
+def master_in(command: Command) -> str | None:
+    """The master that a command asks for, None when it is no coupling."""
+    master = command.arguments.get("master")
+    return master if command.command in COUPLINGS and isinstance(master, str) else None
+
+
+def reachable(edges: Mapping[str, Iterable[str]], name: str) -> list[str]:
+    """All masters above an axis. An axis may have two, where one replaces the other only if it is carried out."""
     found: list[str] = []
     for master in edges.get(name, ()):
         found += [each for each in (master, *reachable(edges, master)) if each not in found]

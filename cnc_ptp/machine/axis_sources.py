@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import copysign
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
+from cnc_ptp.axis.external import NEGLIGIBLE_VELOCITY
 from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, OUT_OF_RANGE, PATH_NOT_ACCEPTED
+from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import StatusBit, state_name
@@ -55,6 +58,16 @@ class PathSource:
         self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
         return setpoints
 
+    def put_down(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """Where the path of the channel has ended below a flying saw, the axis is an ordinary slave from now on."""
+        axis = self._axis
+        if self._owning_channel(inputs) is not None or not isinstance(axis.coupling, FlyingSaw):
+            return
+        position, velocity, _, _ = axis.ptp.state(first_cycle)
+        if velocity == 0.0:
+            axis.coupling.shift(position)
+            axis.carried = None
+
     def forbid(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """A channel may not move an axis that follows a master."""
         if self._owning_channel(inputs) is not None:
@@ -81,15 +94,19 @@ class PathSource:
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
         else:
             axis.absorb(cycle)
+            axis.path_direction = 0.0
             axis.state = S.SYNCHRONIZED_MOTION
 
     def _leave(self, cycle: int) -> None:
+        """The path is over; external setpoints on top of it go on alone, or come to rest."""
         axis = self._axis
         if not axis.on_path:
             return
-        axis.state = S.STANDSTILL
-        if axis.setpoint(cycle)[1] != 0.0:
+        axis.state = S.STOPPING
+        if axis.ptp.state(cycle)[1] != 0.0:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
+        else:
+            axis.advance_state(cycle)
 
 
 PAIR_PATIENCE = 4
@@ -134,7 +151,7 @@ class MasterSource:
         axis.follow_master(block.target_velocity, bool(block.status_bits[-1] & StatusBit.HAS_JOB))
         states = self._states(coupling, block)
         try:
-            setpoints = coupling.follow(axis.ptp.state(first_cycle)[0], states)
+            setpoints = coupling.follow((axis.carried or axis.ptp).state(first_cycle)[0], states)
         except CncError as error:
             axis.give_up_coupling(first_cycle, error.error_id, error.message)
             return []
@@ -142,6 +159,9 @@ class MasterSource:
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")
             return []
         if axis.error_id and self._pair_ends(first_cycle, setpoints[0][0], block):
+            return []
+        if axis.carried is not None:
+            axis.carried.take(first_cycle, setpoints)
             return []
         self._prepare_gantry(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
@@ -180,12 +200,19 @@ class MasterSource:
         return [(p, v, 0.0, 0.0) for p, v in zip(block.actual_position, velocities, strict=True)]
 
     def _filtered(self, master: str, velocity: float) -> float:
-        """Actual velocity of the master: 0 within its velocity window, through a first-order filter."""
+        """Actual velocity of the master: 0 within its velocity window, through a first-order filter.
+
+        The filter alone would never come to rest: within the window it goes on as fast as it entered it.
+        """
         parameters = self._axes[master]
-        if abs(velocity) < parameters.velocity_window:
+        window = max(parameters.velocity_window, NEGLIGIBLE_VELOCITY)
+        if abs(velocity) < window:
             velocity = 0.0
         share = self._cycle_time / (self._cycle_time + parameters.velocity_filter_time)
-        self._velocity += (velocity - self._velocity) * share
+        change = (velocity - self._velocity) * share
+        if velocity == 0.0 and abs(self._velocity) < window:
+            change = -copysign(min(window * share, abs(self._velocity)), self._velocity)
+        self._velocity += change
         return self._velocity
 
     def _prepare_gantry(self, coupling: Coupling, first_cycle: int, block: AxisBlock) -> None:

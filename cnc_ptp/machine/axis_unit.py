@@ -10,12 +10,14 @@ from cnc_ptp.axis.compensation_commands import CompensationCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.faults import FOLLOWING_ERROR
+from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import StatusBit
 from cnc_ptp.axis.stop_commands import StopCommands
-from cnc_ptp.control.commands import ControlCommands
+from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
@@ -29,7 +31,7 @@ MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
 
 Row = tuple[float | int, ...]
 """One cycle: the fields of AxisBlock with a value per cycle."""
-FIELDS = 17
+FIELDS = 18
 Columns = list[Any]
 """The same of many cycles, field by field."""
 
@@ -37,8 +39,8 @@ Columns = list[Any]
 class AxisUnit(Unit):
     """One axis with its functions (cnc_ptp.axis), position controller and drive.
 
-    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), ContinuousMotion (external setpoints, a slave that was
-    decoupled in motion), SynchronizedMotion (channel path, master axis), Stopping, ErrorStop.
+    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), ContinuousMotion (jogging, external setpoints, a slave
+    that was decoupled in motion), SynchronizedMotion (channel path, master axis), Stopping, ErrorStop.
     The position loop is closed while powered or on a ramp.
     """
 
@@ -71,6 +73,7 @@ class AxisUnit(Unit):
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             PtpCommands(self._axis),
             StopCommands(self._axis),
+            JogCommands(self._axis),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
@@ -101,7 +104,7 @@ class AxisUnit(Unit):
         axis = self._axis
         if axis.state in (S.ERROR_STOP, S.DISABLED):
             return None
-        leads = axis.coupling.master == source if axis.coupling is not None else axis.on_path
+        leads = axis.on_path or (axis.coupling is not None and axis.coupling.master == source)
         if source in ("plc", "clock") or leads:
             axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
         return None
@@ -111,6 +114,12 @@ class AxisUnit(Unit):
         job = self._axis.ptp.job
         return 0.0 if job is None else job.target - self._axis.ptp.state(cycle)[0]
 
+    def lag_share(self, block: Block) -> float:
+        """See Unit."""
+        if not isinstance(block, AxisBlock) or block.state[-1] in (S.DISABLED, S.ERROR_STOP):
+            return 0.0
+        return self._loop.lag_share(block.set_position, block.set_velocity, block.actual_position[-1])
+
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
@@ -119,18 +128,33 @@ class AxisUnit(Unit):
         axis = self._axis
         columns: Columns = [[] for _ in range(FIELDS)]
         axis.advance(first_cycle)
-        if axis.coupled:
-            self._path.forbid(first_cycle, inputs)
-        source = self._master if axis.coupled else self._path
-        self._follow(first_cycle, source.setpoints(first_cycle, inputs), columns)
+        self._follow(first_cycle, self._led(first_cycle, inputs), columns)
         while len(columns[0]) < count:
             cycle = first_cycle + len(columns[0])
             axis.advance(cycle)
             self._follow(cycle, axis.basic_motion(cycle, count - len(columns[0])), columns)
         block = AxisBlock(first_cycle, count, *cast(Any, columns))
+        warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
+        if warning is not None:
+            self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
         block.master = axis.coupling.master if axis.coupling is not None else ""
+        block.modulo_begin, block.modulo_length = axis.modulo_range
+        block.torque_digits = self._loop.torque_digits
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
         return block
+
+    def _led(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+        """Setpoints of a master or of a channel, none where the own generator moves the axis."""
+        axis = self._axis
+        if axis.carried is not None:
+            self._path.put_down(first_cycle, inputs)
+        if axis.coupled and not axis.on_path:
+            self._path.forbid(first_cycle, inputs)
+        if axis.coupled:
+            setpoints = self._master.setpoints(first_cycle, inputs)
+            if not axis.on_path:
+                return setpoints
+        return self._path.setpoints(first_cycle, inputs)
 
     def _follow(self, first_cycle: int, setpoints: list[State], columns: Columns) -> None:
         """Appends the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
@@ -161,7 +185,7 @@ class AxisUnit(Unit):
         if n == 0:
             return 0
         setpoints = setpoints[:n]
-        common = axis.common_bits(0)
+        common = axis.common_bits(0) | self._control_bits
         bits = [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
         values: Columns = [
             *zip(*setpoints, strict=True),
@@ -175,13 +199,17 @@ class AxisUnit(Unit):
             column += more
         return n
 
+    @property
+    def _control_bits(self) -> int:
+        return int(StatusBit.FRICTION_COMPENSATION) if self._loop.friction.on else 0
+
     def _cycle(self, cycle: int, base: State) -> Row:
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
         actual_position = loop.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
-        axis.watch(cycle, setpoint)
+        setpoint = axis.watch(cycle, setpoint)
         self._master.watch_gantry(cycle, setpoint, actual_position)
         axis.watch_target(cycle, setpoint, actual_position)
         closed = axis.powered or axis.moving(cycle)
@@ -193,6 +221,6 @@ class AxisUnit(Unit):
             *control,
             axis.override_percent,
             axis.state,
-            axis.status_bits(cycle, setpoint, control.actual_position),
+            axis.status_bits(cycle, setpoint, control.actual_position) | self._control_bits,
             axis.error_id,
         )

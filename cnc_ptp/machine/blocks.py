@@ -64,8 +64,11 @@ class Command:
 
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:
-        """The command that a record was made of."""
-        return cls(record.target, record.command, json.loads(record.arguments_json))
+        """The command that a record was made of; older ones name the file of a table besides."""
+        arguments = json.loads(record.arguments_json)
+        if "table" in arguments:
+            arguments.pop("file", None)
+        return cls(record.target, record.command, arguments, record.id)
 
 
 @dataclass(slots=True)
@@ -79,6 +82,7 @@ class CommandRecord:
     accepted: bool
     error_id: int
     message: str
+    id: int = 0
 
 
 REFUSED, WARNED = "refused: P-ERR-", "warning: P-WARN-"
@@ -89,6 +93,12 @@ def command_note(accepted: bool, error_id: int, message: str) -> str:
     if accepted:
         return f"warning: {message}" if message else ""
     return f"{REFUSED}{error_id} {message}"
+
+
+def error_note(error_id: int, text: str, cycle: int, line: int) -> str:
+    """An error as it is told at the end of a run: with its cycle, and the line of the NC program where there is one."""
+    where = f"cycle {cycle}, line {line}" if line else f"cycle {cycle}"
+    return f"P-ERR-{error_id} {text} ({where})"
 
 
 def event_note(severity: int, error_id: int, text: str) -> str:
@@ -106,6 +116,14 @@ def keep_note(notes: list[str], note: str) -> None:
     notes.append(note)
 
 
+class EventValue(NamedTuple):
+    """A number that an event tells of (EventValue.msg)."""
+
+    name: str
+    value: float
+    unit: str = ""
+
+
 @dataclass(slots=True)
 class Event:
     """A state change, warning or error (Event.msg)."""
@@ -116,6 +134,7 @@ class Event:
     error_id: int
     text: str
     line: int = 0
+    values: list[EventValue] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -201,12 +220,16 @@ class AxisBlock:
     additive_torque: list[float]
     friction_current: list[float]
     actual_torque: list[float]
+    feedforward_percent: list[float]
     override_percent: list[float]
     state: list[int]
     status_bits: list[int]
     error_id: list[int]
     master: str = ""
     target_velocity: float = 0.0
+    modulo_begin: float = 0.0
+    modulo_length: float = 0.0
+    torque_digits: float = 0.0
     couples_actual: bool = False
 
 
@@ -226,6 +249,7 @@ class SpindleBlock:
     distance_to_go_deg: list[float]
     following_error_deg: list[float]
     override_percent: list[float]
+    feedforward_percent: list[float]
     drive_output: list[int]
     mode: list[int]
     gear: list[int]

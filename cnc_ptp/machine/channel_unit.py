@@ -21,6 +21,7 @@ from cnc_ptp.machine.blocks import (
     CycleTick,
     Severity,
     SpindleBlock,
+    StatusBit,
 )
 from cnc_ptp.machine.channel_rows import Prepared, Rows
 from cnc_ptp.machine.function_output import FunctionOutput
@@ -46,6 +47,9 @@ NOT_ACKNOWLEDGED = 22016
 SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
+FEED_WITHHELD = 22026
+
+NOT_AT_END = "axis {} was moved away from the end of the path before"
 
 C = ChannelStateCode
 
@@ -91,14 +95,21 @@ class ChannelUnit(Unit):
             node: AxisStateCode.STANDSTILL if axes[node].powered_at_start else AxisStateCode.DISABLED
             for node in self._axis_nodes
         }
+        self._commands_sent = 0
         self._just_started = False
         self._had_axes = False
         """The block before was one of path motion: the axes are where its last setpoint has put them."""
+        self._given = self._motion.states
+        """The last setpoints of the block before."""
+        self._beside: list[str] = []
+        """Axes that a superposition has put beside the path, until the channel has taken over where they are."""
         self._unfinished = False
         """The program ended between the last cycle of the block before and the first of the next one."""
         self._feedback: Mapping[str, Block] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
+        self._withheld: list[str] = []
+        """Axes whose feed release the path waits for."""
         self._held: Sequence[str] = ()
         """What the program waited for because of override 0, in the block before."""
         self._error_id = 0
@@ -141,9 +152,9 @@ class ChannelUnit(Unit):
         modal.spindle.gears = self._check.gears(self._feedback)
         self._begin("mdi", parse_program(text, "mdi", mdi=True), modal)
 
-    def do_feed_hold(self, cycle: int, *, on: bool) -> None:
+    def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path goes to velocity 0 on its ramp, and on again when it is taken away."""
-        self._feed_hold = on
+        self._feed_hold = enabled
         self._apply_override()
 
     def do_set_override(self, cycle: int, *, percent: float) -> None:
@@ -156,13 +167,13 @@ class ChannelUnit(Unit):
         self._override_percent = float(percent)
         self._apply_override()
 
-    def do_single_block(self, cycle: int, *, on: bool) -> None:
+    def do_single_block(self, cycle: int, *, enabled: bool) -> None:
         """Single block: the channel stops after each block until `start`."""
-        self._sequence.single_block = on
+        self._sequence.single_block = enabled
 
-    def do_optional_stop(self, cycle: int, *, on: bool) -> None:
+    def do_optional_stop(self, cycle: int, *, enabled: bool) -> None:
         """Makes M01 a stop like M00 (off by default)."""
-        self._sequence.optional_stop = on
+        self._sequence.optional_stop = enabled
 
     def do_reset(self, cycle: int) -> None:
         """Aborts the program on the path ramp and clears the error; refused while an error ramp runs (22008).
@@ -213,7 +224,7 @@ class ChannelUnit(Unit):
         rows = Rows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
-        self._had_axes = has_axes
+        self._had_axes, self._given = has_axes, rows.axes[count - 1]
         if self._sequence.through and self._modal_at_end is not None:
             self._modal, self._modal_at_end = self._modal_at_end, None
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
@@ -221,6 +232,9 @@ class ChannelUnit(Unit):
 
     def _channel_block(self, tick: CycleTick, rows: Rows, outputs: Outputs, *, path_active: bool) -> ChannelBlock:
         count = tick.count
+        for command in outputs.commands:
+            self._commands_sent += 1
+            command.id = self._commands_sent
         by_axis = [state for axis in zip(*rows.axes[:count], strict=True) for state in axis]
         position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
         return ChannelBlock(
@@ -240,7 +254,7 @@ class ChannelUnit(Unit):
             distance_to_go=rows.distance_to_go[:count],
             state=rows.state[:count],
             error_id=rows.error_id[:count],
-            done=self._sequence.phase is Phase.IDLE and not self._unfinished,
+            done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._beside,
             blocks_done=self._sequence.blocks_done,
             blocks_total=len(self._sequence.blocks),
             commands=outputs.commands,
@@ -312,6 +326,8 @@ class ChannelUnit(Unit):
                 self._refuse(
                     command, AXIS_NOT_READY, f"axis {node} is in {state_name(state)}, it must be in Standstill"
                 )
+        for node in self._beside:
+            self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done")
         for node in self.lost:
             if node in self._axis_nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
@@ -336,12 +352,28 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        self._motion.set_factor(0.0 if self._feed_hold else self._override_percent / 100.0)
+        self._motion.set_factor(0.0 if self._feed_hold or self._withheld else self._override_percent / 100.0)
+
+    def _read_releases(self, cycle: int, inputs: Mapping[str, Block]) -> None:
+        """An axis on the path that may not go on in its direction holds the path, and is told of once."""
+        withheld = [node for node in self._axis_nodes if self._had_axes and lacks_release(inputs.get(node))]
+        if withheld == self._withheld:
+            return
+        line = self._sequence.source.line
+        for node in withheld:
+            if node not in self._withheld:
+                text = f"the path stops in line {line} and waits for the feed release of axis {node}"
+                self.event(cycle, Severity.WARNING, FEED_WITHHELD, f"channel {self.name}: {text}", line)
+        self._withheld = withheld
+        self._apply_override()
 
     def _read_feedback(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Takes over what axes and spindles reported for the block before."""
         self._feedback = inputs
-        if not self._had_axes:
+        self._read_releases(first_cycle, inputs)
+        if self._had_axes:
+            self._look_beside(first_cycle, inputs)
+        else:
             self._take_axes(first_cycle, inputs)
         self._just_started = False
         in_use = self._had_axes or self._sequence.phase is not Phase.IDLE
@@ -400,8 +432,19 @@ class ChannelUnit(Unit):
             waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
             self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
 
+    def _look_beside(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """Finds the axes that are not where the path has put them; the next program begins where they are."""
+        self._beside = [
+            node
+            for node, given in zip(self._axis_nodes, self._given, strict=True)
+            if is_beside(inputs.get(node), given[0])
+        ]
+        if self._beside and self._just_started:
+            self._fault(first_cycle, AXIS_NOT_READY, NOT_AT_END.format(self._beside[0]))
+
     def _take_axes(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""
+        self._beside = []
         for index, node in enumerate(self._axis_nodes):
             block = inputs.get(node)
             if not isinstance(block, AxisBlock):
@@ -434,6 +477,17 @@ class ChannelUnit(Unit):
 
     def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
         raise CncError(error_id, f"channel {self.name}: {command} refused: {reason}; nothing was changed")
+
+
+def is_beside(block: Block | None, position: float) -> bool:
+    """True for an axis that follows its path, but not at `position`."""
+    if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
+        return False
+    return block.set_position[-1] != position
+
+
+def lacks_release(block: Block | None) -> bool:
+    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.FEED_WITHHELD)
 
 
 PHASE_STATES = {

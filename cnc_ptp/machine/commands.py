@@ -21,12 +21,14 @@ class Argument:
     """One argument of a command. `kind`: number, integer, switch, text, rows or source; `choices` limits a text.
 
     `positive`: only a number above 0 makes sense, so that a service can say with 0 that it is left out.
+    `lenient`: the command is carried out whatever the value is; it says what it makes of it.
     """
 
     kind: str
     required: bool = True
     choices: tuple[str, ...] = ()
     positive: bool = False
+    lenient: bool = False
 
 
 Arguments = Mapping[str, Argument]
@@ -38,6 +40,7 @@ TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
 ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
+LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
@@ -54,12 +57,13 @@ COUPLING: Arguments = {
 }
 """A master, and what the PLC fills in: the masters of the master, whether it stands, whether its node is lost."""
 
-FEEDFORWARD: Arguments = {"on": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
+FEEDFORWARD: Arguments = {"enabled": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
 
 COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "axis": {
-        "power": {"on": SWITCH},
+        "power": {"enabled": SWITCH},
         "reset": {},
+        "set_feed_release": {"forward": SWITCH, "backward": SWITCH},
         "move_absolute": {"target": NUMBER, **DYNAMICS},
         "move_relative": {"distance": NUMBER, **DYNAMICS},
         "move_modulo": {"position": NUMBER, **DYNAMICS},
@@ -67,7 +71,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "set_override_type": {"type": INTEGER},
         "stop": {},
         "halt": {},
-        "emergency_stop": {"deceleration": NUMBER, "jerk": NUMBER},
+        "jog": {"velocity": NUMBER},
+        "emergency_stop": dict.fromkeys(("deceleration", "jerk"), LENIENT_NUMBER),
         "new_target": {"target": NUMBER},
         "new_velocity_and_target": {"velocity": NUMBER, "target": NUMBER, "activation_position": NUMBER},
         "compensation_start": {
@@ -107,13 +112,13 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "decouple": {"target": OPTIONAL_NUMBER, "velocity": OPTIONAL_POSITIVE},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
-        "set_friction_compensation": {"on": SWITCH},
-        "lead": {"slave": TEXT, "on": SWITCH},
+        "set_friction_compensation": {"enabled": SWITCH},
+        "lead": {"slave": TEXT, "enabled": SWITCH},
         "group_error": {"source": TEXT, "error": INTEGER},
         "upstream_lost": SOURCE,
     },
     "spindle": {
-        "power": {"on": SWITCH},
+        "power": {"enabled": SWITCH},
         "start": {"direction": Argument("text", choices=("cw", "ccw")), "speed_rpm": NUMBER, **FOR},
         "set_speed": {"speed_rpm": NUMBER, **FOR},
         "stop": {"own": OPTIONAL_SWITCH, "homes": OPTIONAL_SWITCH, **FOR},
@@ -125,16 +130,16 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         },
         "home": {**FOR},
         "set_override": {"percent": NUMBER},
-        "suppress_override": {"on": SWITCH},
+        "suppress_override": {"enabled": SWITCH},
         "select_gear": {"stage": INTEGER, "resume": OPTIONAL_SWITCH, **FOR},
         "gear_changed": {},
         "set_limits": {
             "max_speed_rpm": OPTIONAL_POSITIVE,
-            "min_speed_rpm": OPTIONAL_NUMBER,
+            "min_speed_rpm": OPTIONAL_POSITIVE,
             "max_acceleration": OPTIONAL_POSITIVE,
         },
         "reset_limits": {},
-        "stop_at_program_end": {"on": SWITCH},
+        "stop_at_program_end": {"enabled": SWITCH},
         "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER, **OWNER},
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {**OWNER},
@@ -146,10 +151,10 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     "channel": {
         "load": {"program": TEXT, "text": OPTIONAL_TEXT},
         "start": {},
-        "feed_hold": {"on": SWITCH},
+        "feed_hold": {"enabled": SWITCH},
         "set_override": {"percent": NUMBER},
-        "single_block": {"on": SWITCH},
-        "optional_stop": {"on": SWITCH},
+        "single_block": {"enabled": SWITCH},
+        "optional_stop": {"enabled": SWITCH},
         "reset": {},
         "mdi": {"text": TEXT},
         "acknowledge": {"id": INTEGER},
@@ -158,8 +163,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
     },
     "plc": {
         "acknowledge": {"id": INTEGER},
-        "auto_acknowledge": {"on": SWITCH},
-        "set_life_sign": {"on": SWITCH},
+        "auto_acknowledge": {"enabled": SWITCH},
+        "set_life_sign": {"enabled": SWITCH},
         "stop_all": {},
         "abort": {"reason": TEXT},
         "upstream_lost": SOURCE,
@@ -169,10 +174,25 @@ COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flyin
 """Commands that make a slave of an axis."""
 INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
 """Commands that only watchdogs and harnesses give; a scenario may not."""
+OF_PLC = frozenset({"above", "master_stands", "master_lost"})
+"""Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner"})
 """Arguments of spindle commands that only channels give; neither services nor scenarios have them."""
 
+FILE_CONTENTS = frozenset({"table", "setpoints"})
+"""Arguments that a file may hold: who reads it gives them instead of `file`."""
+
+FORMER_NAMES = {"on": "enabled"}
+"""Arguments that had another name once: scenarios and recordings may still use it. (`on:` is true to YAML 1.1.)"""
+
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}
+
+
+def current_names(kind: str, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments with today's names; one that is given under both names keeps the former, and is refused then."""
+    known = COMMANDS[kind].get(command, {})
+    renamed = {old: new for old, new in FORMER_NAMES.items() if new in known and new not in arguments}
+    return {renamed.get(name, name): value for name, value in arguments.items()}
 
 
 def check_command(
@@ -188,11 +208,20 @@ def check_command(
         raise CncError(
             UNKNOWN_COMMAND, f"{kind} {unit}: unknown command '{command}'; nothing was changed. Known: {known}"
         )
-    where = f"{kind} {unit}: {command} refused"
+    check_arguments(f"{kind} {unit}: {command} refused", specification, arguments, sources)
+
+
+def check_arguments(
+    where: str, specification: Arguments, arguments: Mapping[str, Any], sources: Collection[str] = ()
+) -> None:
+    """Raises CncError 22001 for what `specification` does not know, lacks or does not take; `where` begins the text."""
     for name in arguments:
         if name not in specification:
-            known = ", ".join(specification) or "none"
+            known = ", ".join(known for known in specification if known not in OF_PLC) or "none"
             raise CncError(BAD_ARGUMENT, f"{where}: unknown argument '{name}'; nothing was changed. Known: {known}")
+    if "file" in arguments:
+        for name in FILE_CONTENTS & arguments.keys():
+            raise CncError(BAD_ARGUMENT, f"{where}: '{name}' and 'file' are both given; nothing was changed. Give one")
     for name, argument in specification.items():
         if name in arguments:
             _check_argument(where, name, argument, arguments[name])
@@ -203,6 +232,8 @@ def check_command(
 
 
 def _check_argument(where: str, name: str, argument: Argument, value: Any) -> None:
+    if argument.lenient:
+        return
     is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
     article = "an" if argument.kind == "integer" else "a"
     if not is_type or (isinstance(value, bool) and argument.kind != "switch"):

@@ -19,7 +19,7 @@ def control_commands(channel: ChannelParameters, function: ControlFunction) -> l
         node = next(spindle.node for spindle in channel.spindles if spindle.name == function.spindle)
         return [_set_feedforward(node, function.on, function.weight)]
     node = next(axis.node for axis in channel.axes if axis.name == function.axis)
-    return [Command(node, "set_friction_compensation", {"on": function.on})]
+    return [Command(node, "set_friction_compensation", {"enabled": function.on})]
 
 
 def reset_commands(channel: ChannelParameters) -> list[Command]:
@@ -35,5 +35,5 @@ def _axis_feedforward(channel: ChannelParameters, function: AxisFeedforward) -> 
 
 
 def _set_feedforward(node: str, on: bool | None, weight: float | None) -> Command:
-    arguments = {"on": on, "weight_percent": weight}
+    arguments = {"enabled": on, "weight_percent": weight}
     return Command(node, "set_feedforward", {name: value for name, value in arguments.items() if value is not None})

@@ -28,7 +28,10 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
     SpindleLink,
 )
+from cnc_ptp.nc.gears import FIRST_M
 from cnc_ptp.parameters import ChannelParameters, ChannelSpindle, SpindleParameters, Synchronisation
+
+NO_TOOL_RECORD = 22027
 
 
 class Moment(Enum):
@@ -81,11 +84,25 @@ class FunctionOutput:
         outputs = Outputs()
         for function in block.before:
             change = self.spindles.gear_change(function, feedback) if isinstance(function, GearChange) else None
-            if change is not None:
-                outputs.commands.append(change[0])
-                outputs.waits_before.append(change[1])
-                outputs.told.append(change[1])
+            if isinstance(function, GearChange) and change is not None:
+                command, wait = change
+                outputs.commands.append(command)
+                outputs.waits_before.append(wait)
+                outputs.told.append(wait)
+                self._tell_gear(function, block, wait, outputs)
         return outputs
+
+    def _tell_gear(self, change: GearChange, block: CanonicalBlock, wait: Wait, outputs: Outputs) -> None:
+        """M40 to M45 go to the PLC when the gear changes, as their m_synch says (spindle p.37)."""
+        number = FIRST_M + change.stage - 1
+        synchronisation = self._channel.m_functions.get(number, Synchronisation.MOS)
+        if not synchronisation & OUTPUT:
+            return
+        spindle, waits = title(self.spindles[change.spindle]), bool(synchronisation & WAITING)
+        request = self._request(block.source, "M", spindle, number, waits=waits)
+        outputs.requests.append(request)
+        if waits:
+            wait.request_id = request.id
 
     def at_program_end(self, feedback: Mapping[str, Block], source: Source) -> Outputs:
         """M05 for the spindles that the PLC wants stopped with the program (2.4.3); the others turn on."""
@@ -165,6 +182,12 @@ class FunctionOutput:
         synchronisation = self._synchronisation(function)
         if function.letter == "D":
             outputs.commands += self.spindles.tool_limits(function.number)
+            if function.number and function.number not in self._channel.tool_records:
+                known = ", ".join(f"D{number}" for number in sorted(self._channel.tool_records)) or "none"
+                text = (
+                    f"D{function.number} in line {block.source.line} has no record wz[{function.number}] in the machine"
+                )
+                outputs.notes.append((NO_TOOL_RECORD, f"{text} file, nothing of the tool counts. Known: {known}"))
         if not synchronisation & OUTPUT:
             return
         node = self.spindles[function.spindle].node if function.spindle else ""

@@ -7,7 +7,7 @@ from pathlib import Path
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.program_check import ProgramCheck
-from cnc_ptp.machine.scenario import Entry, parse_scenario
+from cnc_ptp.machine.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.parameters import MachineParameters
@@ -15,10 +15,13 @@ from cnc_ptp.parameters import MachineParameters
 UNREADABLE = 26110
 
 
-def read_job(machine: MachineParameters, *, program: str | None, scenario: str | None) -> list[Entry]:
+def read_job(
+    machine: MachineParameters, *, program: str | None, scenario: str | None, may_be_empty: bool = False
+) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
-    Loads carry the text of their program; a path in a scenario, relative to its file, becomes one from here.
+    `may_be_empty`: a scenario without entries is none. Loads carry the text of their program; a path in a scenario,
+    relative to its file, becomes one from here.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
     """
     entries: list[Entry] = []
@@ -34,6 +37,8 @@ def read_job(machine: MachineParameters, *, program: str | None, scenario: str |
         entries += parse_scenario(
             text, scenario, unit_kinds(machine), lambda what, path: read_file(what, str(folder / path))
         )
+        if len(entries) == (2 if program is not None else 0) and not may_be_empty:
+            raise ScenarioError(BAD_SCENARIO, f"scenario {scenario} has no entries; nothing was started")
         for entry in entries[2 if program is not None else 0 :]:
             if entry.command.command == "load":
                 entry.command.arguments["program"] = str(folder / entry.command.arguments["program"])

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, Motion
+from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import Arc, AxisLimits, AxisState, Line
-from cnc_ptp.path.interpolator import PathInterpolator
+from cnc_ptp.path.interpolator import PathInterpolator, PathRow
+from cnc_ptp.path.planner import JERK_LIMITED, STEPS
 
+CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
@@ -29,10 +31,13 @@ class PathMotion:
         self._cycle_time = cycle_time
         self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
-        self._path_axes = sum(1 for axis in channel.axes if axis.name in ("X", "Y", "Z")) or len(axes)
+        self._path_axes = path_axes(channel)
         self._max_factor = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
+        self._default_slope = channel.slope
         self._element: Line | Arc | None = None
+        self._steps = False
+        """The acceleration of the running element steps; its axes show no jerk."""
         self.states = standing([a.start_position for a in axes])
         self.velocity = 0.0
         self.distance_to_go = 0.0
@@ -79,10 +84,13 @@ class PathMotion:
         element = self._make_element(motion)
         rapid = isinstance(motion, LinearMove) and motion.rapid
         axis_limits = self._rapid_limits if rapid else self._feed_limits
+        steps = (motion.slope or self._default_slope) == STEP
+        if steps:
+            axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_factor)
         feed = limits.velocity if rapid else motion.feed
-        self._interpolator.start(element, limits, feed)
-        self._element, self.feed, self.distance_to_go = element, feed, element.length
+        self._interpolator.start(element, limits, feed, planner=STEPS if steps else JERK_LIMITED)
+        self._element, self._steps, self.feed, self.distance_to_go = element, steps, feed, element.length
 
     def _make_element(self, motion: LinearMove | CircularMove) -> Line | Arc:
         start = self.position
@@ -96,10 +104,15 @@ class PathMotion:
         element = self._element
         if element is None:
             return [(self.states, 0.0, 0.0)] * len(rows)
-        points = [(element.evaluate(s, v, a, j), v, element.length - s) for s, v, a, j, _ in rows]
+        points = [(self._states(element, row), row[1], element.length - row[0]) for row in rows]
         if points:
             self.states, self.velocity, self.distance_to_go = points[-1]
         return points
+
+    def _states(self, element: Line | Arc, row: PathRow) -> AxisStates:
+        """Of the axes; without a limit of the jerk there is none that could be fed forward (P-AXIS-00337)."""
+        states = element.evaluate(*row[:4])
+        return tuple([(p, v, a, 0.0) for p, v, a, _ in states]) if self._steps else states
 
     def stand(self) -> None:
         """A cycle passes in which no motion runs."""
@@ -126,6 +139,12 @@ class PathMotion:
         factor = self._interpolator.factor
         self._interpolator = PathInterpolator()
         self._interpolator.set_velocity_factor(factor)
+
+
+def path_axes(channel: ChannelParameters) -> frozenset[int]:
+    """Indices of the axes whose path the feed is for: X, Y and Z in whatever order, or all where there are none."""
+    cartesian = frozenset(n for n, axis in enumerate(channel.axes) if axis.name in CARTESIAN)
+    return cartesian or frozenset(range(len(channel.axes)))
 
 
 def standing(position: Sequence[float]) -> AxisStates:

@@ -78,11 +78,12 @@ class PlcUnit(Unit):
         self._idle_cycles = 0
         self._lost: set[str] = set()
         self._failed = False
-        self._reported: Mapping[str, Block] = {}
+        self.reported: Mapping[str, Block] = {}
+        """The units' blocks before the one computed last."""
 
     def is_coupled(self, axis: str) -> bool:
         """True for a slave, as it has reported."""
-        block = self._reported.get(axis)
+        block = self.reported.get(axis)
         return isinstance(block, AxisBlock) and bool(block.master)
 
     def is_lost(self, unit: str) -> bool:
@@ -91,6 +92,12 @@ class PlcUnit(Unit):
     def input(self, command: Command) -> None:
         """A command from outside (topic, button): goes out with the next block."""
         self._outgoing.append(command)
+
+    def withdraw(self, command: Command) -> bool:
+        """Takes an `input` back; False when it has gone out with a block."""
+        waits = any(each is command for each in self._outgoing)
+        self._outgoing = [each for each in self._outgoing if each is not command]
+        return waits
 
     # commands
 
@@ -105,27 +112,30 @@ class PlcUnit(Unit):
             )
         self._outgoing.append(Command(request.channel, "acknowledge", {"id": id}))
 
-    def do_auto_acknowledge(self, cycle: int, *, on: bool) -> None:
+    def do_auto_acknowledge(self, cycle: int, *, enabled: bool) -> None:
         """Acknowledges every request by itself (the default), or leaves that to `acknowledge`."""
-        self._auto_acknowledge = on
+        self._auto_acknowledge = enabled
 
-    def do_set_life_sign(self, cycle: int, *, on: bool) -> None:
+    def do_set_life_sign(self, cycle: int, *, enabled: bool) -> None:
         """Stops or resumes the life sign; without it all units stop after the watchdog time."""
-        self._life_sign_on = on
+        self._life_sign_on = enabled
 
     def do_stop_all(self, cycle: int) -> None:
         """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps.
 
-        Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves.
+        Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves;
+        external setpoints on top of a path are disabled.
         """
         self._scenario.clear()
         self.setpoints.clear()
         self._end_when_idle = True
         for unit, kind in self._kinds.items():
-            block = self._reported.get(unit)
+            block = self.reported.get(unit)
             if unit not in self._lost and (block is None or needs_stop(block) or self._let_go(unit, block)):
                 waits_for_gear = isinstance(block, SpindleBlock) and block.gear_request
                 self._outgoing.append(Command(unit, "reset" if waits_for_gear else STOP_COMMAND[kind], {}))
+            elif unit not in self._lost and has_external_setpoints(block):
+                self._outgoing.append(Command(unit, "external_disable", {}))
 
     def _let_go(self, unit: str, block: Block) -> bool:
         """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
@@ -157,7 +167,7 @@ class PlcUnit(Unit):
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> PlcBlock:
         """Computes one block from the units' blocks before."""
         first_cycle, count = tick
-        self._reported = inputs
+        self.reported = inputs
         self._outgoing += self._groups.report(first_cycle, inputs)
         self.setpoints.watch(inputs)
         self._play_scenario(first_cycle)
@@ -167,7 +177,7 @@ class PlcUnit(Unit):
         run_done = self._end_when_idle and self._run_done(count, inputs)
         if self._life_sign_on:
             self._life_sign += 1
-        commands, self._outgoing = self._groups.complete(self._outgoing, self._lost), []
+        commands, self._outgoing = self._groups.complete(self._outgoing, self._lost)
         for command in commands:
             self._commands_sent += 1
             command.id = self._commands_sent
@@ -175,8 +185,8 @@ class PlcUnit(Unit):
             first_cycle,
             count,
             life_sign=self._life_sign,
-            scenario_done=not self._scenario and not self.setpoints,
-            run_done=run_done and not commands,
+            scenario_done=not (self._scenario or self._outgoing or self.setpoints),
+            run_done=run_done and not (commands or self._outgoing),
             run_failed=self._failed or any(error_of(block) for block in inputs.values()),
             commands=commands,
         )
@@ -225,10 +235,10 @@ def at_rest(block: Block) -> bool:
         return block.done
     if isinstance(block, AxisBlock):
         bits = block.status_bits[-1]
-        held = bool(bits & StatusBit.HAS_JOB) and block.override_percent[-1] == 0.0
+        held = bits & StatusBit.HAS_JOB and (block.override_percent[-1] == 0.0 or bits & StatusBit.FEED_WITHHELD)
         if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return block.set_velocity[-1] == 0.0  # a slave: its master says whether there is more to come
-        waits = held or bool(bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB)
+        waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))
         return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in STANDING_STATES)
     if isinstance(block, SpindleBlock):
         open_orders = block.plc_commands != block.plc_acknowledged
@@ -242,6 +252,10 @@ def needs_stop(block: Block) -> bool:
     if isinstance(block, ChannelBlock):
         return not block.error_id[-1]
     return not (isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION)
+
+
+def has_external_setpoints(block: Block | None) -> bool:
+    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.EXT_SETPOINT)
 
 
 def error_of(block: Block) -> int:

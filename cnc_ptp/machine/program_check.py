@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import inf
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, SpindleBlock
@@ -19,7 +20,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pairs, Program, Spindle, SpindleTable
+from cnc_ptp.nc.program import ModalState, Pair, Pairs, Program, Spindle, SpindleTable
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,
@@ -33,7 +34,6 @@ from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 SOFT_LIMIT_POSITIVE = 120002
 SOFT_LIMIT_NEGATIVE = 120003
-SPINDLE_TOO_FAST = 22010
 UNKNOWN_M_FUNCTION = 22011
 NO_FRICTION_COMPENSATION = 70495
 NO_CHANNEL = 26112
@@ -51,11 +51,6 @@ class ProgramCheck:
         """`axes` and `spindles` of the machine by node name."""
         self._channel = channel
         self._axes = [axes[axis.node] for axis in channel.axes]
-        self._speeds = {
-            spindle.name: spindles[spindle.node].max_speed_deg_s / DEG_S_PER_RPM
-            for spindle in channel.spindles
-            if not spindle.plc_control
-        }
         self._axis_names = tuple(axis.name for axis in channel.axes)
         self._spindles = spindle_table(channel, spindles)
         self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
@@ -148,20 +143,14 @@ class ProgramCheck:
     def _function(self, function: Function, source: Source) -> None:
         if isinstance(function, (SpindleFunction, SpindleCommand)):
             self._position_known(function, source)
-        if isinstance(function, SpindleFunction):
-            limit = self._speeds.get(function.spindle)
-            if limit is not None and function.speed_rpm is not None and function.speed_rpm > limit:
-                above = f"{function.speed_rpm:g} rpm is above the maximum {limit:g} rpm (P-AXIS-00212)"
-                text = f"spindle {function.spindle}: {above}"
-                raise ProgramError(SPINDLE_TOO_FAST, text, source, 1)
-        elif isinstance(function, CompensationSwitch):
+        if isinstance(function, CompensationSwitch):
             self._compensation(function, source)
         elif not isinstance(function, AuxiliaryFunction):
             return
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
             text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
-            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, 1)
+            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, column_of(source, f"M{function.number}"))
 
     def _compensation(self, function: CompensationSwitch, source: Source) -> None:
         """Raises ProgramError 70495 where friction compensation is switched on that the axis does not permit."""
@@ -188,7 +177,8 @@ def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindlePara
     ordered = sorted(channel.spindles, key=lambda spindle: spindle.name != channel.main_spindle)
     table = tuple(_spindle(spindle, spindles.get(spindle.node)) for spindle in ordered)
     groups = catalogue().arrays["koppel_gruppe"].size
-    return SpindleTable(table, channel.main_spindle or "S", channel.gear_change, channel.coupled, groups)
+    coupled = tuple(Pair(slave, master) for slave, master in channel.coupled)
+    return SpindleTable(table, channel.main_spindle or "S", channel.gear_change, coupled, groups)
 
 
 def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle:
@@ -201,4 +191,13 @@ def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle
         automatic=spindle.automatic,
         gear=unit.gear if unit else 1,
         plc_control=spindle.plc_control,
+        limits=speed_limits(unit) if unit else (),
+    )
+
+
+def speed_limits(unit: SpindleParameters) -> tuple[float, ...]:
+    """Largest speed of each gear stage, rpm; without limit for stages without a record."""
+    gears = unit.gears
+    return tuple(
+        gears[stage].max_speed / DEG_S_PER_RPM if stage in gears else inf for stage in range(1, max(gears) + 1)
     )

@@ -32,8 +32,6 @@ def time_lines(programs: Mapping[str, ProgramReport], cycle_time: float) -> Iter
     for name, program in programs.items():
         channel = f" {name}:" if len(programs) > 1 else ""
         yield f"program time{channel} {program.cycles * cycle_time:.3f} s"
-    if not programs:
-        yield "program time 0.000 s"
 
 
 def cut_off_notes(programs: Mapping[str, ProgramReport], duration: float | None) -> Iterator[str]:

@@ -186,7 +186,7 @@ class ProgramSequence:
         if self.phase is Phase.STOPPED:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
-            return "an override above 0 or the end of the feed hold"
+            return "an override above 0, the end of the feed hold or a feed release"
         if self.phase in WAITING:
             waits = [wait.text(self.open_requests) for wait in self._waits]
             return " and ".join(text for text in waits if text)
@@ -332,7 +332,7 @@ class ProgramSequence:
         self._outputs.told += outputs.told
         self._unsent += outputs.waits
         notes = [stored.note(self._feedback) for stored in outputs.stored]
-        self.notes += [(SPEED_WITHOUT_EFFECT, note) for note in notes if note]
+        self.notes += [*((SPEED_WITHOUT_EFFECT, note) for note in notes if note), *outputs.notes]
         self._renew_old_waits(outputs)
         self._waits_motion += outputs.waits_motion
         self._waits_machining += outputs.waits_machining

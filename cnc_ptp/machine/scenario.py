@@ -12,7 +12,16 @@ from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.cam_file import parse_cam
-from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, OF_CHANNELS, check_command, sources_of
+from cnc_ptp.machine.commands import (
+    BAD_ARGUMENT,
+    COMMANDS,
+    INTERNAL,
+    OF_CHANNELS,
+    OF_PLC,
+    check_command,
+    current_names,
+    sources_of,
+)
 from cnc_ptp.machine.run_time import LONGEST_RUN
 from cnc_ptp.machine.setpoint_file import parse_setpoints
 from cnc_ptp.machine.setpoint_queue import SETPOINTS
@@ -94,18 +103,32 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
         raise CncError(BAD_SCENARIO, f"unit '{to}' does not exist in the machine. Known: {', '.join(sorted(kinds))}")
     if do in INTERNAL:
         raise CncError(BAD_SCENARIO, f"'{do}' is given by watchdogs only")
+    arguments = current_names(kinds[to], do, arguments)
     _read_switches(kinds[to], do, arguments)
     if do == SETPOINTS and kinds[to] == "axis":
         _read_setpoints(to, arguments, read)
     if do in CAMS and read and isinstance(arguments.get("file"), str) and "table" not in arguments:
-        arguments["table"] = parse_cam(read("cam file", arguments["file"]), arguments["file"])
+        file = arguments.pop("file")
+        arguments["table"] = parse_cam(read("cam file", file), file)
     check_command(kinds[to], to, do, arguments, sources_of(kinds))
-    for name in sorted(OF_CHANNELS & arguments.keys()):
-        text = f"{kinds[to]} {to}: {do} refused: argument '{name}' is for channels only; nothing was changed"
-        raise CncError(BAD_ARGUMENT, text)
+    for name in sorted((OF_CHANNELS | OF_PLC) & arguments.keys()):
+        giver = "for channels only" if name in OF_CHANNELS else "filled in by the PLC"
+        raise CncError(
+            BAD_ARGUMENT, f"{kinds[to]} {to}: {do} refused: argument '{name}' is {giver}; nothing was changed"
+        )
+    _check_master(kinds, to, do, arguments.get("master"))
     if do == "load" and "text" not in arguments and read:
         arguments["text"] = read("NC program", arguments["program"])
     return Entry(float(at), Command(to, do, arguments))
+
+
+def _check_master(kinds: Mapping[str, str], slave: str, command: str, master: object) -> None:
+    """A master that is given must be a unit of the slave's kind."""
+    kind = kinds[slave]
+    known = sorted(unit for unit in kinds if kinds[unit] == kind and unit != slave)
+    if master is not None and master != slave and master not in known:
+        reason = f"there is no {kind} '{master}'. Known: {', '.join(known) or 'none'}"
+        raise CncError(BAD_SCENARIO, f"{kind} {slave}: {command} refused: {reason}; nothing was changed")
 
 
 def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None) -> None:
@@ -119,7 +142,7 @@ def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None)
             BAD_ARGUMENT, f"axis {axis}: {SETPOINTS} refused: argument 'file' is missing; nothing was changed"
         )
     if read:
-        arguments["setpoints"] = parse_setpoints(read("setpoint file", file), file)
+        arguments["setpoints"] = parse_setpoints(read("setpoint file", arguments.pop("file")), file)
 
 
 def _check_setpoints(axis: str, rows: object) -> None:

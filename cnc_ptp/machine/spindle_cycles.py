@@ -29,7 +29,7 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
     ORDERS_WAIT,
 ) = map(int, SpindleBit)
 """As plain numbers: operations on members of an IntEnum take microseconds."""
-FIELDS = 21
+FIELDS = 22
 Columns = list[Any]
 """The fields of SpindleBlock with a value per cycle, in their order."""
 
@@ -47,7 +47,8 @@ class SpindleCycles:
         """All columns of a block."""
         columns: Columns = [[] for _ in range(FIELDS)]
         done = 0
-        if not 0.0 < self._patience < count and self._undisturbed(first_cycle, first_cycle + count - 1):
+        long = not any(0.0 < patience < count for patience in (self._patience, self._position_patience))
+        if long and self._undisturbed(first_cycle, first_cycle + count - 1):
             columns = self._undisturbed_cycles(first_cycle, count)
             done = len(columns[0])
         if done < count:
@@ -74,6 +75,7 @@ class SpindleCycles:
         self._watch_following_error(cycle, setpoint)
         reached = self._speed_reached(actual_speed)
         self._watch_speed(cycle, reached)
+        self._jobs.hold(cycle, actual, actual_speed)
         target = position if spindle.target is None else spindle.target
         loop.command(setpoint, on=spindle.state != S.DISABLED)
         self._orders.watch()
@@ -89,12 +91,13 @@ class SpindleCycles:
             target - position,
             position - actual,
             spindle.override_percent,
+            loop.feedforward_percent,
             loop.drive_output,
             spindle.mode,
             spindle.gear.stage,
             reached,
             abs(actual_speed) <= spindle.gear.zero_speed,
-            self._in_position(actual),
+            spindle.holds_position and spindle.exact_stop.reached,
             spindle.referenced,
             spindle.work.changes_gear,
             self._bits(),
@@ -129,6 +132,11 @@ class SpindleCycles:
         return self._spindle.parameters.speed_time / self._spindle.cycle_time
 
     @property
+    def _position_patience(self) -> float:
+        """P-MACH-00014 in cycles, 0 for ever."""
+        return self._spindle.parameters.target_time / self._spindle.cycle_time
+
+    @property
     def _awaits_speed(self) -> bool:
         """The speed of the rotation is still to come, or 0 after a stop."""
         spindle = self._spindle
@@ -151,12 +159,6 @@ class SpindleCycles:
             missing = f"was lost and has not come back for {seconds}"
         limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
         spindle.fault(cycle, SPEED_NOT_REACHED, f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)")
-
-    def _in_position(self, actual: float) -> bool:
-        spindle = self._spindle
-        if not spindle.work.done or spindle.target is None or spindle.state != S.STANDSTILL:
-            return False
-        return abs(spindle.target - actual) <= spindle.gear.position_window
 
     def _bits(self) -> int:
         spindle = self._spindle
@@ -188,6 +190,7 @@ class SpindleCycles:
             and spindle.work.job is None
             and spindle.finished(cycle)
             and not self._awaits_speed
+            and (spindle.exact_stop.reached or not spindle.holds_position)
             and not self._orders.source
             and not self._orders.waiting
             and not spindle.loop.waits_to_close(spindle.motion(cycle)[1], spindle.wanted_speed)
@@ -210,17 +213,19 @@ class SpindleCycles:
         return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
 
     def _patience_ends(self, last_cycle: int) -> bool:
-        """The time for reaching the speed (P-MACH-00050) is over until `last_cycle`, if it is not reached before."""
+        """The time for a missing speed (P-MACH-00050) or position (P-MACH-00014) is over until `last_cycle`."""
         spindle = self._spindle
         late = bool(self._patience) and spindle.cycles_without_speed(last_cycle) >= self._patience
-        return late and self._awaits_speed
+        away_for = last_cycle - spindle.exact_stop.left_at
+        lost = 0.0 < self._position_patience <= away_for and spindle.holds_position
+        return (late and self._awaits_speed) or lost
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
         """The same as `_cycle` for such cycles; up to a following error too large."""
         spindle = self._spindle
         gear, state = spindle.gear, spindle.state
         motions = spindle.motions(first_cycle, count)
-        actuals, actual_speeds, errors, outputs = spindle.loop.cycles(
+        actuals, actual_speeds, errors, outputs, percents = spindle.loop.cycles(
             motions, on=state != S.DISABLED, watched=self._watched()
         )
         n = len(actuals)
@@ -238,12 +243,13 @@ class SpindleCycles:
             [0.0] * n if target is None else [target - position for position in positions],
             errors,
             [spindle.override_percent] * n,
+            percents,
             outputs,
             [spindle.mode] * n,
             [gear.stage] * n,
             reached,
             [abs(speed) <= gear.zero_speed for speed in actual_speeds],
-            [False] * n if target is None else [self._in_position(position) for position in actuals],
+            self._positions_reached(first_cycle, actuals, actual_speeds),
             [spindle.referenced] * n,
             [False] * n,
             [self._bits()] * n,
@@ -264,6 +270,19 @@ class SpindleCycles:
             return [self._speed_reached(speed) for speed in actual_speeds]
         band = self._spindle.parameters.speed_reached_band * abs(wanted)
         return [abs(speed - wanted) <= band for speed in actual_speeds]
+
+    def _positions_reached(self, first_cycle: int, actuals: list[float], actual_speeds: list[float]) -> list[bool]:
+        """Exact stop after a positioning, cycle by cycle; a position that is left is to be watched."""
+        spindle, target = self._spindle, self._spindle.target
+        if target is None or not spindle.holds_position:
+            return [False] * len(actuals)
+        motion = zip(actuals, actual_speeds, strict=True)
+        reached = [
+            spindle.note_position(cycle, target - actual, speed)
+            for cycle, (actual, speed) in enumerate(motion, first_cycle)
+        ]
+        spindle.unsettled |= not all(reached)
+        return reached
 
     def _settle(self, last_cycle: int) -> None:
         self._orders.watch()

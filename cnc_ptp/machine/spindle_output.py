@@ -156,7 +156,7 @@ class SpindleOutput:
         if function.full_override == was_off:
             return []
         (self._full_override.add if function.full_override else self._full_override.discard)(spindle.name)
-        return [self._command(spindle.node, "suppress_override", on=function.full_override)]
+        return [self._command(spindle.node, "suppress_override", enabled=function.full_override)]
 
     def _motion(self, spindle: ChannelSpindle, function: SpindleFunction) -> list[Command]:
         if function.m == 5:
@@ -233,8 +233,10 @@ class SpindleOutput:
         slave, master = self[link.slave].node, self[link.master].node
         if link.on:
             self._masters[link.slave] = link.master
-            command = Command(slave, "couple", {"master": master, "owner": self._channel.name})
-            return [command], Wait(slave, Condition.MASTER, master=master)
+            arguments: dict[str, Any] = {"master": master, "owner": self._channel.name}
+            if link.num != link.den:
+                arguments |= {"factor_num": link.num, "factor_den": link.den}
+            return [Command(slave, "couple", arguments)], Wait(slave, Condition.MASTER, master=master)
         return self._decouple(link.slave), Wait(slave)
 
     def _decouple(self, slave: str) -> list[Command]:

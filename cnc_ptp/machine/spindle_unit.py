@@ -8,15 +8,16 @@ from functools import partial
 from typing import Any, ClassVar
 
 from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.control.commands import FeedforwardCommands
+from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, feedforward_warning
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
 from cnc_ptp.machine.spindle_cycles import SpindleCycles
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
-from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, SLAVE_CANNOT
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
@@ -130,8 +131,10 @@ class SpindleUnit(Unit):
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
         work = self.spindle.work
-        if order.command == "stop" and order.source != self._orders.source:
-            self._tell_overtaken(cycle, "stop")
+        if order.command == "stop":
+            self._tell_lost_homings(cycle, "stop")
+            if order.source != self._orders.source:
+                self._tell_overtaken(cycle, "stop")
         before, turned = work.job, self.spindle.state == S.CONTINUOUS_MOTION
         message = self._group_handler(order.command)(cycle, **order.arguments)
         if work.job is not None and work.job is not before:
@@ -153,6 +156,16 @@ class SpindleUnit(Unit):
         text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
         self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
         self._refused.append(f"{source}: P-ERR-{GEAR_CHANGE_OVERTAKEN} {text}")
+
+    def _tell_lost_homings(self, cycle: int, by: str) -> None:
+        """A homing whose zero pulse has not come, and those that wait, do not take place: nobody waits for them."""
+        spindle, job = self.spindle, self.spindle.work.job
+        numbers = [job.number] if job is not None and job.homes else []
+        numbers += [order.number for order in self._orders.waiting if order.command == "home"]
+        reference = "the reference point of before counts" if spindle.referenced else "there is no reference point"
+        for number in numbers:
+            text = f"{by} before the zero pulse, homing (order {number}) is given up; {reference}"
+            self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
 
     @staticmethod
     def _has_effect(command: str, *, new_job: bool, turned: bool) -> bool:
@@ -188,17 +201,18 @@ class SpindleUnit(Unit):
         refused, error = self._turned_down
         return error if refused == number else None
 
-    def do_power(self, cycle: int, *, on: bool) -> str | None:
+    def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""
-        if not on:
+        if not enabled:
             self._tell_overtaken(cycle, "power off")
             self._orders.clear()
             if self.spindle.work.gear_request:
                 self._passed_on.append(Command(self.name, "stop", {"homes": False}))
-        return self._power.do_power(cycle, on=on)
+        return self._power.do_power(cycle, enabled=enabled)
 
     def do_reset(self, cycle: int) -> None:
         """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
+        self._tell_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
         self._orders.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
@@ -215,6 +229,14 @@ class SpindleUnit(Unit):
         if can_follow(self.spindle):
             self.spindle.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
+    def lag_share(self, block: Block) -> float:
+        """See Unit."""
+        loop = self.spindle.loop
+        if not isinstance(block, SpindleBlock) or not loop.watches(on=self.spindle.powered) or block.error_id[-1]:
+            return 0.0
+        speeds = [rpm * DEG_S_PER_RPM for rpm in block.set_speed_rpm]
+        return loop.control.lag_share(block.set_position_deg, speeds, block.actual_position_deg[-1])
+
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> SpindleBlock:
@@ -226,6 +248,9 @@ class SpindleUnit(Unit):
         self._take_turns(first_cycle)
         columns = self._cycles.block(first_cycle, count)
         block = SpindleBlock(first_cycle, count, *columns)
+        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "°")
+        if warning is not None:
+            self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
         block.gear_request = self.spindle.work.gear_request
         block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
         block.source = self._orders.source
@@ -266,6 +291,7 @@ class SpindleUnit(Unit):
             self._orders.add(order)
             return
         if name == "stop":
+            self._tell_lost_homings(cycle, "stop")
             self._orders.clear()
         self._act_as_slave(cycle, order)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
@@ -13,9 +14,10 @@ from cnc_ptp.machine.blocks import (
     CommandRecord,
     CycleTick,
     Event,
+    EventValue,
     Severity,
 )
-from cnc_ptp.machine.commands import check_command
+from cnc_ptp.machine.commands import OF_PLC, check_command, current_names
 
 Handler = Callable[..., str | None]
 
@@ -59,8 +61,16 @@ class Unit(ABC):
         except CncError as error:
             error_id, message = error.error_id, error.message
             self.event(cycle, Severity.WARNING, error_id, message)
+        shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
         record = CommandRecord(
-            cycle, self.name, command.command, command.arguments_json, error_id == 0, error_id, message or self._warning
+            cycle,
+            self.name,
+            command.command,
+            shown.arguments_json,
+            error_id == 0,
+            error_id,
+            message or self._warning,
+            command.id,
         )
         self.records.append(record)
         return record
@@ -69,18 +79,25 @@ class Unit(ABC):
 
     def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
         self._warning = ""
+        arguments = current_names(self.kind, command, arguments)
         check_command(self.kind, self.name, command, arguments, self.sources)
         self._warning = self.handler(command)(cycle, **arguments) or ""
         if command == "upstream_lost":
             self.lost.add(arguments["source"])
+
+    def lag_share(self, block: Block) -> float:
+        """Following error at the end of a block just computed as a part of its limit; 0 while nothing limits it."""
+        return 0.0
 
     def handler(self, command: str) -> Handler:
         """What carries out a command that this kind of unit knows."""
         handler: Handler = getattr(self, f"do_{command}")
         return handler
 
-    def event(self, cycle: int, severity: int, error_id: int, text: str, line: int = 0) -> None:
-        self.events.append(Event(cycle, self.name, severity, error_id, text, line))
+    def event(
+        self, cycle: int, severity: int, error_id: int, text: str, line: int = 0, values: Iterable[EventValue] = ()
+    ) -> None:
+        self.events.append(Event(cycle, self.name, severity, error_id, text, line, list(values)))
 
     def take_events(self) -> list[Event]:
         events, self.events = self.events, []

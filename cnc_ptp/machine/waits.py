@@ -151,6 +151,7 @@ class Outputs:
     waits_machining   for the next G01, G02, G03 (MVS_SLM)
     waits_explicit    for the next #EXPL SYN (MVS_SLP)
     told              what the spindles are to report, whether the path waits for it or not
+    notes             number and text of warnings
     stored            speeds that command nothing now
     """
 
@@ -163,6 +164,7 @@ class Outputs:
     waits_explicit: list[Wait] = field(default_factory=list)
     told: list[Wait] = field(default_factory=list)
     stored: list[StoredSpeed] = field(default_factory=list)
+    notes: list[tuple[int, str]] = field(default_factory=list)
 
     def add_wait(self, synchronisation: Synchronisation, wait: Wait) -> None:
         """Files a wait under the moment at which its synchronisation type makes the path wait."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import count
 
 from cnc_ptp.machine.axis_unit import AxisUnit
-from cnc_ptp.machine.blocks import Severity
+from cnc_ptp.machine.blocks import EventValue, Severity
 from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.commands import sources_of
 from cnc_ptp.machine.plc_unit import PlcUnit
@@ -17,8 +17,6 @@ from cnc_ptp.machine.unit import Unit
 from cnc_ptp.parameters import MachineParameters
 
 PLC = "plc"
-MACHINE_NOTICE = 26120
-"""Warning: a parameter that is accepted but perhaps not meant so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +83,9 @@ def build_unit(
         cycle_time=cycle_time,
         end_when_idle=end_when_idle,
     )
-    for text in machine.warnings:
-        plc.event(0, Severity.WARNING, MACHINE_NOTICE, text)
+    for notice in machine.warnings:
+        values = [EventValue(*value) for value in notice.values]
+        plc.event(0, Severity.WARNING, notice.error_id, str(notice), values=values)
     return plc
 
 

@@ -87,16 +87,17 @@ def _plan(begin: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats
     v = velocity
     rise, rise_hold, rise_top = _ramp_shapes(v, up, j)
     fall, fall_hold, fall_top = _ramp_shapes(v, down, j)
-    cruise = distance - 0.5 * v * (2.0 * (rise + fall) + rise_hold + fall_hold)
-    short = np.nonzero(cruise < 0.0)[0]
+    needed = 0.5 * v * (2.0 * (rise + fall) + rise_hold + fall_hold)
+    short = np.nonzero(distance < needed)[0]
     if len(short):
-        reduced = np.minimum(v[short], _reachable(distance[short], np.minimum(up[short], down[short]), j[short]))
+        reachable = _reachable(distance[short], np.minimum(up[short], down[short]), j[short])
+        reduced = np.minimum(v[short], np.maximum(v[short] * (distance[short] / needed[short]), reachable))
         v = v.copy()
         v[short] = reduced
         rise[short], rise_hold[short], rise_top[short] = _ramp_shapes(reduced, up[short], j[short])
         fall[short], fall_hold[short], fall_top[short] = _ramp_shapes(reduced, down[short], j[short])
-        ramps = 2.0 * (rise[short] + fall[short]) + rise_hold[short] + fall_hold[short]
-        cruise[short] = np.maximum(distance[short] - 0.5 * reduced * ramps, 0.0)
+        needed[short] = 0.5 * reduced * (2.0 * (rise[short] + fall[short]) + rise_hold[short] + fall_hold[short])
+    cruise = np.maximum(distance - needed, 0.0)
     rows = np.zeros((5, 8, len(way)))
     cruise /= np.where(v > 0.0, v, 1.0)
     phases = (rise, rise_hold, rise, cruise, fall, fall_hold, fall)

@@ -1,7 +1,8 @@
 """Rest to rest: the seven-phase profile of an axis start, closed form.
 
 Source: TX1250 2.1. Where V cannot be reached, it is reduced to the largest velocity that is reachable with
-A = min(A+, A-) on both sides; the ramps then use A+ and A-, and a short cruise fills what is left of the way.
+A = min(A+, A-) on both sides; the ramps then use A+ and A-, and a short cruise fills what is left of the way. Near the
+way L0 that A+ and A- themselves need for V this would be a jump; there V·L/L0 is more and counts.
 """
 
 from __future__ import annotations
@@ -61,12 +62,14 @@ def rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
         return Profile(((0.0, target, 0.0, 0.0, 0.0),))
     up, up_hold, up_top = _ramp_shape(velocity, acceleration, jerk)
     down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)
-    cruise = distance - 0.5 * velocity * (2.0 * (up + down) + up_hold + down_hold)
-    if cruise < 0.0:
-        velocity = min(velocity, _reachable(distance, min(acceleration, deceleration), jerk))
+    needed = 0.5 * velocity * (2.0 * (up + down) + up_hold + down_hold)
+    if distance < needed:
+        reduced = max(velocity * (distance / needed), _reachable(distance, min(acceleration, deceleration), jerk))
+        velocity = min(velocity, reduced)
         up, up_hold, up_top = _ramp_shape(velocity, acceleration, jerk)
         down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)
-        cruise = distance - 0.5 * velocity * (2.0 * (up + down) + up_hold + down_hold)
+        needed = 0.5 * velocity * (2.0 * (up + down) + up_hold + down_hold)
+    cruise = distance - needed
     s = 1.0 if target > start else -1.0
     sv, sj = s * velocity, s * jerk
     a, b = s * up_top, s * down_top

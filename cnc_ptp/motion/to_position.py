@@ -20,20 +20,23 @@ from math import sqrt
 from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
 from cnc_ptp.motion.profile import Piece, Profile, Row, integrate, integrate_back
 from cnc_ptp.motion.quartic import largest_root
-from cnc_ptp.motion.ramp import NEGLIGIBLE, brake, brake_term, ramp, stop_way
+from cnc_ptp.motion.ramp import brake, brake_term, ramp, stop_way
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
 
 WAY_ROUNDING = 1e-13
 PLACE_ROUNDING = 4.5e-16
 """Part of the stop way, and of each of the two places, that is rounding when an axis that brakes is planned again."""
 
+REST_ROUNDING = 1e-9
+"""Part of the velocity by which the last jerk phase of a stop may seem to miss standstill."""
+
 
 def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits, *, direct: bool = False) -> Profile:
     """Fastest jerk-limited motion from (p, v, a) to standstill exactly at `target` (mm).
 
     A velocity above V and an acceleration above A+ or A- are left as fast as the limits allow. Where the axis cannot
-    stop before the target it stops behind it and returns (TX1250 2.3); `direct` reverses without the standstill in
-    between, which is faster. Raises CncError 23001 (limits) and 23002 (state, target).
+    stop before the target, or moves away from it, it stops and returns (TX1250 2.3); `direct` reverses without the
+    standstill in between, which is faster. Raises CncError 23001 (limits) and 23002 (state, target).
     """
     check_limits(limits)
     check_state(position=p, velocity=v, acceleration=a, target=target)
@@ -44,13 +47,21 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
     if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_WAY:
         return _table(p, v, target, 1.0, [], ramp(v, a, 0.0, limits))
     s = 1.0 if gap > 0.0 else -1.0
+    if _stops_first(s * v, s * a, limits) and not direct:
+        return _stop_and_return(p, v, a, target, limits)
     v *= s
     a *= s
-    left = a * abs(a) / (2.0 * jerk)
-    if v + left < -NEGLIGIBLE * (abs(v) + abs(left)) and not direct:
-        return _stop_and_return(p, s * v, s * a, target, limits)
     head, tail = _leave_ramp(v, a, s * way, limits)
     return _table(p, v, target, s, head, tail)
+
+
+def _stops_first(v: float, a: float, limits: Limits) -> bool:
+    """True when the velocity that is left without the acceleration leads away from the target (at positive places).
+
+    In the last jerk phase of a stop it is 0 but for rounding; then the direction of the velocity itself decides.
+    """
+    left = v + a * abs(a) / (2.0 * limits.jerk)
+    return left < -REST_ROUNDING * v
 
 
 def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:

@@ -23,19 +23,30 @@ class Source(NamedTuple):
     text: str
 
 
+STEP, TRAPEZ = "STEP", "TRAPEZ"
+"""Slopes (#SLOPE): the acceleration along the path steps, or is a trapezium with limited jerk."""
+SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
+"""By the value of P-CHAN-00071."""
+
+
 class LinearMove(NamedTuple):
-    """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`."""
+    """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
+
+    `slope` of its acceleration, "" is that of P-CHAN-00071.
+    """
 
     target: tuple[float, ...]
     rapid: bool
     feed: float
+    slope: str = ""
 
 
 class CircularMove(NamedTuple):
     """Arc or full circle in a main plane; every other axis moves linearly alongside (helix).
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
-    `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s.
+    `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
+    `slope` as in LinearMove.
     """
 
     target: tuple[float, ...]
@@ -44,6 +55,7 @@ class CircularMove(NamedTuple):
     radius: float
     sweep: float
     feed: float
+    slope: str = ""
 
 
 class Dwell(NamedTuple):
@@ -85,11 +97,16 @@ class GearChange(NamedTuple):
 
 
 class SpindleLink(NamedTuple):
-    """Synchronous operation of two spindles begins or ends; functions of the master are in the stream for both."""
+    """Synchronous operation of two spindles begins or ends; functions of the master are in the stream for both.
+
+    The slave turns `num` / `den` times as fast as the master, and as far.
+    """
 
     slave: str
     master: str
     on: bool
+    num: float = 1.0
+    den: float = 1.0
 
 
 class ExplicitSynchronisation(NamedTuple):
@@ -186,8 +203,9 @@ def _function(function: Function) -> str:
             return f"{spindle}[{command}]"
         case GearChange(spindle, stage):
             return f"{spindle}[gear {stage}]"
-        case SpindleLink(slave, master, on):
-            return f"{'link' if on else 'unlink'} {slave}={master}"
+        case SpindleLink(slave, master, on, num, den):
+            ratio = "" if num == den else f" {number(num)}/{number(den)}"
+            return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
         case ExplicitSynchronisation():
             return "wait for MVS_SLP"
         case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
@@ -221,13 +239,13 @@ def _control(function: ControlFunction) -> str:
 def _motion(motion: Motion) -> str:
     if isinstance(motion, Dwell):
         return f"dwell {number(motion.seconds)} s"
-    target = _numbers(motion.target)
+    target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     if isinstance(motion, LinearMove):
-        return f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}"
+        return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"
     return (
         f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
-        f" sweep {number(motion.sweep)} feed {number(motion.feed)}"
+        f" sweep {number(motion.sweep)} feed {number(motion.feed)}{slope}"
     )
 
 

@@ -1,9 +1,9 @@
 """Brackets with feedforward or COMP of a block -> canonical functions, once their axis or spindle is known."""
 
-from cnc_ptp.nc import faults
+from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleCommand, SpindleFeedforward, SpindleFunction
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel, ModalState
+from cnc_ptp.nc.program import Block, Channel, ModalState, Spindle
 from cnc_ptp.nc.spindles import names
 
 
@@ -12,7 +12,8 @@ def bracketed_controls(
 ) -> tuple[SpindleFeedforward | CompensationSwitch, ...]:
     """The control functions in brackets, in their order; `before`: the block's other functions.
 
-    Raises 20797, 20180 for axes and spindles that the channel has not, 21099 and 21037 for one that is named twice.
+    Raises 20797, 20180 for axes and spindles that the channel has not, 21099 and 21037 for one that is named twice,
+    21202 for spindles that the PLC moves.
     """
     spindles = names(channel, state)
     moved = {function.spindle for function in before if isinstance(function, (SpindleFunction, SpindleCommand))}
@@ -25,8 +26,17 @@ def bracketed_controls(
             controls.append(control)
         else:
             _check(block, control.spindle, tuple(spindles), used, faults.SPINDLE_UNKNOWN, faults.SPINDLE_TWICE)
+            _require_unit(block, control, spindles[control.spindle])
             controls.append(control._replace(spindle=spindles[control.spindle].key))
     return tuple(controls)
+
+
+def _require_unit(block: Block, control: SpindleFeedforward, spindle: Spindle) -> None:
+    """Raises 21202 for a spindle that the PLC moves: it has no position controller here (P-CHAN-00069)."""
+    if spindle.plc_control:
+        word = "G136" if control.on is None else "G135" if control.on else "G137"
+        column = column_of(block.source, word)
+        raise spindle_faults.PLC_SPINDLE.at(block.source, column, word=word, spindle=control.spindle)
 
 
 def _check(
@@ -37,5 +47,5 @@ def _check(
     if name not in known:
         raise unknown.at(block.source, column, word=name, known=", ".join(known) or "none")
     if name in used:
-        raise twice.at(block.source, column, axis=name, spindle=name)
+        raise twice.at(block.source, column_of(block.source, name, last=True), axis=name, spindle=name)
     used.add(name)

@@ -105,7 +105,7 @@ RADII_DIFFER = Fault(
 )
 
 # Feedforward and compensations
-WEIGHT_RANGE = Fault(21090, "feedforward weight {value} % of {unit} is not within 0 ... 100 %")
+WEIGHT_RANGE = Fault(21090, "feedforward weight {value} % of {unit} is below 0 %")
 WEIGHTS_WITHOUT_AXIS = Fault(21091, "G136 without an axis: axis words are its weights in percent")
 WEIGHTS_AND_MOTION = Fault(21092, "G136 takes the axis words of its block as weights, {g} cannot stand beside it")
 FEEDFORWARD_ALONE = Fault(
@@ -118,8 +118,13 @@ COMP_WORD = Fault(21097, "'{word}' is not available behind COMP of axis {axis}; 
 COMP_INCOMPLETE = Fault(21098, "COMP of axis {axis} does not say {missing}")
 COMP_TWICE = Fault(21099, "COMP of axis {axis} twice in one block")
 
+# Slope
+SLOPE_UNKNOWN = Fault(21110, "slope {slope} is not known; known are: {known}")
+SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available are: STEP, TRAPEZ")
+
 # Spindles
-SPINDLE_UNKNOWN = Fault(20180, "spindle {word} is not in the machine; spindles of this channel: {known}")
+SPINDLE_UNKNOWN = Fault(20180, "spindle {word} does not belong to this channel; its spindles are: {known}")
+SPEED_ABOVE_GEAR = Fault(22010, "spindle {spindle}: {speed} rpm is above the maximum {limit} rpm{gear} (P-AXIS-00212)")
 NO_SPINDLE = Fault(21548, "{word} needs a spindle, this channel has none")
 SPEED_NEGATIVE = Fault(20991, "speed {value} rpm of spindle {spindle} is negative")
 SPEED_MISSING = Fault(21036, "M{m} of spindle {spindle} without a speed: none was programmed before")

@@ -13,7 +13,6 @@ from cnc_ptp.nc.program import Block, Channel, GCode, ModalState
 
 ON, WEIGHTS, OFF = 135, 136, 137
 SELECTION = "feedforward"
-MAX_WEIGHT = 100.0
 
 _BRACKET = re.compile(r"G\s*=?\s*0*13[567](?!\d)", re.ASCII)
 _WORD = re.compile(r"\s*G\s*=?\s*0*(13[567])(?!\d)(?:\s*=\s*([^\sA-Z]*))?", re.ASCII)
@@ -24,7 +23,7 @@ def block_function(channel: Channel, state: ModalState, block: Block, code: GCod
     """G135, G136 and G137 of a block as one function for the channel's axes, made where the first of them stands.
 
     With G136 the axis words are weights, so no path function can stand in the block (21092). Raises 21090, 21091 for
-    weights beyond 0 ... 100 % and for a G136 without an axis.
+    weights below 0 % and for a G136 without an axis; weights above 100 % are limited where they act, with a warning.
     """
     codes = [other for other in block.codes if other.number in (ON, WEIGHTS, OFF)]
     if code is not codes[0]:
@@ -43,7 +42,7 @@ def _weights(channel: Channel, state: ModalState, block: Block, code: GCode) -> 
         raise faults.WEIGHTS_WITHOUT_AXIS.at(block.source, column_of(block.source, code.name))
     weights = tuple((word, value) for word, value in block.words.items() if word in channel.axis_index)
     for axis, value in weights:
-        if not 0.0 <= value <= MAX_WEIGHT:
+        if value < 0.0:
             column = column_of(block.source, axis)
             raise faults.WEIGHT_RANGE.at(block.source, column, value=number(value), unit=f"axis {axis}")
     return weights
@@ -95,7 +94,7 @@ def _fault(
         return faults.TWICE, {"word": f"G{code}"}
     if code == WEIGHTS and value is None:
         return faults.WEIGHT_MISSING, {"spindle": spindle}
-    if code == WEIGHTS and value is not None and not 0.0 <= value <= MAX_WEIGHT:
+    if code == WEIGHTS and value is not None and value < 0.0:
         return faults.WEIGHT_RANGE, {"value": number(value), "unit": f"spindle {spindle}"}
     if code != WEIGHTS and value is not None:
         return faults.SELECTION_WITH_VALUE, {"g": f"G{code}", "spindle": spindle}

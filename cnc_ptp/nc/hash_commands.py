@@ -1,14 +1,14 @@
-"""Commands beginning with #, alone in their block: #MAIN SPINDLE, #EXPL SYN and couplings of spindles (#AX LINK).
+"""Commands beginning with #, alone in their block: #MAIN SPINDLE, #EXPL SYN, #SLOPE, couplings of spindles (#AX LINK).
 
-A new command is a new row of COMMANDS. TF5200 spindle 2.2.3, 2.5, 2.8.3; the spelling is that of the vendor's
-programming manual.
+A new command is a new row of COMMANDS. TF5200 spindle 2.2.3, 2.5, 2.8.3; #SLOPE and the spelling are those of the
+vendor's programming manual.
 """
 
 import re
 from collections.abc import Callable
 
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
-from cnc_ptp.nc.canonical import ExplicitSynchronisation, Function, Source
+from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Source
 from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState
 from cnc_ptp.nc.spindles import current_main, name_of, names
 
@@ -17,6 +17,8 @@ Run = Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*", re.ASCII)
 _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCII)
 """[NBR] says that spindles are given by number; that is seen anyway."""
+_SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
+"""NO_OPT says how much may be computed for the use of the jerk; here it is always used in full."""
 
 
 def hash_block(line: str, source: Source, begin: int, skip: int) -> Block | None:
@@ -93,6 +95,27 @@ def explicit_synchronisation(
     return (ExplicitSynchronisation(),)
 
 
+def slope(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+    """#SLOPE [TYPE=STEP], [TYPE=TRAPEZ]: for the motions of the blocks after it."""
+    words = _SLOPE.fullmatch(",".join(command.arguments or ()))
+    available = " or ".join(f"[TYPE={name}]" for name in (STEP, TRAPEZ))
+    if words is None:
+        raise arguments_fault(block, command, f"{available}, or #SLOPE DEFAULT")
+    if words[1] not in (STEP, TRAPEZ):
+        fault = faults.SLOPE_NOT_AVAILABLE if words[1] in SLOPES.values() else faults.SLOPE_UNKNOWN
+        raise fault.at(block.source, command.column, slope=words[1], known=", ".join(SLOPES.values()))
+    state.slope = words[1]
+    return ()
+
+
+def default_slope(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+    """#SLOPE DEFAULT: that of P-CHAN-00071 again."""
+    if command.arguments is not None:
+        raise arguments_fault(block, command, "without arguments")
+    state.slope = ""
+    return ()
+
+
 def arguments_fault(block: Block, command: HashCommand, syntax: str) -> faults.ProgramError:
     """The error for a command that is written otherwise."""
     return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
@@ -108,5 +131,7 @@ COMMANDS: dict[str, Run] = {
     "AX LINK OFF ALL": spindle_links.disable_all,
     "AX LINK OFF": spindle_links.disable,
     "AX LINK": spindle_links.define,
+    "SLOPE DEFAULT": default_slope,
+    "SLOPE": slope,
 }
 _COMMAND = re.compile(r"#\s*(" + "|".join(name.replace(" ", r"\s+") for name in COMMANDS) + r")\b", re.ASCII)

@@ -135,6 +135,8 @@ def _resolve(
         else:
             if check_target is not None:
                 _check_move(state.position, motion, block.source, check_target)
+            if state.slope:
+                motion = motion._replace(slope=state.slope)
             if state.spindle.speedless:
                 _require_speed(state, motion)
             state.position = motion.target

@@ -7,6 +7,7 @@ a subroutine, a bare number belongs to G04.
 """
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from cnc_ptp.nc import faults
@@ -138,13 +139,24 @@ def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
     return faults.BAD_NUMBER if shown[0].isalnum() or shown[0] in "+-." else faults.UNEXPECTED_CHARACTER
 
 
-def column_of(source: Source, word: str) -> int:
-    """Column (1-based) of the first word of this name (X, S2) or of a G or M code (G01) in a parsed line; else 1."""
+def column_of(source: Source, word: str, *, last: bool = False) -> int:
+    """Column (1-based) of a word by its name (X, S2) or of a G or M code (G01) in a parsed line; else 1.
+
+    A code may stand in the brackets of a spindle. `last`: of several, the last one instead of the first.
+    """
+    columns = list(_columns(source, word))
+    return columns[-1 if last else 0] if columns else 1
+
+
+def _columns(source: Source, word: str) -> Iterator[int]:
     code = re.fullmatch(r"([GM])(\d+)", word)
     name, number = (code[1], int(code[2])) if code else (word, None)
     line = normalise(source)
     skip = SKIP.match(line)
     for token in tokens(line, source, begin=skip.end() if skip else 0):
         if token.name == name and (number is None or float(token.text) == number):
-            return token.column
-    return 1
+            yield token.column
+        elif number is not None and token.kind == "bracket":
+            begin = token.column + token.shown.index("[") + 1
+            inside = re.finditer(rf"\b{name}\s*=?\s*0*{number}(?![\d.])", token.text, re.ASCII)
+            yield from (begin + match.start() for match in inside)

@@ -81,6 +81,7 @@ class Spindle(NamedTuple):
     automatic     the speed selects the gear (P-CHAN-00004)
     gear          stage at start-up, from 1
     plc_control   the PLC moves it through the channel's interface (P-CHAN-00069)
+    limits        largest speed of each gear stage, rpm (P-AXIS-00212); stages beyond the last entry have none
     """
 
     key: str
@@ -91,10 +92,19 @@ class Spindle(NamedTuple):
     automatic: bool = False
     gear: int = 1
     plc_control: bool = False
+    limits: tuple[float, ...] = ()
 
 
-Pairs = tuple[tuple[str, str], ...]
-"""Coupled spindles by key: (slave, master)."""
+class Pair(NamedTuple):
+    """Coupled spindles by key. The slave turns `num` / `den` times as fast as the master."""
+
+    slave: str
+    master: str
+    num: float = 1.0
+    den: float = 1.0
+
+
+Pairs = tuple[Pair, ...]
 
 
 class SpindleTable(NamedTuple):
@@ -201,7 +211,8 @@ class SpindleModes:
 class ModalState:
     """What one block leaves to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
 
-    `path`, `plane`: numbers of the active G codes; `radius`: last R (mm, signed, 0.0 none); `speeds`: S by spindle.
+    `path`, `plane`: numbers of the active G codes; `radius`: last R (mm, signed, 0.0 none); `speeds`: S by spindle;
+    `slope`: #SLOPE, "" is that of P-CHAN-00071.
     """
 
     position: tuple[float, ...] = ()
@@ -213,6 +224,7 @@ class ModalState:
     radius: float = 0.0
     speeds: dict[str, float] = field(default_factory=dict)
     spindle: SpindleModes = field(default_factory=SpindleModes)
+    slope: str = ""
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line can leave the state as it was."""

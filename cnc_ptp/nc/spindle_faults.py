@@ -18,6 +18,8 @@ COUPLED = Fault(
     21068, "spindle {spindle} follows spindle {master} (coupling group {group}) and takes no functions of its own"
 )
 
+POSITION_RANGE = Fault(21083, "position {value} deg of spindle {spindle} is not within ±{limit} deg")
+
 # Gears
 NO_GEAR_FOR_SPEED = Fault(
     21069, "speed {speed} rpm of spindle {spindle} lies in no gear stage (P-CHAN-00058, P-CHAN-00055): {ranges}"
@@ -46,6 +48,7 @@ MAIN_WITHOUT_NAME = Fault(
 )
 LINK_GROUP = Fault(21077, "coupling group {group} must be a number from {first} to {last}")
 LINK_GROUP_DEFAULT = Fault(21078, "coupling group 0 is defined by P-CHAN-00037 and P-CHAN-00038 and by nothing else")
+LINK_RATIO = Fault(21084, "ratio {num} / {den} of spindle {spindle}: both must be numbers other than 0")
 LINK_EMPTY = Fault(21079, "coupling group {group} has no coupled pair")
 LINK_NOT_ACTIVE = Fault(21080, "{what} active")
 LINK_ACTIVE = Fault(20472, "coupling group {group} is active and cannot be defined anew")

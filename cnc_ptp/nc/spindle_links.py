@@ -1,14 +1,21 @@
 """Synchronous operation of spindles: coupling groups are defined, enabled and disabled (TF5200 spindle 2.8.3).
 
-#SET AX LINK [group, slave=master, ...] defines, #ENABLE AX LINK [group] begins, #DISABLE AX LINK [group] ends. Group 0
-comes from the channel parameters. Definitions stay for later programs, couplings end with the program.
+#SET AX LINK [group, slave=master, num, den, ...] defines (without a ratio 1 / 1), #ENABLE AX LINK [group] begins,
+#DISABLE AX LINK [group] ends. Group 0 comes from the channel parameters. Definitions stay for later programs, couplings
+end with the program.
 """
+
+import re
+from collections.abc import Sequence
 
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
-from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState, Pairs
+from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState, Pair, Pairs, Spindle
 from cnc_ptp.nc.spindles import current_main, name_of, names
+
+DEFINITION = "[group, slave=master, ...] or [group, slave=master, num, den, ...]"
+_NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
 
 
 class _Command:
@@ -38,12 +45,31 @@ class _Command:
         """What the program calls a spindle now."""
         return name_of(self.channel, self.state, key)
 
-    def pair(self, text: str) -> tuple[str, str]:
-        """`slave=master` by key."""
-        slave, equals, master = text.partition("=")
-        if not equals:
-            raise self.syntax("[group, slave=master, ...]")
-        return self.spindle(slave.strip()), self.spindle(master.strip())
+    def pairs_of(self, arguments: Sequence[str]) -> Pairs:
+        """`slave=master` by key, each followed by the ratio `num, den` or by none."""
+        pairs: list[Pair] = []
+        rest = list(arguments)
+        while rest:
+            slave, equals, master = rest.pop(0).partition("=")
+            if not equals:
+                raise self.syntax(DEFINITION)
+            pair = Pair(self.spindle(slave.strip()), self.spindle(master.strip()))
+            if rest and "=" not in rest[0]:
+                pair = self._with_ratio(pair, rest)
+            pairs.append(pair)
+        return tuple(pairs)
+
+    def _with_ratio(self, pair: Pair, rest: list[str]) -> Pair:
+        """Takes two numbers from `rest`."""
+        if len(rest) < 2 or "=" in rest[1]:
+            raise self.syntax(DEFINITION)
+        num, den = rest.pop(0), rest.pop(0)
+        ratio = [float(text) for text in (num, den) if _NUMBER.fullmatch(text)]
+        if len(ratio) < 2 or 0.0 in ratio:
+            raise self.fault(
+                spindle_faults.LINK_RATIO, num=num or "nothing", den=den or "nothing", spindle=self.called(pair.slave)
+            )
+        return pair._replace(num=ratio[0], den=ratio[1])
 
     def spindle(self, name: str) -> str:
         """Key of a spindle by name, or by its logical axis number."""
@@ -54,7 +80,14 @@ class _Command:
             spindle = known.get(name)
         if spindle is None:
             raise self.fault(faults.SPINDLE_UNKNOWN, word=name, known=", ".join(known) or "none")
+        self.require_unit(spindle)
         return spindle.key
+
+    def require_unit(self, spindle: Spindle) -> None:
+        """A spindle that the PLC moves cannot follow or lead (P-CHAN-00069)."""
+        if spindle.plc_control:
+            word = f"#{self.command.name}"
+            raise self.fault(spindle_faults.PLC_SPINDLE, word=word, spindle=self.called(spindle.key))
 
     def pairs(self, group: int) -> Pairs:
         """The pairs of a group that can be enabled."""
@@ -65,8 +98,11 @@ class _Command:
 
     def check_group(self, pairs: Pairs) -> None:
         """No spindle follows itself or two masters, none is slave and master."""
-        slaves = [slave for slave, _ in pairs]
-        for slave, master in pairs:
+        slaves = [pair.slave for pair in pairs]
+        for slave, master, _, _ in pairs:
+            for spindle in self.channel.table.spindles:
+                if spindle.key in (slave, master):
+                    self.require_unit(spindle)
             if slave == master:
                 raise self.fault(spindle_faults.LINK_ITSELF, spindle=self.called(slave))
             if slaves.count(slave) > 1:
@@ -77,9 +113,9 @@ class _Command:
     def check_others(self, pairs: Pairs) -> None:
         """The pairs against all groups that are active."""
         main = current_main(self.channel, self.state).key
-        for slave, master in pairs:
+        for slave, master, _, _ in pairs:
             for group in self.state.spindle.active:
-                for other_slave, other_master in self.state.spindle.links[group]:
+                for other_slave, other_master, _, _ in self.state.spindle.links[group]:
                     self.check_pair(slave, master, other_slave, other_master, group)
             if slave == main:
                 raise self.fault(spindle_faults.SLAVE_IS_MAIN, spindle=self.called(slave))
@@ -95,17 +131,17 @@ class _Command:
 
 
 def define(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
-    """#SET AX LINK [group, slave=master, ...]: a group with its pairs; a group that is active stays as it is."""
+    """#SET AX LINK [group, slave=master, num, den, ...]: a group with its pairs; an active group stays as it is."""
     link = _Command(channel, state, block, command)
     arguments = command.arguments or ()
     if len(arguments) < 2:
-        raise link.syntax("[group, slave=master, ...]")
+        raise link.syntax(DEFINITION)
     if arguments[0] == "0":
         raise link.fault(spindle_faults.LINK_GROUP_DEFAULT)
     group = link.group(arguments[0], 1)
     if group in state.spindle.active:
         raise link.fault(spindle_faults.LINK_ACTIVE, group=group)
-    pairs = tuple(link.pair(text) for text in arguments[1:])
+    pairs = link.pairs_of(arguments[1:])
     link.check_group(pairs)
     state.spindle.links[group] = pairs
     return ()
@@ -122,7 +158,7 @@ def enable(channel: Channel, state: ModalState, block: Block, command: HashComma
     link.check_others(pairs)
     state.spindle.links[group] = pairs
     state.spindle.active += (group,)
-    return tuple(SpindleLink(slave, master, True) for slave, master in pairs)
+    return tuple(SpindleLink(pair.slave, pair.master, True, pair.num, pair.den) for pair in pairs)
 
 
 def disable(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
@@ -150,7 +186,7 @@ def end_of_links(state: ModalState) -> tuple[Function, ...]:
 
 def check_main(channel: Channel, state: ModalState, block: Block, command: HashCommand, key: str) -> None:
     """A spindle that follows another one cannot become the main spindle. Raises ProgramError 21347."""
-    slaves = [slave for group in state.spindle.active for slave, _ in state.spindle.links[group]]
+    slaves = [pair.slave for group in state.spindle.active for pair in state.spindle.links[group]]
     if key in slaves:
         name = name_of(channel, state, key)
         raise spindle_faults.SLAVE_IS_MAIN.at(block.source, command.column, spindle=name)
@@ -168,4 +204,4 @@ def _optional_group(link: _Command, without: int) -> int:
 def _end(state: ModalState, groups: tuple[int, ...]) -> tuple[Function, ...]:
     ended = [pair for group in groups for pair in state.spindle.links[group]]
     state.spindle.active = tuple(group for group in state.spindle.active if group not in groups)
-    return tuple(SpindleLink(slave, master, False) for slave, master in ended)
+    return tuple(SpindleLink(pair.slave, pair.master, False) for pair in ended)

@@ -1,12 +1,12 @@
 """Words in the brackets of a spindle, `S2[M3 REV1000]` -> SpindleWords; what they mean together is checked here too."""
 
 from cnc_ptp.nc import faults, spindle_faults
-from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.lexer import Token, bracket_words
 from cnc_ptp.nc.program import SpindleWords
 
-DEFAULT_DYNAMICS = ("DEFAULT_DYNAMIC_DATA", "DEFAULT_DYNAMIK_DATA")
-"""The second spelling is nearer to that of TF5200 spindle p.83."""
+DEFAULT_DYNAMICS = ("DEFAULT_DYNAMIC_DATA", "DEFAULT_DYNAMIK_DATA", "DEFAUL_DYNAMIK_DATA")
+"""The last spelling is that of TF5200 spindle p.83."""
 
 KNOWN = "M3, M4, M5, M19, REV, POS, G74, G167, G135, G136, G137, DEFAULT_DYNAMIC_DATA, free M functions"
 FLOW_M = (0, 1, 2, 17, 29, 30)
@@ -31,10 +31,20 @@ class _Bracket:
 
     def take(self, name: str, text: str, column: int) -> None:
         """Adds one word."""
+        self._require_once(name, text, column)
         taken = self._take_number(name, float(text), column) if text else self._take_name(name)
         if not taken:
             raise faults.BRACKET_WORD.at(self.source, column, word=name + text, spindle=self.spindle, known=KNOWN)
         self.shown.append((name + text, column))
+
+    def _require_once(self, name: str, text: str, column: int) -> None:
+        """REV, POS, G74, G167 and DEFAULT_DYNAMIC_DATA; M functions have rules of their own."""
+        value = {"REV": self.words.speed_rpm, "POS": self.words.position_deg}.get(name)
+        if text and value is not None:
+            first, second = number(value), number(float(text))
+            raise faults.DUPLICATE_WORD.at(self.source, column, word=name, first=first, second=second)
+        if name != "M" and any(word == name + text for word, _ in self.shown):
+            raise faults.TWICE.at(self.source, column, word=name + text)
 
     def _take_name(self, name: str) -> bool:
         if name not in DEFAULT_DYNAMICS or self.words.default_dynamics:
@@ -58,20 +68,20 @@ class _Bracket:
             return False
         return True
 
-    def _take_m(self, number: int, column: int) -> None:
+    def _take_m(self, m: int, column: int) -> None:
         words = self.words
-        if number in FLOW_M:
-            raise spindle_faults.FREE_M_IN_BRACKET.at(self.source, column, number=number, spindle=self.spindle)
-        if number in (3, 4, 5):
-            first = words.m if words.m is not None else 19 if words.positioning and number == 5 else None
-            self._require_one(first, number, column)
-            self.words = words._replace(m=number)
-        elif number == 19:
+        if m in FLOW_M:
+            raise spindle_faults.FREE_M_IN_BRACKET.at(self.source, column, number=m, spindle=self.spindle)
+        if m in (3, 4, 5):
+            first = words.m if words.m is not None else 19 if words.positioning and m == 5 else None
+            self._require_one(first, m, column)
+            self.words = words._replace(m=m)
+        elif m == 19:
             self._require_one(19 if words.positioning else words.m if words.m == 5 else None, 19, column)
             self.words = words._replace(positioning=True)
         else:
-            self._require_one(number if number in words.functions else None, number, column)
-            self.words = words._replace(functions=(*words.functions, number))
+            self._require_one(m if m in words.functions else None, m, column)
+            self.words = words._replace(functions=(*words.functions, m))
 
     def _require_one(self, first: int | None, second: int, column: int) -> None:
         if first is not None:

@@ -7,15 +7,20 @@ Source: TF5200 spindle 2.2.3, 2.3, 2.4.1, 2.7, 2.8.2, 2.8.3.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import inf
 
 from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Pair, Spindle, SpindleTable, SpindleWords
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
+REVERSED: dict[int | None, int] = {3: 4, 4: 3}
+REVERSED_DIRECTIONS = {"cw": "ccw", "ccw": "cw"}
 FUNCTION_WORDS = frozenset("STD")
+LARGEST_POSITION = 214748.3647
+"""deg: a position of the lists, 32 bits of 0.0001°."""
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
@@ -69,11 +74,15 @@ def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list
     for words, place in _words(channel, state, block):
         spindle = _named(channel, state, block, words, place)
         if spindle.key in used:
-            raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, words.name), spindle=words.name)
+            column = column_of(block.source, words.name, last=True)
+            raise faults.SPINDLE_TWICE.at(block.source, column, spindle=words.name)
         used.add(spindle.key)
         _check_coupling(channel, state, block, words, place, spindle)
         for function in _SpindleBlock(channel, state, block, words, place, spindle).functions():
-            functions += [function, *_parallel(state, function)]
+            together = [function, *_parallel(state, function)]
+            for each in together:
+                _check_speed(channel, state, block, place, each)
+            functions += together
     return functions
 
 
@@ -104,7 +113,7 @@ def _with_values(block: Block, words: SpindleWords, own: list[SpindleWords]) -> 
     positions = [other.position_deg for other in own if other.position_deg is not None]
     if len(speeds) > 1 or len(positions) > 1:
         place = own[-1].name if len(speeds) > 1 else f"{words.name}.POS"
-        raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, place), spindle=words.name)
+        raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, place, last=True), spindle=words.name)
     if positions and not words.positioning:
         column = column_of(block.source, f"{words.name}.POS")
         raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
@@ -136,7 +145,7 @@ def _check_coupling(
     channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, spindle: Spindle
 ) -> None:
     for group in state.spindle.active:
-        for slave, master in state.spindle.links[group]:
+        for slave, master, _, _ in state.spindle.links[group]:
             if slave == spindle.key:
                 column, leader = column_of(block.source, place), name_of(channel, state, master)
                 raise spindle_faults.COUPLED.at(block.source, column, spindle=words.name, master=leader, group=group)
@@ -146,20 +155,47 @@ def _parallel(state: ModalState, function: Function) -> list[Function]:
     """The same function for the slaves of its spindle (2.8.3, parallel commanding); gears stay with the master."""
     if not state.spindle.active or not isinstance(function, (SpindleFunction, SpindleCommand)):
         return []
-    slaves = [
-        slave
-        for group in state.spindle.active
-        for slave, master in state.spindle.links[group]
-        if master == function.spindle
+    pairs = [
+        pair for group in state.spindle.active for pair in state.spindle.links[group] if pair.master == function.spindle
     ]
     speedless = state.spindle.speedless
-    for slave in slaves:
+    functions: list[Function] = []
+    for pair in pairs:
         if function.spindle in speedless:
-            speedless[slave] = speedless[function.spindle]
+            speedless[pair.slave] = speedless[function.spindle]
         else:
-            speedless.pop(slave, None)
-        _note(state, slave, function)
-    return [function._replace(spindle=slave) for slave in slaves]
+            speedless.pop(pair.slave, None)
+        of_slave = _of_slave(function, pair)
+        _note(state, pair.slave, of_slave)
+        functions.append(of_slave)
+    return functions
+
+
+def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> SpindleFunction | SpindleCommand:
+    """The function of a master as its slave has it: speed and position times the ratio, which may turn it round."""
+    if isinstance(function, SpindleCommand) or pair.num == pair.den:
+        return function._replace(spindle=pair.slave)
+    ratio = pair.num / pair.den
+    speed = None if function.speed_rpm is None else abs(ratio) * function.speed_rpm
+    position = None if function.position_deg is None else ratio * function.position_deg
+    m, direction = function.m, function.direction
+    if ratio < 0.0:
+        m, direction = REVERSED.get(m, m), REVERSED_DIRECTIONS.get(direction, direction)
+    return function._replace(spindle=pair.slave, m=m, speed_rpm=speed, position_deg=position, direction=direction)
+
+
+def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, function: Function) -> None:
+    """Raises ProgramError 22010 for a speed that the gear of the spindle does not permit (P-AXIS-00212)."""
+    if not isinstance(function, SpindleFunction) or function.speed_rpm is None:
+        return
+    spindle = next(spindle for spindle in channel.table.spindles if spindle.key == function.spindle)
+    stage = state.spindle.gears.get(spindle.key, spindle.gear)
+    limit = spindle.limits[stage - 1] if stage <= len(spindle.limits) else inf
+    if function.speed_rpm > limit:
+        gear = f" of gear {stage}" if len(spindle.limits) > 1 else ""
+        values = {"speed": f"{function.speed_rpm:g}", "limit": f"{limit:g}", "gear": gear}
+        name, column = name_of(channel, state, spindle.key), column_of(block.source, place)
+        raise faults.SPEED_ABOVE_GEAR.at(block.source, column, spindle=name, **values)
 
 
 def _note(state: ModalState, key: str, function: SpindleFunction | SpindleCommand) -> None:
@@ -274,8 +310,18 @@ class _SpindleBlock:
         speed = self.state.speeds.get(self.key)
         if speed == 0.0:
             raise self._fault(spindle_faults.SPEED_ZERO, value=0)
+        if abs(position) > LARGEST_POSITION:
+            raise self._position_fault(position)
         direction = DIRECTIONS[words.m] if words.m else ""
         return SpindleFunction(self.key, 19, speed, position, direction, words.full_override)
+
+    def _position_fault(self, position: float) -> faults.ProgramError:
+        """The error for a position beyond the range of the lists, at its word where the block has one."""
+        source, name = self.block.source, self.words.name
+        column = column_of(source, f"{name}.POS" if self.words.din else self.place)
+        return spindle_faults.POSITION_RANGE.at(
+            source, column, spindle=name, value=number(position), limit=number(LARGEST_POSITION)
+        )
 
     # gears
 
@@ -306,17 +352,27 @@ class _SpindleBlock:
         return self._stage(codes[0] - gears.FIRST_M + 1 if codes else 0)
 
     def _stage(self, programmed: int) -> int:
-        """M19 and M5 turn at no speed of a range: their speed is looked at with the next M3, M4 or S."""
+        """The stage that speed and M40 to M45 ask for, 0 for none.
+
+        M5 turns at no speed of a range: its speed is looked at with the next M3, M4 or S. M19 changes the gear where
+        that is automatic; else any stage will do that reaches its speed.
+        """
         words = self.words
         active = self.state.spindle.gears.get(self.key, self.spindle.gear)
         turning = words.m in ROTATION or (words.m is None and self.key in self.state.spindle.turning)
-        counts = not words.positioning and words.m != 5 and (turning or words.speed_rpm is not None)
+        counts = words.m != 5 and (turning or words.speed_rpm is not None)
+        if words.positioning:
+            counts = self.spindle.automatic and bool(self.state.speeds.get(self.key))
         if not counts and not programmed:
             return 0
         speed = self.state.speeds.get(self.key) if counts else None
         if not words.din:
             self._require_active_gear(active, speed)
             return 0
+        if words.positioning and not programmed:
+            return (
+                active if gears.holds(self.spindle, active, speed or 0.0) else gears.search(self.spindle, speed or 0.0)
+            )
         return gears.stage_for(self.spindle, active, programmed, speed, self.block, words.name)
 
     def _require_active_gear(self, active: int, speed: float | None) -> None:

@@ -1,4 +1,4 @@
-"""Command line of the unit nodes: `axis MACHINE.yaml x`; ROS arguments pass."""
+"""Command line of the unit nodes: `axis MACHINE.yaml x --ros-args …`."""
 
 from __future__ import annotations
 
@@ -7,18 +7,20 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import click
-from rclpy.utilities import remove_ros_args
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
+from cnc_ptp.number_range import STATES_PER_SECOND
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.ros_arguments import split
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 NAME = click.argument("name")
 RECORDERS = click.option(
     "--recorders", default=0, show_default=True, help="1: a recorder must have found the blocks first."
 )
+STATE_RATE = click.option("--state-rate", type=STATES_PER_SECOND, help="Live states a second, instead of P-MACH-00070.")
 
 
 def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter) -> Callable[[], None]:
@@ -28,19 +30,25 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @MACHINE
     @NAME
     @RECORDERS
-    def command(machine: str, name: str, recorders: int, **options: Any) -> None:
+    @STATE_RATE
+    def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
-            return node_class(read_machine(machine), name, recorders=recorders, **options)
+            return node_class(read_machine(machine), name, **options)
 
-        sys.exit(process.run_node(make))
+        sys.exit(process.run_node(make, name=name))
 
     command.params.extend(more)
     return lambda: call(command)
 
 
 def call(command: click.Command) -> None:
-    """Runs a node's command with the process arguments less those for ROS."""
-    command.main(args=remove_ros_args(sys.argv)[1:])
+    """Runs a node's command with the process arguments; those for ROS are its context's object."""
+    try:
+        own, ros = split(sys.argv[1:])
+    except CncError as error:
+        print(error, file=sys.stderr)
+        sys.exit(process.WRONG_INPUT)
+    command.main(args=own, obj=ros)
 
 
 def require_unit(machine: MachineParameters, name: str, kinds: Iterable[str]) -> None:

@@ -22,6 +22,7 @@ POLL = 0.02
 START_DELAY = 0.1
 """Seconds between the last ready node and the first tick: writers and readers find each other in both directions."""
 SECOND_CLOCK = 26109
+SECOND_NODE = 26140
 FAREWELL = 0.3
 """Seconds between the last tick and the end of the clock, so that the last messages arrive."""
 
@@ -34,6 +35,8 @@ class ClockNode(Node):
     Starts when every expected node has said that it is ready; ends when the PLC ends the run or after `duration`.
     A node that is silent for the watchdog time no longer holds up a free run. While a free run waits, /heartbeat says
     that the clock lives.
+    The stamp of a cycle is the time at which it counts: that at which the first tick is due, and a cycle time for each
+    cycle since. In free run too, so that stamps run ahead of the wall clock there, as far as the run is faster.
     """
 
     def __init__(
@@ -103,13 +106,23 @@ class ClockNode(Node):
     def _start_when_ready(self) -> None:
         if not self._expected <= self._ready:
             return
-        if self.count_publishers(TICK) > 1:
+        if self.count_publishers(self._publisher.topic_name) > 1:
             raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
+        self._require_one_node_each()
         if self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR}):
             if not self._free_run:
                 process.take_priority()
-            self._start_ns = time.time_ns()
+            self._start_ns = time.time_ns() + round(START_DELAY * 1e9)
             self._started_at = time.monotonic() + START_DELAY
+
+    def _require_one_node_each(self) -> None:
+        """Raises CncError 26140 when two nodes have a unit: on two computers no claim (claim.py) keeps them apart."""
+        for unit in sorted(self._units):
+            writers = self.get_publishers_info_by_topic(self.resolve_topic_name(block_topic(unit)))
+            if len(writers) > 1:
+                nodes = " and ".join(sorted(f"{w.node_namespace.rstrip('/')}/{w.node_name}" for w in writers))
+                reason = f"{len(writers)} nodes have the unit '{unit}' ({nodes})"
+                raise CncError(SECOND_NODE, f"{reason}; the clock ends, nothing was started. End all but one of them")
 
     def _tick(self, scheduled_ns: int) -> None:
         if self._cycles is not None and self._first_cycle >= self._cycles:
@@ -184,6 +197,7 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
 
     status = process.run_node(
         make,
+        name=CLOCK,
         done=lambda node: node.done,
         wait=lambda node: node.wait_time(),
         after=lambda node: node.advance(),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import time
 from collections.abc import Callable
+from typing import Any
 
 from rclpy.node import Node
 
@@ -26,20 +28,27 @@ UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 
 
 def run_composed(
-    machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]
+    machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
-    """Runs the job in this process; `show` is called about 20 times a second. Returns what went wrong besides."""
+    """Runs the job in this process; `show` is called about 20 times a second; `watched`: somebody looks at units.
+
+    Returns what went wrong besides.
+    """
     with only_run(job):
-        return _run(machine, job, show)
+        return _run(machine, job, show, watched)
 
 
-def _run(machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None]) -> tuple[RunMonitor, list[str]]:
+def _run(
+    machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None], watched: bool = False
+) -> tuple[RunMonitor, list[str]]:
     monitor = RunMonitor(machine)
+    if watched or job.stay:
+        monitor.watch_units()
     recorders = 1 if job.record else 0
     clock = ClockNode(
         machine, wait_for=observers_of(job), free_run=job.free_run, cycles=cycles_of(machine, job.duration)
     )
-    nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders), clock]
+    nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders, state_rate=job.state_rate), clock]
     recorder = None
     if job.record:
         machine_yaml = read_file("machine file", job.machine)
@@ -57,36 +66,42 @@ def _run(machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None
     def done() -> bool:
         return clock.done and (recorder is None or recorder.settled)
 
+    def note_ending() -> None:
+        name = signal.Signals(end.number).name
+        if not (job.stay and monitor.note_ending(name)):
+            failures.append(end.text("everything was stopped on its ramps"))
+
     end = EndRequest()
-    failures = []
+    failures: list[str] = []
     try:
-        process.spin(nodes, done=lambda: done() or stopped(end, nodes), wait=clock.wait_time, after=after)
+        process.spin(
+            nodes, done=lambda: done() or stopped(end, nodes, told=note_ending), wait=clock.wait_time, after=after
+        )
     except CncError as error:
         failures.append(f"{error}; the run ends")
     end.restore()
-    if end.given:
-        failures.append(end.text("everything was stopped on its ramps"))
     return monitor, failures
 
 
-def stopped(end: EndRequest, nodes: list[Node]) -> bool:
-    """After an interrupt: everything is stopped on its ramps first, at most for STOP_TIMEOUT."""
+def stopped(end: EndRequest, nodes: list[Node], *, told: Callable[[], None]) -> bool:
+    """After an interrupt, which is `told` once: everything is stopped on its ramps, at most for STOP_TIMEOUT."""
     if not end.given:
         return False
     if end.deadline == 0.0:
+        told()
         for node in nodes:
             if isinstance(node, PlcBridgeNode):
                 node.stop_all()
     return end.over(STOP_TIMEOUT)
 
 
-def unit_nodes(machine: MachineParameters, job: Job, *, recorders: int) -> list[Node]:
+def unit_nodes(machine: MachineParameters, job: Job, **options: Any) -> list[Node]:
     nodes: list[Node] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
             entries = read_job(machine, program=job.program, scenario=job.scenario)
-            idle_ends = job.duration is None
-            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, recorders=recorders))
+            idle_ends = job.duration is None and not job.stay
+            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **options))
         else:
-            nodes.append(UNIT_NODES[kind](machine, name, recorders=recorders))
+            nodes.append(UNIT_NODES[kind](machine, name, **options))
     return nodes

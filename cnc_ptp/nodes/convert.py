@@ -18,6 +18,7 @@ from cnc_ptp.machine.blocks import (
     CommandRecord,
     CycleTick,
     Event,
+    EventValue,
     HandshakeRequest,
     PlcBlock,
     SpindleBlock,
@@ -82,7 +83,18 @@ def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
 
 
 def event_to_message(event: Event, stamp: Time) -> msg.Event:
-    return _flat(event, msg.Event, stamp)
+    values = [msg.EventValue(name=name, value=value, unit=unit) for name, value, unit in event.values]
+    message = msg.Event(
+        cycle=event.cycle,
+        source=event.source,
+        severity=event.severity,
+        error_id=event.error_id,
+        text=event.text,
+        line=event.line,
+        values=values,
+    )
+    message.header.stamp = stamp
+    return message
 
 
 def message_to_tick(message: msg.CycleTick) -> CycleTick:
@@ -94,7 +106,8 @@ def message_to_record(message: msg.CommandRecord) -> CommandRecord:
 
 
 def message_to_event(message: msg.Event) -> Event:
-    return Event(**{field.name: getattr(message, field.name) for field in fields(Event)})
+    values = [EventValue(value.name, value.value, value.unit) for value in message.values]
+    return Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
 
 
 def request_to_message(request: HandshakeRequest, stamp: Time) -> msg.HandshakeRequest:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
+
+from cnc_ptp import msg
 
 STEP_US = 100
 
@@ -19,13 +20,18 @@ class Lateness:
         self.counts[max(0, lateness_us) // STEP_US] += 1
         self.largest_us = max(self.largest_us, lateness_us)
 
-    def merge(self, text: str, largest_us: int) -> None:
-        """Adds a distribution that `to_text` has written."""
-        self.counts.update({int(step): count for step, count in json.loads(text).items()})
-        self.largest_us = max(self.largest_us, largest_us)
+    def merge(self, message: msg.LatenessHistogram) -> None:
+        """Adds the distribution that a node has published."""
+        self.counts.update(dict(zip(message.step, message.blocks, strict=True)))
+        self.largest_us = max(self.largest_us, message.largest_us)
 
-    def to_text(self) -> str:
-        return json.dumps(self.counts)
+    def message(self, source: str) -> msg.LatenessHistogram:
+        """Without stamp."""
+        steps = sorted(self.counts)
+        blocks = [self.counts[step] for step in steps]
+        return msg.LatenessHistogram(
+            source=source, step_us=STEP_US, step=steps, blocks=blocks, largest_us=self.largest_us
+        )
 
     def percentile_us(self, percent: float) -> int:
         """Smallest bound (upper end of its step) that `percent` of the blocks keep; 0 without blocks."""

@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
+from cnc_ptp.machine.blocks import Severity, command_note, error_note, event_note, keep_note
 from cnc_ptp.machine.program_report import ProgramReport
-from cnc_ptp.machine.wiring import PLC
+from cnc_ptp.machine.unit_view import UnitView
+from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.topics import BLOCKS, COMMAND, DIAGNOSTICS, EVENT, EVENTS, MONITOR, PLC_INPUT, REPORT, block_topic
+from cnc_ptp.nodes.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.topics import (
+    BLOCKS,
+    COMMAND,
+    DIAGNOSTICS,
+    EVENT,
+    EVENTS,
+    LATENESS,
+    MONITOR,
+    PLC_INPUT,
+    REPORT,
+    block_topic,
+)
 from cnc_ptp.parameters import MachineParameters
 
 READY_PERIOD = 0.05
@@ -24,19 +36,16 @@ SUPERVISOR = "supervisor"
 
 @dataclass
 class Progress:
-    """Where the program of the first channel is."""
+    """How far the run is."""
 
-    line: int = 0
-    block_number: int = 0
-    blocks_done: int = 0
-    blocks_total: int = 0
-    feed_mm_per_min: float = 0.0
-    position: dict[str, float] = field(default_factory=dict)
     cycle: int = 0
 
 
 class RunMonitor(Node):
-    """Subscriptions: /<channel>/block, /plc/block, /events, /commands, /diagnostics."""
+    """Subscriptions: /<channel>/block, /plc/block, /events, /commands, /diagnostics, /lateness.
+
+    With `watch_units` the blocks of all units as well.
+    """
 
     def __init__(self, machine: MachineParameters) -> None:
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
@@ -44,22 +53,28 @@ class RunMonitor(Node):
         self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
         self.notes: list[str] = []
+        self.refused = 0
         self.run_done = False
+        self.ending = ""
+        """How a run that stays was ended, when everything stood."""
+        self._latest: LatestBlocks | None = None
+        self._machine = machine
         self._plc_block = 0
         self._plc_knows_failure = False
         self._last_fault = -1
         self.diagnostics: dict[str, dict[str, str]] = {}
+        self._histograms: dict[str, msg.LatenessHistogram] = {}
         self.standing: dict[str, bool] = {}
         self._needed = []
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
-        for number, (channel, program) in enumerate(self.programs.items()):
-            received = program.add if number else partial(self._on_first_channel, program)
-            self._need(msg.ChannelBlock, block_topic(channel), received)
+        for channel, program in self.programs.items():
+            self._need(msg.ChannelBlock, block_topic(channel), program.add)
         self._need(msg.PlcBlock, block_topic(PLC), self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
+        self.create_subscription(msg.LatenessHistogram, LATENESS, self._on_lateness, PLC_INPUT)
 
     @property
     def run_failed(self) -> bool:
@@ -75,34 +90,48 @@ class RunMonitor(Node):
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 
-    def watch_standstill(self, axes: list[str]) -> None:
-        """Follows from now on whether `axes` stand (`standing`)."""
-        for axis in axes:
-            self.standing[axis] = False
-            self.create_subscription(msg.AxisBlock, block_topic(axis), self._axis_callback(axis), BLOCKS)
+    def watch_standstill(self, units: list[str]) -> None:
+        """Follows from now on whether `units`, axes and spindles, stand (`standing`)."""
+        for unit in units:
+            self.standing[unit] = False
+            block_type = msg.AxisBlock if unit in self._machine.axes else msg.SpindleBlock
+            self.create_subscription(block_type, block_topic(unit), self._standstill_callback(unit), BLOCKS)
 
-    def _axis_callback(self, axis: str) -> Any:
-        def received(message: msg.AxisBlock) -> None:
-            self.standing[axis] = message.set_velocity[-1] == 0.0
+    def watch_units(self) -> None:
+        """Keeps from now on what people look at of all units."""
+        rotary = [name for name, axis in self._machine.axes.items() if axis.rotary]
+        self._latest = LatestBlocks(self, unit_kinds(self._machine), rotary=rotary)
+
+    def views(self) -> list[UnitView]:
+        """Newest of each unit, while they are watched."""
+        return [] if self._latest is None else self._latest.views()
+
+    def busy_units(self) -> list[str]:
+        """Units that move, turn or run a program."""
+        return [view.name for view in self.views() if view.busy]
+
+    def note_ending(self, signal_name: str) -> bool:
+        """A run that stays was told to end: no failure (True) if all units have said that they stand."""
+        views = self.views()
+        if len(views) < len(unit_kinds(self._machine)) - 1 or self.busy_units():
+            return False
+        self.ending = f"the machine was ended ({signal_name}) while all units stood"
+        return True
+
+    def _standstill_callback(self, unit: str) -> Any:
+        set_field = "set_velocity" if unit in self._machine.axes else "set_speed_rpm"
+
+        def received(message: Any) -> None:
+            self.standing[unit] = getattr(message, set_field)[-1] == 0.0
 
         return received
 
     def lateness(self) -> Lateness:
         """Over the blocks of all nodes."""
         total = Lateness()
-        for values in self.diagnostics.values():
-            total.merge(values["lateness_counts"], int(values["lateness_max_us"]))
+        for histogram in self._histograms.values():
+            total.merge(histogram)
         return total
-
-    def _on_first_channel(self, program: ProgramReport, message: msg.ChannelBlock) -> None:
-        program.add(message)
-        progress = self.progress
-        progress.line, progress.block_number = message.line[-1], message.block_number[-1]
-        progress.blocks_done, progress.blocks_total = message.blocks_done, message.blocks_total
-        progress.feed_mm_per_min = message.path_velocity[-1] * 60.0
-        last = range(message.count - 1, len(message.set_position), message.count)
-        progress.position = {axis: message.set_position[index] for axis, index in zip(message.axes, last, strict=True)}
-        progress.cycle = max(progress.cycle, message.first_cycle + message.count)
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)
@@ -111,13 +140,16 @@ class RunMonitor(Node):
 
     def _on_event(self, message: msg.Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
-            where = f" (cycle {message.cycle}, line {message.line})" if message.line else f" (cycle {message.cycle})"
-            self.errors.append(f"P-ERR-{message.error_id} {message.text}{where}")
+            self.errors.append(error_note(message.error_id, message.text, message.cycle, message.line))
             self._last_fault = max(self._last_fault, message.cycle)
         keep_note(self.notes, event_note(message.severity, message.error_id, message.text))
 
     def _on_command(self, message: msg.CommandRecord) -> None:
+        self.refused += not message.accepted
         keep_note(self.notes, command_note(message.accepted, message.error_id, message.message))
+
+    def _on_lateness(self, message: msg.LatenessHistogram) -> None:
+        self._histograms[message.source] = message
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

@@ -38,7 +38,7 @@ class ChannelNode(UnitNode):
         self._program_job = JobServer(
             self,
             action.RunProgram,
-            f"/{name}/run_program",
+            f"{name}/run_program",
             start=self._start_program,
             halt=Command(name, "reset", {}),
             feedback=program_feedback,

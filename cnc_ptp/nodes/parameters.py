@@ -14,8 +14,12 @@ from rcl_interfaces.msg import (
 )
 from rclpy.node import Node
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, ParameterSet, RosDescriptor, ros_descriptors
-from cnc_ptp.parameters.runtime_change import change_refusal
+from cnc_ptp.parameters.runtime_change import change_refusal, start_refusal
+from cnc_ptp.parameters.source import dotted
+from cnc_ptp.parameters.values import shown
+from cnc_ptp.ros_arguments import REFUSED
 
 TYPES = {
     "int": ParameterType.PARAMETER_INTEGER,
@@ -24,13 +28,50 @@ TYPES = {
     "string": ParameterType.PARAMETER_STRING,
     "strings": ParameterType.PARAMETER_STRING_ARRAY,
 }
+BARE_WORDS = "ROS takes y, n, yes, no, on, off without quotes for true and false"
 
 
 def declare_parameters(node: Node, machine: MachineParameters, name: str) -> None:
     """Declares the parameters of unit `name` as the machine file has them; `ros2 param describe` shows the rest."""
+    require_machine_values(node, machine.raw(name))
     entries = ros_descriptors(machine.raw(name))
     parameters: list[Any] = [(entry.ros_name, _value(entry), _descriptor(entry)) for entry in entries]
     node.declare_parameters("", parameters, ignore_override=True)
+
+
+def require_machine_values(node: Node, own: ParameterSet) -> None:
+    """Raises CncError 26130 when ROS arguments give the node of a unit another value than the machine file does.
+
+    All nodes of the machine, its recording and each replay have to know the same values.
+    """
+    for name, override in node._parameter_overrides.items():
+        value = _given(override)
+        reason = "" if node.has_parameter(name) else start_refusal(own, name, value)
+        if reason and isinstance(value, bool):
+            reason += f" ({BARE_WORDS})"
+        if reason:
+            raise _refused_value(node, name, override, reason)
+
+
+def require_known_parameters(node: Node) -> None:
+    """Raises CncError 26130 for parameters of the ROS arguments that the node does not have, and for simulated time."""
+    for name, override in node._parameter_overrides.items():
+        if not node.has_parameter(dotted(name)):
+            raise _refused_value(node, name, override, "the node has no such parameter")
+        if name == "use_sim_time" and override.value:
+            raise _refused_value(node, name, override, "the time of all nodes is that of their clock node")
+
+
+def _given(override: Any) -> Any:
+    """The value as our own reader would have it; ROS makes nothing of an empty list."""
+    value = override.value
+    return value if isinstance(value, bool | int | float | str) else tuple(value or ())
+
+
+def _refused_value(node: Node, name: str, override: Any, reason: str) -> CncError:
+    given = shown(_given(override))
+    text = f"{node.get_name()}: parameter {name} = {given} of the ROS arguments is refused: {reason}"
+    return CncError(REFUSED, f"{text}; the node does not start")
 
 
 def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersResult | None:

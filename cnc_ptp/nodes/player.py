@@ -9,12 +9,19 @@ from importlib import import_module
 from typing import Any
 
 import click
+import rclpy
+from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from cnc_ptp.nodes import arguments, process
-from cnc_ptp.nodes.topics import BLOCKS, COMMAND, EVENT, EVENTS
+from cnc_ptp.nodes.observed_topics import is_input
+from cnc_ptp.nodes.topics import published_topic
 from cnc_ptp.number_range import RATE
-from cnc_ptp.recording.reader import RawMessage, Recorded, iter_messages, read_recording
+from cnc_ptp.recording.qos import parse_profiles
+from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording
 
 DISCOVERY = 1.0
 """Seconds between the first publisher and the first message, so that subscribers find them."""
@@ -23,19 +30,32 @@ LARGEST_BATCH = 500
 
 
 class PlayerNode(Node):
-    """Publishes every topic of a recording with the bytes, and the quality of service, that it was recorded with."""
+    """Publishes every topic of a recording with the bytes, and the quality of service, that it was recorded with.
 
-    def __init__(self, path: str, *, rate: float) -> None:
+    Topics whose message type is not installed here are left out: `left_out`; unless `inputs`, those that the PLC writes
+    as well: `inputs_left_out`.
+    """
+
+    def __init__(self, path: str, *, rate: float, inputs: bool = False) -> None:
         """`rate`: 2.0 = twice as fast. Raises CncError 26001 to 26005 for a file that cannot be read."""
         super().__init__("player", enable_rosout=False)
-        recorded: Recorded = read_recording(path)
+        recorded = read_recording(path).topics
+        topics = {topic: info for topic, info in recorded.items() if inputs or not is_input(info.type_name)}
+        self.inputs_left_out = sorted(recorded.keys() - topics.keys())
+        classes = {topic: message_class(info.type_name) for topic, info in topics.items()}
+        self.left_out = sorted(topic for topic, of in classes.items() if of is None)
         self._publish_to = {
-            topic: self.create_publisher(message_class(info.type_name), topic, qos_of(topic)).publish
-            for topic, info in recorded.topics.items()
+            topic: self.create_publisher(of, published_topic(topic), qos_of(topics[topic])).publish
+            for topic, of in classes.items()
+            if of is not None
         }
-        self._messages: Iterator[RawMessage] = iter_messages(path)
+        played = [topics[topic] for topic in self._publish_to]
+        self.topics = len(played)
+        self.total = sum(info.count for info in played)
+        self._first_ns = min((info.first_ns for info in played), default=0)
+        self.seconds = (max((info.last_ns for info in played), default=0) - self._first_ns) * 1e-9
+        self._messages: Iterator[RawMessage] = iter_messages(path, topics=self._publish_to.keys())
         self._next: RawMessage | None = next(self._messages, None)
-        self._first_ns = self._next.log_time_ns if self._next else 0
         self._rate = rate
         self._begin = time.monotonic() + DISCOVERY
         self._end: float | None = None
@@ -44,6 +64,11 @@ class PlayerNode(Node):
     @property
     def done(self) -> bool:
         return self._end is not None and time.monotonic() > self._end
+
+    @property
+    def position(self) -> float:
+        """Seconds of the recording that are published."""
+        return self.seconds if self._next is None else (self._next.log_time_ns - self._first_ns) * 1e-9
 
     def wait_time(self) -> float:
         """Seconds until the next message is due, at most 0.1."""
@@ -69,31 +94,104 @@ class PlayerNode(Node):
 
 
 def message_class(type_name: str) -> Any:
-    """The Python class of a message type like `cnc_ptp/msg/AxisState`."""
+    """The Python class of a message type like `cnc_ptp/msg/AxisState`, None where it is not installed."""
     package, _, name = type_name.split("/")
-    return getattr(import_module(f"{package}.msg"), name)
+    try:
+        return getattr(import_module(f"{package}.msg"), name, None)
+    except ImportError:
+        return None
 
 
-def qos_of(topic: str) -> Any:
-    return EVENTS if topic in (EVENT, COMMAND) else BLOCKS
-
-
-def publish_recording(path: str, *, rate: float) -> int:
-    """Plays a recording to its end; returns the exit status."""
-    return process.run_node(
-        lambda: PlayerNode(path, rate=rate),
-        done=lambda node: node.done,
-        wait=lambda node: node.wait_time(),
-        after=lambda node: node.advance(),
+def qos_of(info: TopicInfo) -> QoSProfile:
+    """What the recording says of the publisher of a topic."""
+    offered = parse_profiles(info.qos, info.type_name)
+    return QoSProfile(
+        depth=offered.depth,
+        reliability=QoSReliabilityPolicy[offered.reliability.upper()],
+        durability=QoSDurabilityPolicy[offered.durability.upper()],
+        lifespan=Duration(seconds=offered.lifespan),
     )
+
+
+class _Show:
+    """Says what is published and where, how far it is (on a terminal), and at the end what was published."""
+
+    def __init__(self, path: str, rate: float) -> None:
+        self._path = path
+        self._rate = rate
+        self._console = Console(highlight=False, soft_wrap=True)
+        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[where]}"))
+        self._bar = Progress(*columns, TimeRemainingColumn(), console=Console(stderr=True))
+        self._node: PlayerNode | None = None
+
+    def begin(self, node: PlayerNode) -> PlayerNode:
+        self._node = node
+        for topic in node.left_out:
+            text = f"note: {topic} is left out, its message type is not installed"
+            self._console.print(text, style="yellow", markup=False)
+        self._console.print(self._first_line(node), markup=False)
+        if self._bar.console.is_terminal:
+            self._task = self._bar.add_task("publishing", total=node.seconds, where="")
+            self._bar.start()
+        return node
+
+    def advance(self, node: PlayerNode) -> None:
+        node.advance()
+        if self._bar.live.is_started:
+            where = f"{node.position:.1f} of {node.seconds:.1f} s"
+            self._bar.update(self._task, completed=node.position, where=where)
+
+    def end(self) -> None:
+        self._bar.stop()
+        node = self._node
+        if node is not None:
+            at = "" if node.published == node.total else f", up to {node.position:.1f} s of {node.seconds:.1f} s"
+            text = f"published {node.published} of {node.total} messages on {node.topics} topics{at}"
+            self._console.print(text, markup=False)
+
+    def _first_line(self, node: PlayerNode) -> str:
+        domain, namespace = rclpy.get_default_context().get_domain_id(), node.get_namespace()
+        where = f"ROS domain {domain}" + (f", namespace {namespace}" if namespace != "/" else "")
+        return (
+            f"publishing {self._path} on {where}: {node.topics} topics, {node.total} messages, {node.seconds:.1f} s at "
+            f"rate {self._rate:g}, so {node.seconds / self._rate:.1f} s{_left_out(node)}; Ctrl-C ends it"
+        )
+
+
+def _left_out(node: PlayerNode) -> str:
+    topics = len(node.inputs_left_out)
+    return f"; {topics} topics of PLC inputs are left out (--inputs publishes them)" if topics else ""
+
+
+def publish_recording(path: str, *, rate: float, inputs: bool = False) -> int:
+    """Plays a recording to its end; returns the exit status.
+
+    The domain is held as for a run: the nodes of one would take the blocks of the recording for theirs.
+    """
+    show = _Show(path, rate)
+
+    def make() -> PlayerNode:
+        claims.append(process.claim_domain())
+        return show.begin(PlayerNode(path, rate=rate, inputs=inputs))
+
+    claims: list[Any] = []
+    try:
+        return process.run_node(
+            make, done=lambda node: node.done, wait=lambda node: node.wait_time(), after=lambda node: show.advance(node)
+        )
+    finally:
+        show.end()
+        for claim in claims:
+            claim.close()
 
 
 @click.command()
 @click.argument("recording", type=click.Path(dir_okay=False))
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="2 = twice as fast.")
-def command(recording: str, rate: float) -> None:
+@click.option("--inputs", is_flag=True, help="PLC inputs too: a machine on this ROS domain obeys them.")
+def command(recording: str, rate: float, inputs: bool) -> None:
     """Publishes RECORDING again."""
-    sys.exit(publish_recording(recording, rate=rate))
+    sys.exit(publish_recording(recording, rate=rate, inputs=inputs))
 
 
 def main() -> None:

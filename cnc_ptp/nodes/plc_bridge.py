@@ -12,32 +12,41 @@ from typing import Any
 import click
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Command, Event, Severity
+from cnc_ptp.axis.jog_commands import JOG
+from cnc_ptp.machine.blocks import Block, Command, Severity
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import PLC, build_unit
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import arguments, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
+from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
+from cnc_ptp.nodes.jog_topics import JogTopics
+from cnc_ptp.nodes.joint_states import JointStates
 from cnc_ptp.nodes.silence import SilentTopics
-from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT
+from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT, jog_topic
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118
 OVERRIDE_STALE = 26119
+JOG_SILENT = 26134
+SECOND_JOG = 26144
 FULL_OVERRIDE = 100.0
 
 
 class PlcBridgeNode(UnitNode):
     """UnitNode of the PLC.
 
+    Publishes besides: /joint_states (sensor_msgs/JointState) of all axes and spindles, while somebody subscribes.
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
-    /<axis|spindle>/enable (Switch), /<axis>/external_setpoint (ExternalSetpoint), /plc/life_sign (LifeSign). Of
-    overrides and switches a value counts when it changes; the last one holds when messages stop; `valid` = false means
-    100 %, no feed hold, enabled. An override of a spindle that came in a rhythm and falls silent is an event. A life
-    sign that was seen once and then stays away for P-MACH life_sign_timeout_ms sets feed hold on all channels.
+    /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
+    /<axis>/jog (Jog), /plc/life_sign (LifeSign). A jog ends when its messages stay away. Of overrides, switches and
+    releases a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
+    hold, enabled, released, and nothing on a topic that was never valid. An override of a spindle that came in a rhythm
+    and falls silent is an event. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms
+    sets feed hold on all channels.
     """
 
     def __init__(
@@ -47,6 +56,7 @@ class PlcBridgeNode(UnitNode):
         super().__init__(machine, build_unit(machine, PLC, scenario=entries, end_when_idle=end_when_idle), **options)
         self._sequence: dict[str, int] = {}
         self._last: dict[str, str] = {}
+        self._served: set[str] = set()
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
         self._life_sign_counter: int | None = None
         self._life_sign_seen = 0.0
@@ -56,7 +66,6 @@ class PlcBridgeNode(UnitNode):
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
         self._spindles = list(machine.spindles)
         self._overrides = SilentTopics(self._life_sign_timeout)
-        self.create_timer(self._life_sign_timeout / 4.0, self._watch_overrides)
         for unit in (*machine.channels, *machine.axes, *machine.spindles):
             self._listen(msg.Override, unit, "override", self._override)
         for unit in machine.channels:
@@ -64,14 +73,20 @@ class PlcBridgeNode(UnitNode):
         for unit in (*machine.axes, *machine.spindles):
             self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
         for unit in machine.axes:
+            self._listen(msg.FeedRelease, unit, "feed_release", self._feed_release)
             received = partial(self._on_external_setpoint, unit)
-            self.create_subscription(msg.ExternalSetpoint, f"/{unit}/external_setpoint", received, BLOCKS)
+            self.create_subscription(msg.ExternalSetpoint, f"{unit}/external_setpoint", received, BLOCKS)
             self._listen(msg.CyclicCouplingFactor, unit, "coupling_factor", self._coupling_factor)
+        self._jogs = JogTopics()
+        for unit in machine.axes:
+            self._listen_to_jog(unit)
+        self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
-        self.create_timer(self._life_sign_timeout / 4.0, self._watch_life_sign)
         self._factors: dict[str, float] = {}
-        self.create_timer(self._life_sign_timeout / 4.0, self._watch_factors)
+        self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
         self._answers = CouplingServices(self, list(machine.axes))
+        self._joints = JointStates(self, machine)
+        self._joints_due = 0
 
     def _listen(
         self, message_type: Any, unit: str, name: str, convert_message: Callable[[str, Any], Command | None]
@@ -82,6 +97,10 @@ class PlcBridgeNode(UnitNode):
             if not is_newer(message.sequence, self._sequence.get(topic, 0)):
                 return
             self._sequence[topic] = message.sequence
+            if message.valid:
+                self._served.add(topic)
+            elif topic not in self._served:
+                return  # an empty message of somebody who has never served the topic releases nothing
             command = convert_message(unit, message)
             if command is None:
                 return
@@ -89,7 +108,7 @@ class PlcBridgeNode(UnitNode):
                 self._last[topic] = command.arguments_json
                 self.input(command)
 
-        self.create_subscription(message_type, topic, received, PLC_INPUT)
+        self.create_subscription(message_type, f"{unit}/{name}", received, PLC_INPUT)
 
     def _override(self, unit: str, message: msg.Override) -> Command:
         if unit in self._spindles:
@@ -99,7 +118,12 @@ class PlcBridgeNode(UnitNode):
 
     @staticmethod
     def _switch(unit: str, message: msg.Switch, *, command: str, idle: bool) -> Command:
-        return Command(unit, command, {"on": message.on if message.valid else idle})
+        return Command(unit, command, {"enabled": message.enabled if message.valid else idle})
+
+    @staticmethod
+    def _feed_release(unit: str, message: msg.FeedRelease) -> Command:
+        released = {"forward": message.forward or not message.valid, "backward": message.backward or not message.valid}
+        return Command(unit, "set_feed_release", released)
 
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
         """Not valid, no number, or no slave: nothing changes."""
@@ -117,6 +141,12 @@ class PlcBridgeNode(UnitNode):
 
     def _is_coupled(self, axis: str) -> bool:
         return isinstance(self.unit, PlcUnit) and self.unit.is_coupled(axis)
+
+    def _watch_topics(self) -> None:
+        """One timer for all of them: the executor warns of many."""
+        self._watch_life_sign()
+        self._watch_overrides()
+        self._watch_factors()
 
     def _watch_factors(self) -> None:
         """A factor whose topic falls silent freezes: the last one holds, and people are told."""
@@ -142,9 +172,51 @@ class PlcBridgeNode(UnitNode):
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
         self.unit.setpoints.arrive(axis, row)
 
+    def _listen_to_jog(self, axis: str) -> None:
+        topic = jog_topic(axis)
+        told: set[str] = set()
+
+        def received(message: msg.Jog) -> None:
+            if self._jogs.is_foreign(axis, message.header.frame_id, time.monotonic()):
+                if message.header.frame_id not in told:
+                    told.add(message.header.frame_id)
+                    text = f"plc: /{topic} has a second client '{message.header.frame_id}'; it is ignored while"
+                    self._warn(SECOND_JOG, f"{text} the first one jogs {axis}")
+                return
+            if not is_newer(message.sequence, self._sequence.get(topic, 0)):
+                return
+            self._sequence[topic] = message.sequence
+            velocity = self._jogs.heard(axis, message.velocity if message.valid else 0.0, time.monotonic())
+            if velocity is not None:
+                self.input(Command(axis, JOG, {"velocity": velocity}))
+
+        self.create_subscription(msg.Jog, topic, received, PLC_INPUT)
+
+    def _watch_jogs(self) -> None:
+        """Nothing moves without a living hand on it."""
+        for axis in self._jogs.fallen_silent(time.monotonic()):
+            self.input(Command(axis, JOG, {"velocity": 0.0}))
+            silence = f"{JOG_PATIENCE * 1000.0:.0f} ms"
+            self._warn(JOG_SILENT, f"plc: no message on /{jog_topic(axis)} for {silence}; the jog of {axis} ends")
+
     def input(self, command: Command) -> None:
         if isinstance(self.unit, PlcUnit):
             self.unit.input(command)
+
+    def run_ended(self) -> None:
+        self._answers.end()
+
+    def destroy_node(self) -> None:
+        self._answers.end()
+        super().destroy_node()
+
+    def after_block(self, block: Block) -> None:
+        """Joint states of the cycle before the block: the last one that axes and spindles have reported."""
+        if not self._state_period or block.first_cycle < max(self._joints_due, 1) or not isinstance(self.unit, PlcUnit):
+            return
+        self._joints_due = block.first_cycle + self._state_period
+        if self._joints.wanted:
+            self._joints.publish(self.unit.reported, self.stamp(block.first_cycle - 1))
 
     def stop_all(self) -> None:
         """Controlled stop of everything; the run ends when all stands, with or without a duration."""
@@ -163,7 +235,8 @@ class PlcBridgeNode(UnitNode):
             return
         self._life_sign_lost = True
         for channel in self._channels:
-            hold = Command(channel, "feed_hold", {"on": True})
+            self._served.add(f"/{channel}/feed_hold")
+            hold = Command(channel, "feed_hold", {"enabled": True})
             self._last[f"/{channel}/feed_hold"] = hold.arguments_json  # so that the PLC's next `off` counts as a change
             self.input(hold)
         silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
@@ -172,9 +245,7 @@ class PlcBridgeNode(UnitNode):
         )
 
     def _warn(self, error_id: int, text: str) -> None:
-        cycle = self._gate.next_cycle
-        event = Event(cycle, PLC, Severity.WARNING, error_id, text)
-        self._event_publisher.publish(convert.event_to_message(event, self.stamp(cycle)))
+        self.tell(Severity.WARNING, error_id, text)
 
 
 def is_newer(sequence: int, last: int) -> bool:
@@ -196,7 +267,10 @@ def without_text(entry: Entry) -> Entry:
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 @click.option("--stay", is_flag=True, help="Go on when everything stands, instead of ending the run.")
 @arguments.RECORDERS
-def command(machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int) -> None:
+@arguments.STATE_RATE
+def command(
+    machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int, state_rate: float | None
+) -> None:
     """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
 
     def make() -> PlcBridgeNode:
@@ -206,9 +280,10 @@ def command(machine: str, program: str | None, scenario: str | None, stay: bool,
             scenario=read_job(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
             recorders=recorders,
+            state_rate=state_rate,
         )
 
-    sys.exit(process.run_node(make))
+    sys.exit(process.run_node(make, name=PLC))
 
 
 def main() -> None:

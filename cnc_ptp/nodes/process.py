@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import socket
 import sys
@@ -19,6 +20,8 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.nodes.parameters import BARE_WORDS, require_known_parameters
+from cnc_ptp.ros_arguments import ros_arguments
 
 FAILED = 1
 WRONG_INPUT = 2
@@ -42,6 +45,12 @@ RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 PROFILE = "FASTDDS_DEFAULT_PROFILES_FILE"
 OWN_SETTINGS = (PROFILE, "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS", "ROS_LOCALHOST_ONLY")
 """Who sets one of these has decided how messages travel."""
+ROS_HINTS = {
+    "Value type 'bool'": BARE_WORDS,
+    "Expecting token or wildcard": "a name with a number in it, like getriebe.0.kv, goes into a --params-file only",
+    "lexeme type 19, got 18": "a namespace begins with /",
+}
+"""Part of what rcl says -> what it means."""
 
 
 def set_environment(environment: MutableMapping[str, str], rmw: str) -> None:
@@ -66,13 +75,17 @@ def take_priority() -> None:
 
 
 def initialise() -> None:
-    """Starts ROS; signals stay with the caller. Raises CncError 26108 when it does not start."""
+    """Starts ROS with the ROS arguments of the command; signals stay with the caller.
+
+    Raises CncError 26108 when it does not start.
+    """
     set_environment(os.environ, get_rmw_implementation_identifier())
     try:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(args=ros_arguments().words, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         reason, _, _place_in_its_source = str(error).partition(", at /")
-        raise CncError(NO_ROS, f"ROS does not start: {reason}; nothing was started") from None
+        hints = "".join(f" ({text})" for part, text in ROS_HINTS.items() if part in reason)
+        raise CncError(NO_ROS, f"ROS does not start: {reason}{hints}; nothing was started") from None
     domain = rclpy.get_default_context().get_domain_id()
     if domain > HIGHEST_DOMAIN:
         rclpy.try_shutdown()
@@ -81,30 +94,34 @@ def initialise() -> None:
 
 
 def claim_domain() -> socket.socket:
-    """Holds the ROS domain of this machine for one run, until the process ends. Raises CncError 26107 when it is taken.
+    """Holds the ROS domain of this machine, or one namespace of it, for one run, until the process ends.
 
-    The nodes of two runs on one domain would hear each other.
+    The nodes of two runs there would hear each other. Raises CncError 26107 when it is taken.
     """
     domain = rclpy.get_default_context().get_domain_id()
+    namespace = ros_arguments().namespace
+    place = hashlib.sha256(namespace.encode()).hexdigest() if namespace else ""  # names of sockets are short
     claim = socket.socket(socket.AF_UNIX)
     try:
-        claim.bind(f"\0cnc_ptp/domain/{domain}")
+        claim.bind(f"\0cnc_ptp/domain/{domain}{place}")
     except OSError:
         claim.close()
         raise CncError(
             DOMAIN_TAKEN,
-            f"a run is under way on ROS domain {domain} of this machine; nothing was started. "
-            "Wait for its end, or set ROS_DOMAIN_ID to another number",
+            f"a run is under way on ROS domain {domain}{f' in namespace {namespace}' if namespace else ''} "
+            "of this machine; nothing was started. "
+            "Wait for its end, choose another --namespace, or set ROS_DOMAIN_ID to another number",
         ) from None
     return claim
 
 
 def is_read(node: Node, publisher: Publisher[Any], names: Set[str]) -> bool:
-    """True when `publisher` of `node` has found readers of all nodes `names`.
+    """True when `publisher` of `node` has found readers of all nodes `names` of its namespace.
 
     Their number alone would take a foreign reader (ros2 topic echo) for one of ours.
     """
-    readers = {reader.node_name for reader in node.get_subscriptions_info_by_topic(publisher.topic_name)}
+    found = node.get_subscriptions_info_by_topic(publisher.topic_name)
+    readers = {reader.node_name for reader in found if reader.node_namespace == node.get_namespace()}
     return names <= readers and publisher.get_subscription_count() >= len(names)
 
 
@@ -140,6 +157,7 @@ def spin(
 def run_node(
     make: Callable[[], Any],
     *,
+    name: str | None = None,
     done: Callable[[Any], bool] = lambda node: False,
     settled: Callable[[Any], bool] = lambda node: True,
     wait: Callable[[Any], float] = lambda node: SPIN_TIMEOUT,
@@ -147,12 +165,16 @@ def run_node(
 ) -> int:
     """Makes a node and spins it until `done(node)`, or until a signal came and the node has `settled`.
 
+    `name`: what the node must be called, because others know it by that; None = as the user likes.
     Returns the exit status: 0 done, 1 an error during the work, 2 refused start, 128 + n ended by signal n.
     """
     end = EndRequest()
     try:
+        if name is not None:
+            ros_arguments().require_name(name)
         initialise()
         node = make()
+        require_known_parameters(node)
     except CncError as error:
         print(error, file=sys.stderr)
         rclpy.try_shutdown()

@@ -1,4 +1,4 @@
-"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph."""
+"""`recorder MACHINE.yaml OUT.mcap`: records every block, event and command of the graph, and what the PLC writes."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from cnc_ptp.machine.blocks import Event, PlcBlock, Severity
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
     BLOCKS,
@@ -28,11 +30,13 @@ from cnc_ptp.nodes.topics import (
     DIAGNOSTICS,
     EVENT,
     EVENTS,
+    LATENESS,
     PLC_INPUT,
     RECORDER,
     REPORT,
     TICK,
     block_topic,
+    recorded_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
@@ -48,7 +52,9 @@ FLUSH_PERIOD = 0.25
 class RecorderNode(Node):
     """Writes the recording of a run.
 
-    Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics.
+    Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
+    and what observed_topics names: these come as raw bytes and are stamped with the time of their arrival, in free run
+    with that of the last tick.
     Publishes /clock/report: ready, and in free run every tick that is recorded completely; /events: blocks that did not
     arrive. A block that comes twice is recorded once.
     """
@@ -60,6 +66,7 @@ class RecorderNode(Node):
         self._path = path
         self._cycle_ns = machine.cycle_time_us * 1000
         self._free_run = False
+        self._tick_ns = 0
         self._recording: Recording | None = None
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
@@ -67,7 +74,7 @@ class RecorderNode(Node):
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._heard = time.monotonic()
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
-        self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
+        self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
         """Why nothing more can be written."""
         self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)]
@@ -77,7 +84,12 @@ class RecorderNode(Node):
             self._needed.append(self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
-        self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._guarded(self._on_diagnostics), PLC_INPUT, raw=True)
+        for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
+            received = self._guarded(partial(self._on_stamped, topic, message_type))
+            self.create_subscription(message_type, topic, received, PLC_INPUT, raw=True)
+        for topic, message_type, quality in observed_topics(machine):
+            received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
+            self.create_subscription(message_type, topic, received, quality, raw=True)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         self.create_timer(FLUSH_PERIOD, self._guarded(self._flush))
 
@@ -114,8 +126,9 @@ class RecorderNode(Node):
 
     def _on_tick(self, message: msg.CycleTick) -> None:
         self._heard = time.monotonic()
+        self._tick_ns = convert.nanoseconds(message.header.stamp)
         if self._recording is None:
-            start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+            start_ns = self._tick_ns - message.first_cycle * self._cycle_ns
             self._free_run = not message.scheduled_monotonic_ns
             if not self._free_run:
                 process.take_priority()
@@ -137,7 +150,7 @@ class RecorderNode(Node):
         if not self._is_new(unit, message):
             return
         stamp_ns = convert.nanoseconds(message.header.stamp)
-        recording.raw(block_topic(unit), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
+        recording.raw(recorded_topic(block_topic(unit)), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
         block = convert.message_to_block(message)
         if not isinstance(block, PlcBlock):
             recording.states(unit, block)
@@ -168,12 +181,22 @@ class RecorderNode(Node):
     def _on_command(self, message: msg.CommandRecord) -> None:
         self._single(lambda: self._recorded.command(convert.message_to_record(message)))
 
-    def _on_diagnostics(self, data: bytes) -> None:
-        stamp_ns = convert.nanoseconds(deserialize_message(data, DiagnosticArray).header.stamp)
-        self._single(lambda: self._recorded.raw(DIAGNOSTICS, "diagnostic_msgs/msg/DiagnosticArray", data, stamp_ns))
+    def _on_stamped(self, topic: str, message_type: Any, data: bytes) -> None:
+        """A message with a header that is recorded as it came."""
+        stamp_ns = convert.nanoseconds(deserialize_message(data, message_type).header.stamp)
+        self._single(lambda: self._recorded.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
+
+    def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
+        """A PLC may go on writing when the run is over, so this does not count as hearing something."""
+        stamp_ns = self._tick_ns if self._free_run else time.time_ns()
+        self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
 
     def _single(self, record: Any) -> None:
         self._heard = time.monotonic()
+        self._keep(record)
+
+    def _keep(self, record: Any) -> None:
+        """Records it, or keeps it until the first tick has come."""
         if self._recording is None:
             self._early.append(record)
         else:
@@ -213,7 +236,7 @@ def command(machine: str, output: str) -> None:
     def make() -> RecorderNode:
         return RecorderNode(read_machine(machine), output, read_file("machine file", machine))
 
-    sys.exit(process.run_node(make, settled=lambda node: node.settled))
+    sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 
 
 def main() -> None:

@@ -7,14 +7,51 @@ from typing import Any
 
 from cnc_ptp.machine.commands import Argument, Arguments
 
+NOT_GIVEN = 1e300
+"""Default of the fields that would move something as 0: an empty request is refused, or means none."""
+
 
 def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
-    """The fields of a request without those that are left out: NaN, no text, and 0 where only more makes sense."""
+    """The fields of a request without those that are left out: NaN, no text, and 0 where only more makes sense.
+
+    A field `has_<name>` says whether `<name>` counts.
+    """
     given = {name: getattr(request, name) for name in known if hasattr(request, name)}
-    return {name: value for name, value in given.items() if not _is_left_out(known[name], value)}
+    return {
+        name: value
+        for name, value in given.items()
+        if getattr(request, f"has_{name}", True) and not _is_left_out(known[name], value)
+    }
+
+
+NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
+"""Commands that would release something when nothing is given, and what is meant for that."""
+
+
+def objection(command: str, known: Arguments, request: Any) -> str:
+    """Why a request cannot be meant so; empty if nothing speaks against it."""
+    if command in NEEDS_SOMETHING and not given_arguments(known, request):
+        return f"nothing is given; {NEEDS_SOMETHING[command]}"
+    return contradiction(known, request)
+
+
+def contradiction(known: Arguments, request: Any) -> str:
+    """What a request says of one of its fields `has_<name>` and denies by <name>; empty if nothing."""
+    for name in known:
+        says = getattr(request, f"has_{name}", None)
+        if says is None:
+            continue
+        value = getattr(request, name)
+        if says and _is_left_out(known[name], value):
+            return f"has_{name} is true and {name} is not given"
+        if not says and not _is_left_out(known[name], value):
+            return f"{name} = {value} is given and has_{name} is false"
+    return ""
 
 
 def _is_left_out(argument: Argument, value: Any) -> bool:
+    if value == NOT_GIVEN:
+        return True
     if argument.required:
         return False
     if isinstance(value, str):

@@ -30,7 +30,7 @@ class SpindleNode(UnitNode):
             JobServer(
                 self,
                 action.OrientSpindle,
-                f"/{name}/position",
+                f"{name}/position",
                 start=lambda goal: self._begin("orient", self.arguments("orient", goal)),
                 halt=stop,
                 feedback=positioning_feedback,
@@ -39,7 +39,7 @@ class SpindleNode(UnitNode):
             JobServer(
                 self,
                 action.Home,
-                f"/{name}/homing",
+                f"{name}/homing",
                 start=lambda goal: self._begin("home", {}),
                 halt=stop,
                 feedback=homing_feedback,

@@ -7,22 +7,27 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
 import rclpy
 
-from cnc_ptp import msg, srv
+from cnc_ptp import srv
+from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
+from cnc_ptp.nodes.claim import require_free
+from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
-from cnc_ptp.nodes.topics import EVENT, EVENTS, MONITOR, RECORDER
+from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.recording.closing import close_cut
+from cnc_ptp.ros_arguments import ros_arguments
 
 NODE_DIED = 26104
 NOT_READY = 26105
@@ -46,16 +51,24 @@ class Job:
     duration: float | None = None
     record: str | None = None
     free_run: bool = False
+    stay: bool = False
+    """Go on when everything stands, until it is told to end."""
+    state_rate: float | None = None
+    """Live states a second, None = as the machine file says."""
 
 
 class Supervisor:
     """Starts, watches and ends the processes of one run."""
 
-    def __init__(self, machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None]) -> None:
-        """`show` is called about 20 times a second with the monitor, for a progress bar."""
+    def __init__(
+        self, machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None], watched: bool = False
+    ) -> None:
+        """`show` is called about 20 times a second with the monitor; `watched`: somebody looks at units there."""
         self._machine = machine
+        self._moving_units = [*machine.axes, *machine.spindles]
         self._job = job
         self._show = show
+        self._watched = watched or job.stay
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
         self._stop_deadline: float | None = None
         self._settled_at = 0.0
@@ -71,8 +84,11 @@ class Supervisor:
 
     def _run(self) -> RunMonitor:
         monitor = RunMonitor(self._machine)
-        self._event_publisher = monitor.create_publisher(msg.Event, EVENT, EVENTS)
-        self._stop_all = monitor.create_client(srv.Execute, f"/{PLC}/stop_all")
+        require_free(monitor, unit_kinds(self._machine))
+        if self._watched:
+            monitor.watch_units()
+        self._event_publisher = EventPublisher(monitor)
+        self._stop_all = monitor.create_client(srv.Execute, f"{PLC}/stop_all")
         previous = {number: signal.signal(number, self._note_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         self._monitor = monitor
         self._started_at = time.monotonic()
@@ -81,6 +97,7 @@ class Supervisor:
             process.spin([monitor], done=self._over, wait=lambda: POLL, after=lambda: self._show(monitor))
         finally:
             self._end_all()
+            self._close_recording()
             for number, handler in previous.items():
                 signal.signal(number, handler)
         return monitor
@@ -88,31 +105,13 @@ class Supervisor:
     # processes
 
     def _start_all(self) -> None:
-        for name, arguments in self._command_lines():
+        for name, arguments in command_lines(self._machine, self._job, observers_of(self._job)):
             self._processes[name] = subprocess.Popen(
-                [sys.executable, "-m", f"cnc_ptp.nodes.{arguments[0]}", *arguments[1:]],
+                [sys.executable, "-m", f"cnc_ptp.nodes.{arguments[0]}", *arguments[1:], *ros_arguments().words],
                 stdin=subprocess.DEVNULL,
                 start_new_session=True,
                 preexec_fn=die_with_parent,
             )
-
-    def _command_lines(self) -> Iterator[tuple[str, list[str]]]:
-        job = self._job
-        free_run = ["--free-run"] if job.free_run else []
-        recorders = ["--recorders", "1"] if job.record else []
-        program = ["--program", job.program] if job.program else []
-        if job.record:
-            yield RECORDER, ["recorder", job.machine, job.record]
-        for name, kind in unit_kinds(self._machine).items():
-            if kind != "plc":
-                first = program if name == next(iter(self._machine.channels), None) else []
-                yield name, [MODULES[kind], job.machine, name, *first, *recorders]
-        scenario = ["--scenario", job.scenario] if job.scenario else []
-        stay = ["--stay"] if job.duration is not None else []
-        yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *recorders]
-        duration = ["--duration", str(job.duration)] if job.duration is not None else []
-        wait_for = [word for name in observers_of(job) for word in ("--wait-for", name)]
-        yield CLOCK, ["clock", job.machine, *duration, *free_run, *wait_for]
 
     def _over(self) -> bool:
         """True when the run has come to its end, in order or after a fault."""
@@ -124,7 +123,7 @@ class Supervisor:
             return self._not_started_in_time()
         if not self._monitor.progress.cycle:
             return True
-        living = [name for name in self._machine.axes if self._processes[name].poll() is None]
+        living = [name for name in self._moving_units if self._processes[name].poll() is None]
         standing = self._monitor.standing
         settled = time.monotonic() > self._settled_at and all(standing.get(name, True) for name in living)
         return settled or time.monotonic() > self._stop_deadline
@@ -132,7 +131,8 @@ class Supervisor:
     def _not_started_in_time(self) -> bool:
         if self._monitor.progress.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
             return False
-        there = self._monitor.get_node_names()
+        names = self._monitor.get_node_names_and_namespaces()
+        there = {name for name, namespace in names if namespace == self._monitor.get_namespace()}
         absent = ", ".join(name for name in self._processes if name not in there) or "none"
         self.failures.append(
             f"P-ERR-{NOT_READY} the nodes did not find each other within {START_TIMEOUT:g} s "
@@ -155,12 +155,15 @@ class Supervisor:
         event = Event(self._monitor.progress.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
         if self._stop_deadline is None:
-            if PLC not in self._dead:
-                self._stop_all.call_async(srv.Execute.Request())
-            now = time.monotonic()
-            self._stop_deadline = now + STOP_TIMEOUT
-            self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5
-            self._monitor.watch_standstill([name for name in self._machine.axes if name not in self._dead])
+            self._stop_everything()
+
+    def _stop_everything(self) -> None:
+        if PLC not in self._dead:
+            self._stop_all.call_async(srv.Execute.Request())
+        now = time.monotonic()
+        self._stop_deadline = now + STOP_TIMEOUT
+        self._settled_at = now + 3.0 * self._machine.watchdog_ms / 1000.0 + 0.5
+        self._monitor.watch_standstill([name for name in self._moving_units if name not in self._dead])
 
     def _what_follows(self) -> str:
         return "everything stops on its ramps" if self._monitor.progress.cycle else "nothing has moved yet"
@@ -174,7 +177,10 @@ class Supervisor:
         if self._signals and not self._interrupted:
             self._interrupted = True
             name = signal.Signals(self._signals[0]).name
-            self._fail(INTERRUPTED, f"the run was interrupted ({name}); {self._what_follows()}")
+            if self._job.stay and self._stop_deadline is None and self._monitor.note_ending(name):
+                self._stop_everything()
+            else:
+                self._fail(INTERRUPTED, f"the run was interrupted ({name}); {self._what_follows()}")
         if len(self._signals) > 1:
             self._stop_deadline = 0.0
 
@@ -193,6 +199,37 @@ class Supervisor:
                 except subprocess.TimeoutExpired:
                     child.kill()
                     child.wait()
+
+    def _close_recording(self) -> None:
+        """What a recorder that was killed has left open, so that every reader opens it."""
+        recorder = self._processes.get(RECORDER)
+        closed = recorder is None or recorder.returncode in (0, process.SIGNALLED + signal.SIGTERM)
+        if self._job.record is None or closed or not self._monitor.progress.cycle:
+            return
+        try:
+            close_cut(self._job.record)
+        except CncError as error:
+            self.failures.append(str(error))
+
+
+def command_lines(machine: MachineParameters, job: Job, observers: Iterable[str]) -> Iterator[tuple[str, list[str]]]:
+    """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
+    units = ["--recorders", "1"] if job.record else []
+    units += ["--state-rate", str(job.state_rate)] if job.state_rate is not None else []
+    program = ["--program", job.program] if job.program else []
+    if job.record:
+        yield RECORDER, ["recorder", job.machine, job.record]
+    for name, kind in unit_kinds(machine).items():
+        if kind != "plc":
+            first = program if name == next(iter(machine.channels), None) else []
+            yield name, [MODULES[kind], job.machine, name, *first, *units]
+    scenario = ["--scenario", job.scenario] if job.scenario else []
+    stay = ["--stay"] if job.stay or job.duration is not None else []
+    yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *units]
+    duration = ["--duration", str(job.duration)] if job.duration is not None else []
+    wait_for = [word for name in observers for word in ("--wait-for", name)]
+    free_run = ["--free-run"] if job.free_run else []
+    yield CLOCK, ["clock", job.machine, *duration, *free_run, *wait_for]
 
 
 @contextmanager

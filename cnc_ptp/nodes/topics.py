@@ -28,14 +28,16 @@ RECORDER = "recorder"
 MONITOR = "run_monitor"
 """Nodes besides the units that say when they are ready."""
 
-TICK = "/clock/tick"
-REPORT = "/clock/report"
-HEARTBEAT = "/heartbeat"
-EVENT = "/events"
-COMMAND = "/commands"
-DIAGNOSTICS = "/diagnostics"
-JOINT_STATES = "/joint_states"
-LIFE_SIGN = "/plc/life_sign"
+TICK = "clock/tick"
+REPORT = "clock/report"
+HEARTBEAT = "heartbeat"
+LATENESS = "lateness"
+EVENT = "events"
+COMMAND = "commands"
+DIAGNOSTICS = "diagnostics"
+JOINT_STATES = "joint_states"
+LIFE_SIGN = "plc/life_sign"
+"""Names are relative: they stand in the namespace of the nodes."""
 
 BLOCK_TYPES: dict[str, Any] = {
     "plc": msg.PlcBlock,
@@ -44,10 +46,13 @@ BLOCK_TYPES: dict[str, Any] = {
     "spindle": msg.SpindleBlock,
 }
 
+STATE_TYPES: dict[str, Any] = {"channel": msg.ChannelState, "axis": msg.AxisState, "spindle": msg.SpindleState}
+
 SERVICES: dict[str, dict[str, Any]] = {
     "axis": {
         "power": srv.SetSwitch,
         "reset": srv.Execute,
+        "set_feed_release": srv.SetFeedRelease,
         "move_absolute": srv.MoveAbsolute,
         "move_relative": srv.MoveRelative,
         "move_modulo": srv.MoveModulo,
@@ -81,7 +86,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "gear_changed": srv.Execute,
         "set_limits": srv.SetSpindleLimits,
         "reset_limits": srv.Execute,
-        "stop_at_program_end": srv.SetSwitch,
+        "stop_at_program_end": srv.SetHold,
         "couple": srv.CoupleSpindle,
         "decouple": srv.Execute,
         "reset": srv.Execute,
@@ -90,10 +95,10 @@ SERVICES: dict[str, dict[str, Any]] = {
     "channel": {
         "load": srv.LoadProgram,
         "start": srv.Execute,
-        "feed_hold": srv.SetSwitch,
+        "feed_hold": srv.SetHold,
         "set_override": srv.SetOverride,
-        "single_block": srv.SetSwitch,
-        "optional_stop": srv.SetSwitch,
+        "single_block": srv.SetHold,
+        "optional_stop": srv.SetHold,
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
         "measuring_event": srv.Execute,
@@ -101,7 +106,7 @@ SERVICES: dict[str, dict[str, Any]] = {
     "plc": {
         "acknowledge": srv.Acknowledge,
         "auto_acknowledge": srv.SetSwitch,
-        "set_life_sign": srv.SetSwitch,
+        "set_life_sign": srv.SetHold,
         "stop_all": srv.Execute,
     },
 }
@@ -119,8 +124,26 @@ COUPLING_SERVICES: dict[str, Any] = {
 
 
 def block_topic(unit: str) -> str:
-    return f"/{unit}/block"
+    return f"{unit}/block"
+
+
+def jog_topic(axis: str) -> str:
+    return f"{axis}/jog"
+
+
+def state_topic(unit: str) -> str:
+    return f"{unit}/state"
 
 
 def handshake_topic(channel: str) -> str:
-    return f"/{channel}/handshake"
+    return f"{channel}/handshake"
+
+
+def recorded_topic(topic: str) -> str:
+    """A topic's name in recordings, which leave out the namespace of the run."""
+    return f"/{topic.removeprefix('/')}"
+
+
+def published_topic(recorded: str) -> str:
+    """The topic on which a player publishes what was recorded under this name."""
+    return recorded.removeprefix("/")

@@ -10,34 +10,38 @@ from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
-from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.claim import claim_unit
+from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.health import Health
+from cnc_ptp.nodes.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.parameters import declare_parameters, refused_change
-from cnc_ptp.nodes.requests import given_arguments
+from cnc_ptp.nodes.requests import given_arguments, objection
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
     BLOCKS,
     COMMAND,
     DIAGNOSTICS,
-    EVENT,
     EVENTS,
     HEARTBEAT,
+    LATENESS,
     PLC_INPUT,
     RECORDER,
     REMEMBERED_BLOCKS,
     REPORT,
     SERVICES,
+    STATE_TYPES,
     TICK,
     block_topic,
 )
@@ -46,6 +50,7 @@ from cnc_ptp.parameters import MachineParameters
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
 BLOCK_SKIPPED = 26102
+CAME_TWICE = 26142
 RUN_OVER = 26115
 TOO_LATE = 26116
 LONGEST_COMMAND = 2.0
@@ -59,14 +64,26 @@ class UnitNode(Node):
 
     Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
     and of the master of a coupled axis.
-    Publishers: /<name>/block, /events, /commands, /clock/report, /heartbeat, /diagnostics (1 Hz).
+    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once a second /diagnostics and
+    /lateness; while somebody subscribes /<name>/state.
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
     """
 
-    def __init__(self, machine: MachineParameters, unit: Unit, *, recorders: int = 0) -> None:
-        """`recorders`: with 1, a recorder must have found the blocks too before the node is ready."""
+    def __init__(
+        self, machine: MachineParameters, unit: Unit, *, recorders: int = 0, state_rate: float | None = None
+    ) -> None:
+        """`recorders`: with 1, a recorder must have found the blocks too before the node is ready.
+
+        `state_rate`: live states a second, None = as the machine file says. Raises CncError 26141 when another process
+        has the unit.
+        """
         super().__init__(unit.name, enable_rosout=False)
+        try:
+            self._claim = claim_unit(self, unit.name)
+        except CncError:
+            super().destroy_node()
+            raise
         self._kinds = unit_kinds(machine)
         self._watchdog = machine.watchdog_ms / 1000.0
         self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
@@ -78,13 +95,16 @@ class UnitNode(Node):
         self._cycle_ns = machine.cycle_time_us * 1000
         self._count = machine.block_cycles
         self._start_ns = 0
-        self._lateness = Lateness()
+        rotary = unit.kind == "spindle" or (unit.kind == "axis" and machine.axes[unit.name].rotary)
+        block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
+        self.health = Health(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
+        self._state_period = period_cycles(machine, state_rate)
         self._scheduled_ns: dict[int, int] = {}
-        self._blocks_done = 0
-        self._blocks_lost = 0
+        self._told_twice: set[str] = set()
         self._masters: dict[str, Any] = {}
         self._running = False
         self._alone = False
+        self._ended = False
         self._busy = False
         self.failure: CncError | None = None
         """Why the node cannot go on."""
@@ -112,11 +132,15 @@ class UnitNode(Node):
         name = self.unit.name
         quality = REMEMBERED_BLOCKS if self.unit.kind in ("axis", "spindle") else BLOCKS
         self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), quality)
-        self._event_publisher = self.create_publisher(msg.Event, EVENT, EVENTS)
+        self._event_publisher = EventPublisher(self)
         self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
+        self._lateness_publisher = self.create_publisher(msg.LatenessHistogram, LATENESS, PLC_INPUT)
+        self._live_state = None
+        if self._state_period and self.unit.kind in STATE_TYPES:
+            self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
 
     def _make_subscriptions(self) -> None:
         self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)]
@@ -133,7 +157,7 @@ class UnitNode(Node):
     def _make_services(self) -> None:
         for command, service_type in SERVICES[self.unit.kind].items():
             callback = partial(self._on_service, command)
-            self.create_service(service_type, f"/{self.unit.name}/{command}", callback)
+            self.create_service(service_type, f"{self.unit.name}/{command}", callback)
 
     def _report_ready(self) -> None:
         """Says `ready` until the first tick, once everybody that is needed has found each other."""
@@ -163,26 +187,45 @@ class UnitNode(Node):
         self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
         if message.scheduled_monotonic_ns:
             self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
+        before = self._gate.duplicates
         if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):
             self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
+        self._tell_twice(CLOCK, message.first_cycle, before)
         self._compute_ready_blocks()
-        if self._gate.closed:
-            self._publish_diagnostics()
+        self._end_if_over()
 
     def _on_block(self, source: str, message: Any) -> None:
         self._heard[source] = time.monotonic()
         block = convert.message_to_block(message)
         if isinstance(block, PlcBlock):
             self.complete_commands(block)
+        before = self._gate.duplicates
         self._gate.add_block(source, block)
+        self._tell_twice(source, block.first_cycle, before)
         self._compute_ready_blocks()
+
+    def _tell_twice(self, source: str, cycle: int, before: int) -> None:
+        """An event for each source of which more came twice than `before`: perhaps two nodes have the same unit."""
+        if self._gate.duplicates > before and source not in self._told_twice:
+            self._told_twice.add(source)
+            text = f"block {cycle} of '{source}' came twice, the first one counts; is there a second '{source}'?"
+            self.tell(Severity.ERROR, CAME_TWICE, f"{self.unit.name}: {text}")
+
+    def tell(self, severity: int, error_id: int, text: str) -> None:
+        """An event of the node, not of its unit."""
+        event = Event(self._gate.next_cycle, self.unit.name, severity, error_id, text)
+        self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         if message.source in self._heard:
             self._heard[message.source] = time.monotonic()
 
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
-        record = self.command(Command(self.unit.name, command, self.arguments(command, request)))
+        asked = Command(self.unit.name, command, self.arguments(command, request))
+        if reason := objection(command, COMMANDS[self.unit.kind][command], request):
+            record = self.refuse(asked, BAD_ARGUMENT, reason)
+        else:
+            record = self.command(asked)
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
         self._compute_ready_blocks()  # an axis that is decoupled now does not wait for its master any more
@@ -190,6 +233,11 @@ class UnitNode(Node):
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
         return given_arguments(COMMANDS[self.unit.kind][command], request)
+
+    @property
+    def is_over(self) -> bool:
+        """No more block is computed."""
+        return self._gate.closed
 
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
@@ -249,17 +297,23 @@ class UnitNode(Node):
             block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publish_block(block)
-        self._blocks_done += 1
+        self.health.add_block(block)
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
-            self._lateness.add((time.monotonic_ns() - scheduled) // 1000)
+            self.health.add_lateness((time.monotonic_ns() - scheduled) // 1000)
         else:
             self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
         if isinstance(plc, PlcBlock) and plc.run_done:
             self._gate.close()
         self.after_block(block)
-        if self._gate.closed:
+        if self._live_state is not None:
+            self._live_state.publish(block, self._start_ns, self._cycle_ns)
+        self._end_if_over()
+
+    def _end_if_over(self) -> None:
+        if self._gate.closed and not self._ended:
+            self._ended = True
             self._publish_diagnostics()
             self.run_ended()
 
@@ -272,10 +326,6 @@ class UnitNode(Node):
     def after_block(self, block: Block) -> None:
         """For subclasses: what else is to be published of a block."""
 
-    def extra_diagnostics(self) -> dict[str, object]:
-        """For subclasses: more values for /diagnostics."""
-        return {}
-
     def stamp(self, cycle: int) -> Time:
         return convert.time_message(self._start_ns + cycle * self._cycle_ns)
 
@@ -287,6 +337,7 @@ class UnitNode(Node):
         for record in self.unit.take_records():
             self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
         for event in self.unit.take_events():
+            self.health.note(event)
             self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     # watchdog
@@ -313,11 +364,8 @@ class UnitNode(Node):
     def _lose(self, source: str, reason: str | None) -> None:
         """Goes on without `source`; the unit decides what that means for its motion."""
         if reason is not None:
-            self._blocks_lost += 1
-            event = Event(
-                self._gate.next_cycle, self.unit.name, Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}"
-            )
-            self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+            self.health.lost_blocks += 1
+            self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
         if source == CLOCK:
@@ -362,21 +410,14 @@ class UnitNode(Node):
     def _publish_diagnostics(self) -> None:
         if not self._running:
             return
-        values: dict[str, object] = {
-            "blocks": self._blocks_done,
-            "lost_blocks": self._blocks_lost,
-            "duplicates": self._gate.duplicates,
-            "lateness_p50_us": self._lateness.percentile_us(50.0),
-            "lateness_p99_us": self._lateness.percentile_us(99.0),
-            "lateness_max_us": self._lateness.largest_us,
-            "lateness_counts": self._lateness.to_text(),
-        }
-        values |= self.extra_diagnostics()
-        level = DiagnosticStatus.ERROR if self._blocks_lost else DiagnosticStatus.OK
-        status = DiagnosticStatus(
-            name=self.unit.name, level=level, hardware_id="cnc_ptp", message=f"block {self._blocks_done}"
-        )
-        status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
-        message = DiagnosticArray(status=[status])
+        message = DiagnosticArray(status=[self.health.status(self._gate.duplicates)])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
+        if self.health.lateness.counts:
+            lateness = self.health.lateness.message(self.unit.name)
+            lateness.header.stamp = message.header.stamp
+            self._lateness_publisher.publish(lateness)
+
+    def destroy_node(self) -> None:
+        super().destroy_node()
+        self._claim.close()

@@ -81,6 +81,10 @@ class ChannelParameters:
     """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
     tools: Mapping[int, ToolLimits] = field(default_factory=dict)
     """Limits of the tools that have any, by D number."""
+    tool_records: frozenset[int] = frozenset()
+    """D numbers of all tools that the file knows."""
+    slope: str = "TRAPEZ"
+    """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> ChannelParameters:
@@ -98,6 +102,8 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Cha
         gear_change=bool(channel.number("P-CHAN-00052")),
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
+        tool_records=frozenset(channel.used_indexes("wz")),
+        slope="TRAPEZ" if channel.number("P-CHAN-00071") else "STEP",
     )
 
 

@@ -12,6 +12,7 @@ from cnc_ptp.parameters.control_checks import control_checks
 from cnc_ptp.parameters.declarations import Declaration, Limit
 from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.parameters.errors import Problem
+from cnc_ptp.parameters.modulo import soft_limits_of_a_conveyor
 from cnc_ptp.parameters.parameter_set import Parameter, ParameterSet, parameter_limits
 from cnc_ptp.parameters.problems import problem
 from cnc_ptp.parameters.spindle_checks import spindle_problems
@@ -152,7 +153,14 @@ def axes_in_two_channels(sets: Sets) -> Iterator[Problem]:
 NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] = {
     "machine": (),
     "channel": (parameter_against_parameter,),
-    "axis": (parameter_against_parameter, emergency_ramp, encoder_resolution, axis_type_fits, control_checks),
+    "axis": (
+        parameter_against_parameter,
+        emergency_ramp,
+        encoder_resolution,
+        axis_type_fits,
+        soft_limits_of_a_conveyor,
+        control_checks,
+    ),
     "spindle": (
         parameter_against_parameter,
         emergency_ramp,

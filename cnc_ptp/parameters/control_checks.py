@@ -77,35 +77,41 @@ def velocity_controller(parameters: ParameterSet) -> Iterator[Problem]:
         yield problem(parameters, errors.CONTRADICTION, "P-SIM-00009", (), text)
 
 
+TELEGRAMS = {"command": "antr.sercos.mdt, antr.telegram.commands", "feedback": "antr.sercos.at, antr.telegram.feedback"}
+
+
 def known_objects(parameters: ParameterSet) -> Iterator[Problem]:
     """Each object of a telegram is known and one of the drive type's own bus."""
     kind = int(parameters.number("P-AXIS-00020"))
-    for names, number, known in (
-        (telegram.command_objects(parameters), "P-MACH-00020", telegram.COMMAND_OBJECTS),
-        (telegram.feedback_objects(parameters), "P-MACH-00021", telegram.FEEDBACK_OBJECTS),
+    for entries, known, others, own in (
+        (telegram.configured_commands(parameters), telegram.COMMAND_OBJECTS, telegram.FEEDBACK_OBJECTS, "feedback"),
+        (telegram.configured_feedback(parameters), telegram.FEEDBACK_OBJECTS, telegram.COMMAND_OBJECTS, "command"),
     ):
-        for name in names:
+        for name, number, indexes in entries:
             usable = [known_name for known_name in known if telegram.fits(known_name, kind)]
             if name not in usable:
                 listed = ", ".join(usable) or "none"
                 text = f"object {name} cannot be exchanged with drive type {kind} (P-AXIS-00020), known are {listed}"
-                yield problem(parameters, errors.TELEGRAM, number, (), text)
+                if name in others and telegram.fits(name, kind):
+                    text = f"object {name} is one of the {own} telegram ({TELEGRAMS[own]}), known here are {listed}"
+                yield problem(parameters, errors.TELEGRAM, number, indexes, text)
 
 
 def objects_once(parameters: ParameterSet) -> Iterator[Problem]:
     """A telegram has one object for each quantity."""
-    for names, number, known in (
-        (telegram.command_objects(parameters), "P-MACH-00020", telegram.COMMAND_OBJECTS),
-        (telegram.feedback_objects(parameters), "P-MACH-00021", telegram.FEEDBACK_OBJECTS),
+    for entries, known in (
+        (telegram.configured_commands(parameters), telegram.COMMAND_OBJECTS),
+        (telegram.configured_feedback(parameters), telegram.FEEDBACK_OBJECTS),
     ):
-        for first, second in combinations([name for name in names if name in known], 2):
-            quantity = known[first].replace("_", " ")
-            if first == second:
-                text = f"object {first} is in the telegram twice"
-                yield problem(parameters, errors.TELEGRAM, number, (), text)
-            elif known[first] == known[second]:
-                text = f"objects {first} and {second} both carry the {quantity}"
-                yield problem(parameters, errors.TELEGRAM, number, (), text)
+        for first, second in combinations([entry for entry in entries if entry.name in known], 2):
+            quantity = known[first.name].replace("_", " ")
+            if first.name == second.name:
+                text = f"object {first.name} is in the telegram twice"
+            elif known[first.name] == known[second.name]:
+                text = f"objects {first.name} and {second.name} both carry the {quantity}"
+            else:
+                continue
+            yield problem(parameters, errors.TELEGRAM, second.number, second.indexes, text)
 
 
 def names_and_numbers(parameters: ParameterSet) -> Iterator[Problem]:

@@ -23,7 +23,7 @@ from cnc_ptp.parameters.control_view import (
     torque_per_acceleration,
 )
 from cnc_ptp.parameters.encoder import uses_feed_constant
-from cnc_ptp.parameters.lines import line
+from cnc_ptp.parameters.lines import Notice, line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.telegram import ANALOGUE
 
@@ -32,10 +32,12 @@ MONITORING_TYPES = (1, 2, 4)
 PARTS = ((VEL, ADD_VEL), (ACC, ADD_ACC), (JERK, ADD_JERK))
 """Bits of P-AXIS-00223: a part, and that it goes out additively."""
 ADDITIVE = "a_max and the friction table"
+NO_TORQUE_SCALE = 110465
+NO_JERK_DENOMINATOR = 110473
 DELAYS = {"P-AXIS-00389": 70349, "P-AXIS-00390": 70348}
 
 
-def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """All lines of one axis or spindle; `cycle_time` in s."""
     yield from delays(parameters, cycle_time)
     yield from denominators(parameters)
@@ -50,24 +52,25 @@ def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[str
     yield from gain(parameters, cycle_time)
 
 
-def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     for number, error_id in DELAYS.items():
         if parameters.number(number) and not permitted_delay(parameters, number, cycle_time):
             limit = f"{DELAY_CYCLES} interpolator cycles ({DELAY_CYCLES * cycle_time * 1e6:g} µs)"
-            text = f"P-ERR-{error_id}: delay {parameters.number(number)} µs is not below {limit}, 0 is used"
-            yield line(parameters, number, (), text)
+            text = f"delay {parameters.number(number)} µs is not below {limit}, 0 is used"
+            values = (("limit", DELAY_CYCLES * cycle_time * 1e6, "µs"),)
+            yield line(parameters, number, (), text, error_id=error_id, values=values)
 
 
-def denominators(parameters: ParameterSet) -> Iterator[str]:
+def denominators(parameters: ParameterSet) -> Iterator[Notice]:
     if parameters.number("P-AXIS-00326") == 0:
-        text = "P-ERR-110465: value 0 is no denominator, no additive torque is put out"
-        yield line(parameters, "P-AXIS-00326", (), text)
+        text = "value 0 is no denominator, no additive torque is put out"
+        yield line(parameters, "P-AXIS-00326", (), text, error_id=NO_TORQUE_SCALE)
     if parameters.number("P-AXIS-00392") == 0 and puts_out_torque(parameters):
-        text = "P-ERR-110465: value 0 is no reference of the torque scaling, no additive torque is put out"
-        yield line(parameters, "P-AXIS-00392", (), text)
+        text = "value 0 is no reference of the torque scaling, no additive torque is put out"
+        yield line(parameters, "P-AXIS-00392", (), text, error_id=NO_TORQUE_SCALE)
     if parameters.number("P-AXIS-00338") == 0:
-        text = f"P-ERR-110473: value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
-        yield line(parameters, "P-AXIS-00338", (), text)
+        text = f"value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
+        yield line(parameters, "P-AXIS-00338", (), text, error_id=NO_JERK_DENOMINATOR)
 
 
 def puts_out_torque(parameters: ParameterSet) -> bool:
@@ -75,7 +78,7 @@ def puts_out_torque(parameters: ParameterSet) -> bool:
     return bool(feedforward_mode(parameters) & (ADD_ACC | ADD_JERK)) or friction_parameters(parameters).active
 
 
-def weight(parameters: ParameterSet) -> Iterator[str]:
+def weight(parameters: ParameterSet) -> Iterator[Notice]:
     value, denominator = parameters.number("P-AXIS-00228"), parameters.number("P-AXIS-00229")
     if value > denominator:
         text = f"weight {value / denominator:g} of the feedforward is above 1, the axis leads its setpoint"
@@ -88,14 +91,14 @@ def weight(parameters: ParameterSet) -> Iterator[str]:
         yield line(parameters, "P-AXIS-00514", (), text)
 
 
-def position_delay(parameters: ParameterSet) -> Iterator[str]:
+def position_delay(parameters: ParameterSet) -> Iterator[Notice]:
     value = parameters.number("P-COMP-00043")
     if value > MANUAL_POSITION_DELAY:
         text = f"value {value} is above the {MANUAL_POSITION_DELAY} of the manual, accepted"
         yield line(parameters, "P-COMP-00043", (), text)
 
 
-def monitoring_type(parameters: ParameterSet) -> Iterator[str]:
+def monitoring_type(parameters: ParameterSet) -> Iterator[Notice]:
     """A kind of monitoring that there is none of, and that is not 0 either."""
     for gear in used_gears(parameters):
         kind = parameters.number("P-AXIS-00172", gear)
@@ -105,7 +108,7 @@ def monitoring_type(parameters: ParameterSet) -> Iterator[str]:
             yield line(parameters, "P-AXIS-00172", (gear,), text)
 
 
-def following_error(parameters: ParameterSet) -> Iterator[str]:
+def following_error(parameters: ParameterSet) -> Iterator[Notice]:
     """Monitoring that would trip in plain motion: vb_max / kv above slep_max, where the limit is a fixed one."""
     gear = (int(parameters.number("P-AXIS-00079")) - 1,)
     if parameters.number("P-AXIS-00172", *gear) not in MONITORING_TYPES or parameters.kind != "axis":
@@ -118,7 +121,7 @@ def following_error(parameters: ParameterSet) -> Iterator[str]:
         yield line(parameters, "P-AXIS-00168", gear, text)
 
 
-def open_loop(parameters: ParameterSet) -> Iterator[str]:
+def open_loop(parameters: ParameterSet) -> Iterator[Notice]:
     """The open position loop is for spindles (TF5200 spindle 2.2.4)."""
     mode = parameters.text("P-AXIS-00320")
     if mode.startswith("OPEN_POSITION_LOOP") and parameters.kind != "spindle":
@@ -131,7 +134,7 @@ def used_gears(parameters: ParameterSet) -> list[int]:
     return sorted({start, *parameters.used_indexes("getriebe")}) if parameters.kind == "spindle" else [start]
 
 
-def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """A velocity command that is too short for the largest velocity; a DA word has a scale in each gear."""
     gears = used_gears(parameters)
     if int(parameters.number("P-AXIS-00020")) not in ANALOGUE:
@@ -140,7 +143,7 @@ def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]
         yield from velocity_range_of(parameters, gear, cycle_time)
 
 
-def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[str]:
+def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[Notice]:
     control = control_view(parameters, gear, cycle_time)
     drive, scaling = control.drive, control.scaling
     if drive.ideal or drive.interface != "velocity":
@@ -157,7 +160,7 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
         yield line(parameters, number, (gear,) if drive.analogue else (), text)
 
 
-def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """Torque words of a telegram that are too short for what goes over them."""
     control = control_view(parameters, used_gears(parameters)[0], cycle_time)
     drive, scale = control.drive, control.scaling.torque
@@ -206,7 +209,7 @@ def friction_torque(control: ControlParameters) -> float:
     return max(map(abs, control.friction.currents), default=0.0) / control.scaling.torque * control.friction.active
 
 
-def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """Conventional feedforward goes to a position loop in the drive as v/Kv of position, with the Kv of the NC."""
     for gear in used_gears(parameters):
         control = control_view(parameters, gear, cycle_time)
@@ -223,13 +226,13 @@ def largest_digit(bits: int) -> int:
     return (1 << (bits - 1)) - 1
 
 
-def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[str]:
+def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """Unstable position loops; a gain of the drive (P-SIM-00019) is told once."""
     lines = (text for gear in used_gears(parameters) for text in gain_of(parameters, gear, cycle_time))
     yield from dict.fromkeys(lines)
 
 
-def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[str]:
+def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[Notice]:
     """An unstable position loop, of the NC or of the drive (P-SIM-00019)."""
     control = control_view(parameters, gear, cycle_time)
     interface = control.drive.interface

@@ -62,6 +62,14 @@ class Declaration:
     effective: bool | str
     """False: nothing reads it; letters: it counts for these axis types only."""
     read_only: bool
+    range: str
+    """Shown instead of the limits, where a check of its own sees to them with an error number of its own."""
+    drives: str
+    """Drive types for which the manual has it; empty: all."""
+    names: Mapping[str, int]
+    """Constants for the bits of a number; the lists may use them, joined by |."""
+    misprints: tuple[str, ...]
+    """Other names under which the manual prints it; not accepted, but the mend is named."""
 
     @property
     def type(self) -> str:
@@ -180,6 +188,10 @@ def make_declaration(number: str, entry: Mapping[str, Any]) -> Declaration:
         max_length=entry.get("max_length", 0),
         effective=entry.get("effective", True),
         read_only=entry.get("read_only", True),
+        range=entry.get("range", ""),
+        drives=entry.get("drives", ""),
+        names=entry.get("names", {}),
+        misprints=tuple(entry.get("misprints", ())),
     )
 
 

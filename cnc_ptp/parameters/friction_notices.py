@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 from cnc_ptp.parameters.control_view import friction_parameters, torque_scale
 from cnc_ptp.parameters.encoder import uses_feed_constant
-from cnc_ptp.parameters.lines import line
+from cnc_ptp.parameters.lines import Notice, line
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
 ENTRIES = "P-COMP-00042"
 CURRENT = "P-COMP-00047"
 
 
-def friction_notices(parameters: ParameterSet) -> Iterator[str]:
+def friction_notices(parameters: ParameterSet) -> Iterator[Notice]:
     """All lines of one axis, where its compensation is permitted and has a mode."""
     if not friction_parameters(parameters).active:
         return
@@ -26,7 +26,7 @@ def friction_notices(parameters: ParameterSet) -> Iterator[str]:
     yield from currents_above_the_motor(parameters)
 
 
-def entries_without_use(parameters: ParameterSet) -> Iterator[str]:
+def entries_without_use(parameters: ParameterSet) -> Iterator[Notice]:
     """Entries of the file behind the number of those in use."""
     entries = int(parameters.number(ENTRIES))
     unused = [index for index in parameters.used_indexes("frict_comp.table") if index >= entries]
@@ -35,13 +35,13 @@ def entries_without_use(parameters: ParameterSet) -> Iterator[str]:
         yield line(parameters, ENTRIES, (), f"value {entries} leaves {listed} out of use")
 
 
-def currents_not_given(parameters: ParameterSet) -> Iterator[str]:
+def currents_not_given(parameters: ParameterSet) -> Iterator[Notice]:
     for index in range(int(parameters.number(ENTRIES))):
         if not parameters.is_given(CURRENT, index):
             yield line(parameters, "P-COMP-00046", (index,), f"its current {CURRENT} is not given, 0 is used")
 
 
-def currents_with_the_friction(parameters: ParameterSet) -> Iterator[str]:
+def currents_with_the_friction(parameters: ParameterSet) -> Iterator[Notice]:
     """A positive current drives forwards, so it takes a positive one to compensate."""
     for index, current in enumerate(friction_parameters(parameters).currents):
         if current < 0:
@@ -49,7 +49,7 @@ def currents_with_the_friction(parameters: ParameterSet) -> Iterator[str]:
             yield line(parameters, CURRENT, (index,), text)
 
 
-def currents_above_the_motor(parameters: ParameterSet) -> Iterator[str]:
+def currents_above_the_motor(parameters: ParameterSet) -> Iterator[Notice]:
     """More torque than P-AXIS-00392, the stall torque of the motor, where the file gives it."""
     scale, most = torque_scale(parameters), parameters.number("P-AXIS-00392")
     if not scale or not parameters.is_given("P-AXIS-00392"):

@@ -159,10 +159,12 @@ def unknown_name(ros_name: str, node: str, kind: str) -> str:
 
 
 def nearest(lists: Catalogue, key: str, kind: str) -> str:
-    close = difflib.get_close_matches(key[:100], lists.by_key[kind], n=1, cutoff=0.6)
+    known = lists.by_key[kind]
+    names = {name: entry for entry in known.values() for name in (entry.key, *entry.misprints)}
+    close = difflib.get_close_matches(key[:100], names, n=1, cutoff=0.6)
     if not close:
         return ""
-    declaration = lists.by_key[kind][close[0]]
+    declaration = names[close[0]]
     return f", did you mean {declaration.name} ({declaration.id})?"
 
 

@@ -5,6 +5,8 @@ from cnc_ptp.parameters.declarations import DATA_TYPES, Declaration, Limit, Para
 
 def range_text(declaration: Declaration) -> str:
     """'1 ≤ … ≤ P-AXIS-00212', the choices, or the form of a text."""
+    if declaration.range:
+        return declaration.range
     if declaration.choices:
         text = choices_text(declaration)
     elif declaration.type == "string":

@@ -4,7 +4,7 @@
 import difflib
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import errors
@@ -71,7 +71,7 @@ def table_row(declaration: Declaration) -> str:
         unit_text(declaration),
         default_text(declaration.default),
         declaration.axes,
-        declaration.text,
+        declaration.text + (f" Drive types: {declaration.drives}." if declaration.drives else ""),
         effect_text(declaration),
     )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
@@ -96,17 +96,6 @@ def unit_text(declaration: Declaration) -> str:
     return linear if linear == other else f"{linear} / {other}"
 
 
-def describe(id_or_name: str) -> str:
-    """The entries for an id (P-AXIS-00099), a whole name (getriebe[0].kv, getriebe.0.kv) or its last part (kv).
-
-    Raises CncError 25018 when there is none.
-    """
-    found = [declaration for declaration in catalogue().by_id.values() if matches(declaration, id_or_name.strip())]
-    if not found:
-        raise CncError(errors.UNKNOWN_PARAMETER, f"no parameter is called {id_or_name!r}{near(id_or_name)}")
-    return "\n\n".join(map(entry_text, found))
-
-
 def matches(declaration: Declaration, wanted: str) -> bool:
     name = re.sub(r"\.(\d+|\*|i|j)(?=\.|$)", ".*", dotted(wanted.replace("[i]", ".*").replace("[j]", ".*")))
     return (
@@ -116,16 +105,38 @@ def matches(declaration: Declaration, wanted: str) -> bool:
     )
 
 
+def find(wanted: str) -> list[Declaration]:
+    """Parameters by id or name, else by number, by parts of id and name, and by words of the text, in this order.
+
+    Raises CncError 25018 with the nearest names when there is none.
+    """
+    declarations = list(catalogue().by_id.values())
+    words = wanted.lower().split()
+    searches: tuple[Callable[[Declaration], bool], ...] = (
+        lambda entry: matches(entry, wanted.strip()),
+        lambda entry: wanted.strip().isdecimal() and int(entry.id.rpartition("-")[2]) == int(wanted),
+        lambda entry: all(word in f"{entry.id} {entry.name}".lower() for word in words),
+        lambda entry: all(word in f"{entry.id} {entry.name} {entry.text}".lower() for word in words),
+    )
+    exact, numbered, named, told = ([entry for entry in declarations if fits(entry)] for fits in searches)
+    found = exact or numbered or [*named, *(entry for entry in told if entry not in named)]
+    if not found or not words:
+        raise CncError(errors.UNKNOWN_PARAMETER, f"no parameter is called {wanted!r}{near(wanted)}")
+    return found
+
+
 def near(wanted: str) -> str:
-    """The most similar id or name, as a question."""
+    """The most similar id or name, and up to two more that are very similar, as a question."""
     candidates: dict[str, Declaration] = {}
     for declaration in catalogue().by_id.values():
-        for name in (declaration.id, declaration.name, declaration.name.split(".")[-1]):
+        for name in (declaration.id, declaration.name, declaration.name.split(".")[-1], *declaration.misprints):
             candidates.setdefault(name.lower(), declaration)
-    close = difflib.get_close_matches(wanted.lower()[:100], candidates, n=1, cutoff=0.5)
-    if not close:
-        return ""
-    return f", did you mean {candidates[close[0]].id} {candidates[close[0]].name}?"
+    typed = wanted.lower()[:100]
+    names = [name for name in candidates if not name.startswith("p-")]  # ids resemble each other
+    close = difflib.get_close_matches(typed, candidates, n=1, cutoff=0.5)
+    close += difflib.get_close_matches(typed, names, n=3, cutoff=0.8)
+    texts = dict.fromkeys(f"{candidates[name].id} {candidates[name].name}" for name in close)
+    return f", did you mean {' or '.join(texts)}?" if texts else ""
 
 
 def entry_text(declaration: Declaration) -> str:
@@ -138,10 +149,11 @@ def entry_text(declaration: Declaration) -> str:
         f"  range    {range_text(declaration)}",
         f"  unit     {unit_text(declaration)}",
         f"  default  {default_text(declaration.default)}",
+        f"  drives   {declaration.drives}",
         f"  source   {declaration.source}",
         effect_line(declaration),
     ]
-    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit"))
+    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit", "drives"))
 
 
 if __name__ == "__main__":

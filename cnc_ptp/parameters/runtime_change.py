@@ -1,11 +1,29 @@
-"""What a node says to a parameter that somebody wants to change while it runs."""
+"""What a node says to a parameter that somebody wants to change, at its start or while it runs."""
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.parameters.loader import checked_entry
 from cnc_ptp.parameters.parameter_set import ParameterSet
+from cnc_ptp.parameters.source import Entry, Value, dotted
+from cnc_ptp.parameters.values import BadValue, shown
 
 MEMORY_IS_FIXED = 110641
 POINTS = "P-COMP-00062"
 """Table size for which memory is kept from the start on (TF5200 friction compensation 5.2.2)."""
+
+
+def start_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> str:
+    """Why a node cannot start with a value that ROS gives it; empty when it means that of the machine file."""
+    entry = Entry(dotted(ros_name), wanted, parameters.place)
+    try:
+        value = checked_entry(entry, parameters.node, parameters.kind, parameters.axis_type)
+    except BadValue as error:
+        return error.text
+    own = {parameter.ros_name: parameter.value for parameter in parameters.parameters()}
+    if entry.name not in own:
+        return "the machine file, where all nodes and the recording find it, does not give it"
+    if own[entry.name] != value:
+        return f"it is {shown(own[entry.name])} in the machine file, where all nodes and the recording find it"
+    return ""
 
 
 def change_refusal(parameters: ParameterSet, ros_name: str, wanted: object) -> CncError | None:

@@ -80,7 +80,7 @@ class SpindleParameters:
     automatic_homing: bool
     """Homes by itself before M19; otherwise M19 without reference is an error (P-AXIS-00015 0x100)."""
     open_loop: bool
-    """Never under position control (P-AXIS-00320)."""
+    """Under position control for positioning and homing only, if at all (P-AXIS-00320)."""
     feedback: str
     """What the drive sends: POSITION, SPEED or NONE."""
     speed_reached_band: float
@@ -98,6 +98,8 @@ class SpindleParameters:
     stops_at_reset: bool
     target_time: float
     """In which the actual position must have come into the window after M19; 0 = not monitored."""
+    settling_time: float
+    """For which position and speed must have been in their windows before M19 is reached."""
     speed_time: float
     """The same for the speed of endless rotation."""
     gear_change_time: float
@@ -140,6 +142,7 @@ def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParamete
         gears={stage: gear_view(parameters, stage - 1, cycle_time) for stage in stages},
         stops_at_reset=not parameters.number("P-AXIS-00455"),
         target_time=parameters.number("P-MACH-00014") / 1000.0,
+        settling_time=parameters.number("P-MACH-00052") / 1000.0,
         speed_time=parameters.number("P-MACH-00050") / 1000.0,
         gear_change_time=parameters.number("P-MACH-00051") / 1000.0,
         zero_pulse=parameters.kernel("P-SIM-00051"),

@@ -5,6 +5,8 @@ Sources: TF5200 feedforward 4, friction 2.4; SERCOS IDN and CiA 402 object numbe
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from cnc_ptp.parameters.parameter_set import ParameterSet
 
 COMMAND_OBJECTS: dict[str, str] = {
@@ -76,13 +78,30 @@ def fits(name: str, kind: int) -> bool:
     return kind == 4 or name.startswith(BUSES.get(kind, ("-",)))
 
 
-def command_objects(parameters: ParameterSet) -> tuple[str, ...]:
-    """The configured objects of the command telegram by name, S-0-0037."""
+class Configured(NamedTuple):
+    """An object of a telegram, and the parameter that has put it there."""
+
+    name: str
+    number: str
+    indexes: tuple[int, ...]
+
+
+def configured_commands(parameters: ParameterSet) -> tuple[Configured, ...]:
+    """The objects of the command telegram by name, S-0-0037."""
     return _objects(parameters, "P-MACH-00020", "mdt", ("P-MACH-00022", "P-MACH-00023"))
 
 
-def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
+def configured_feedback(parameters: ParameterSet) -> tuple[Configured, ...]:
+    """The objects of the feedback telegram by name, S-0-0051."""
     return _objects(parameters, "P-MACH-00021", "at", ("P-MACH-00025", "P-MACH-00026"))
+
+
+def command_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    return tuple(entry.name for entry in configured_commands(parameters))
+
+
+def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    return tuple(entry.name for entry in configured_feedback(parameters))
 
 
 def default_bits() -> dict[str, int]:
@@ -146,12 +165,12 @@ def interface(parameters: ParameterSet) -> str:
     return mode or next(iter(main_command(commands(parameters))), "none")
 
 
-def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[str, ...]:
-    objects = list(parameters.names(names))
+def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[Configured, ...]:
+    objects = [Configured(name, names, ()) for name in parameters.names(names)]
     for index in parameters.used_indexes(f"antr.sercos.{array}"):
         name = _object(parameters, elements, index)
         if name:
-            objects.append(name)
+            objects.append(Configured(name, elements[0 if parameters.text(elements[0], index) else 1], (index,)))
     return tuple(objects)
 
 

@@ -42,6 +42,8 @@ def typed_value(declaration: Declaration, value: Value) -> ParameterValue:
     kind = declaration.type
     if kind == "string" and declaration.choices:
         return constants(declaration, value)
+    if declaration.names and isinstance(value, str):
+        return named_bits(declaration, value)
     if kind == "bool" and type(value) in (bool, int) and value in (0, 1):
         return bool(value)
     if kind == "int" and type(value) is int:
@@ -102,6 +104,20 @@ def check_text(declaration: Declaration, value: str) -> None:
         raise BadValue(errors.OUT_OF_RANGE, f"value {shown(value)} is longer than {declaration.max_length} characters")
     if declaration.form and not re.fullmatch(declaration.form, value):
         raise BadValue(errors.OUT_OF_RANGE, f"value {shown(value)} must be {declaration.form_text}")
+
+
+def named_bits(declaration: Declaration, text: str) -> int:
+    """The number of constants joined by |, ACHSMODE_MODULO | ACHSMODE_KEINE_AUTO_RPF, or of 0x… as text."""
+    number = 0
+    for name in (part.strip() for part in text.split("|")):
+        if re.fullmatch("0x[0-9a-fA-F]+", name):
+            number |= int(name, 16)
+        elif name in declaration.names:
+            number |= declaration.names[name]
+        else:
+            reason = f"value {shown(text)} has {shown(name)}, which is none of {', '.join(declaration.names)}"
+            raise BadValue(errors.OUT_OF_RANGE, reason)
+    return number
 
 
 def constants(declaration: Declaration, value: Value) -> str:

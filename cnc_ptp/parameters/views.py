@@ -8,10 +8,11 @@ from cnc_ptp.parameters import notices
 from cnc_ptp.parameters.channel_view import ChannelParameters, channel_view
 from cnc_ptp.parameters.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.encoder import encoder_increment
+from cnc_ptp.parameters.lines import Notice
+from cnc_ptp.parameters.modulo import is_modulo
 from cnc_ptp.parameters.parameter_set import ParameterSet
 from cnc_ptp.parameters.spindle_view import SpindleParameters, spindle_view
 
-MODULO = 0x4
 VIRTUAL_AXIS = 16
 MONITORING_TYPES = (1, 2, 4)
 
@@ -24,7 +25,10 @@ class AxisParameters:
     number: int
     rotary: bool
     modulo: bool
-    """Positions wrap from modulo_high to modulo_low; then the soft limits are infinite."""
+    """A turntable or a conveyor: it counts on without an end, also from modulo_low to modulo_high, mm (°).
+
+    Then the soft limits are infinite.
+    """
     modulo_low: float
     modulo_high: float
     virtual: bool
@@ -77,12 +81,14 @@ class MachineParameters:
     block_cycles: int
     watchdog_ms: int
     life_sign_timeout_ms: int
+    state_rate_hz: float
+    """Live states a second of each unit, 0 = none."""
     handshake_timeout_ms: int
     """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Notice, ...] = ()
     """What is accepted but deserves a look, one line each."""
     sets: Mapping[str, ParameterSet] = field(default_factory=dict, repr=False, compare=False)
 
@@ -101,6 +107,7 @@ def machine_view(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Mac
         block_cycles=int(machine.number("P-MACH-00002")),
         watchdog_ms=int(machine.number("P-MACH-00003")),
         life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
+        state_rate_hz=float(machine.number("P-MACH-00070")),
         handshake_timeout_ms=int(machine.number("P-MACH-00060")),
         channels=channels,
         axes=equally_late(axes, channels.values()),
@@ -128,7 +135,7 @@ def equally_late(
 def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     gear = active_gear(parameters)
     rotary = parameters.axis_type == "R"
-    modulo = rotary and bool(int(parameters.number("P-AXIS-00015")) & MODULO)
+    modulo = is_modulo(parameters)
     max_velocity = parameters.kernel("P-AXIS-00212", gear)
     return AxisParameters(
         name=parameters.node,

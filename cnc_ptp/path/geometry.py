@@ -4,13 +4,13 @@ An element is run through by its path length s (mm). `evaluate(s, v, a, j)` give
 derivatives by the chain rule, from the path's velocity v, acceleration a and jerk j. `limits(feed, axes)` gives the
 path's dynamics under which no axis exceeds its own.
 
-The feed refers to the path of the leading `path_axes` axes (X, Y, Z); further axes travel along and arrive together.
-Where only further axes move, the path is theirs.
+The feed refers to the path of the axes with the indices `path_axes` (X, Y, Z, wherever they stand); further axes travel
+along and arrive together. Where only further axes move, the path is theirs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from math import atan2, cbrt, cos, hypot, inf, isfinite, radians, sin, sqrt
 from typing import NamedTuple, Protocol
 
@@ -44,6 +44,10 @@ NEGLIGIBLE_MM = 1e-9
 """Motion of the path axes below this is rounding: the path is then that of all axes."""
 
 
+LEADING_AXES = (0, 1, 2)
+"""Path axes of an element that is not told its own: X, Y and Z first."""
+
+
 class AxisLimits(NamedTuple):
     """Largest velocity, acceleration (growth of |v|), deceleration (its reduction) and jerk of one axis; mm or deg."""
 
@@ -69,12 +73,14 @@ class Line:
 
     __slots__ = ("_axes", "length", "start", "target")
 
-    def __init__(self, start: Sequence[float], target: Sequence[float], path_axes: int = 3) -> None:
+    def __init__(
+        self, start: Sequence[float], target: Sequence[float], path_axes: Collection[int] = LEADING_AXES
+    ) -> None:
         _check_points(start, target)
         self.start = tuple(start)
         self.target = tuple(target)
         ways = [b - a for a, b in zip(self.start, self.target, strict=True)]
-        self.length = hypot(*ways[:path_axes])
+        self.length = hypot(*(way for n, way in enumerate(ways) if n in path_axes))
         if self.length < NEGLIGIBLE_MM:
             self.length = hypot(*ways)
         scale = 1.0 / self.length if self.length else 0.0
@@ -106,7 +112,7 @@ class Arc:
     plane       indices of the first and second plane axis; positive sweep turns from the first to the second
     center      centre in these two axes, mm (absolute)
     sweep_deg   signed angle, deg; several turns allowed
-    length      √(arc² + linear²): the arc and the linear motion of the remaining axes among the leading `path_axes`
+    length      √(arc² + linear²): the arc and the linear motion of the remaining axes among `path_axes`
 
     The circle runs through `start` around `center`. A closing error at the target (rounded I, J, K) is spread evenly
     over the path; more than 0.01 mm + radius/10000 is refused with CncError 22101, an arc without length with 22102.
@@ -125,7 +131,7 @@ class Arc:
         plane: Sequence[int],
         radius: float,
         sweep_deg: float,
-        path_axes: int = 3,
+        path_axes: Collection[int] = LEADING_AXES,
     ) -> None:
         _check_points(start, target)
         self.start = tuple(start)
@@ -144,7 +150,7 @@ class Arc:
             )
         sweep = radians(sweep_deg)
         others = [(n, b - a) for n, (a, b) in enumerate(zip(start, target, strict=True)) if n not in self.plane]
-        self.length = hypot(self.radius * sweep, *(way for n, way in others if n < path_axes))
+        self.length = hypot(self.radius * sweep, *(way for n, way in others if n in path_axes))
         self._angle = atan2(y, x)
         self._rate = sweep / self.length
         self._linear = tuple([(n, self.start[n], way / self.length) for n, way in others])

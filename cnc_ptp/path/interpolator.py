@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import inf
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stop_way
+from cnc_ptp.motion import Limits, Profile
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
 from cnc_ptp.motion.profile import State
 from cnc_ptp.path.geometry import Element
+from cnc_ptp.path.planner import JERK_LIMITED, Planner
 
 PathRow = tuple[float, float, float, float, bool]
 """One cycle on the path: length s (mm), velocity, acceleration, jerk, element done."""
@@ -53,6 +54,7 @@ class PathInterpolator:
         self.remaining_time = 0.0
         self.factor = 1.0
         self._limits: Limits | None = None
+        self._planner = JERK_LIMITED
         self._length = 0.0
         self._feed = 0.0
         self._profile = _standing(0.0)
@@ -78,11 +80,14 @@ class PathInterpolator:
         """Path length (mm) from the last cycle given out to the end of the element."""
         return 0.0 if self.done else self._length - self.state[0]
 
-    def start(self, element: Element, limits: Limits, feed: float | None = None) -> None:
+    def start(
+        self, element: Element, limits: Limits, feed: float | None = None, *, planner: Planner = JERK_LIMITED
+    ) -> None:
         """Begin an element at rest; directly after the end of another one at that exact instant.
 
         limits   dynamics of the path; `limits.velocity` is never exceeded, whatever the velocity factor
         feed     path velocity at factor 1, mm/s; without it (or inf) `limits.velocity`
+        planner  makes all profiles of the element
         Raises CncError 22110 while an element is running, 22111 for a bad feed and 23001 for bad limits.
         """
         self._check_free("the next element")
@@ -95,8 +100,8 @@ class PathInterpolator:
             profile, reaches_end = _standing(0.0), False
         else:
             velocity = max(velocity, SMALLEST_LIMIT)
-            profile, reaches_end = plan_rest_to_rest(0.0, element.length, limits._replace(velocity=velocity)), True
-        self.element, self._limits, self._feed = element, limits, feed
+            profile, reaches_end = planner.from_rest(0.0, element.length, limits._replace(velocity=velocity)), True
+        self.element, self._limits, self._feed, self._planner = element, limits, feed, planner
         self._begin(element.length, profile, reaches_end)
 
     def dwell(self, seconds: float) -> None:
@@ -197,15 +202,15 @@ class PathInterpolator:
             return
         now = self._now()
         s, v, a, _ = self._profile.state_at(now)
-        to_brake = self._length - s - stop_way(v, a, limits.deceleration, limits.jerk)
+        to_brake = self._length - s - self._planner.stop_way(v, a, limits)
         if self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length:
             return
         velocity = 0.0 if self._stopping else min(self._feed * self.factor, limits.velocity)
         if velocity < SMALLEST_LIMIT:
-            self._profile, self._reaches_end = plan_to_velocity(s, v, a, 0.0, limits), False
+            self._profile, self._reaches_end = self._planner.to_rest(s, v, a, limits), False
         else:
             limits = limits._replace(velocity=velocity)
-            self._profile, self._reaches_end = plan_to_position(s, v, a, self._length, limits), True
+            self._profile, self._reaches_end = self._planner.to_position(s, v, a, self._length, limits), True
         self._offset, self._cycles = min(now, 0.0), 0
 
 

@@ -20,6 +20,8 @@ from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
 from cnc_ptp.recording.layout import Layout, Records, fixed_layout
 from cnc_ptp.recording.schemas import PRIMITIVES, Schema, load_schema
 
+OF_THE_BLOCK = ("modulo_begin", "modulo_length", "torque_digits")
+"""Scalars of an AxisBlock from which its state messages have positions in the modulo range and digits of the drive."""
 StateBlock = AxisBlock | SpindleBlock | ChannelBlock
 Cycles = npt.NDArray[np.uint64]
 Times = npt.NDArray[np.uint64]
@@ -32,7 +34,11 @@ class StateKind:
         self.state = load_schema(f"cnc_ptp/msg/{name}State")
         self.block = load_schema(f"cnc_ptp/msg/{name}Block")
         self.layout = fixed_layout(self.state)
-        self.columns = tuple(field.name for field in self.state.fields if field.name not in ("header", "cycle"))
+        names = [field.name for field in self.state.fields if field.name not in ("header", "cycle")]
+        held = {field.name for field in self.block.fields}
+        self.columns = tuple(name for name in names if name in held)
+        self.derived = tuple(name for name in names if name not in held)
+        """Fields of the state that follow from others of the block."""
         self._packers: dict[int, Packer] = {}
 
     def packer(self, count: int) -> Packer:
@@ -40,7 +46,9 @@ class StateKind:
         if count not in self._packers:
             codes = {place.name: place.code for place in self.layout.places}
             columns = [(name, codes[name], count) for name in self.columns]
-            self._packers[count] = Packer([("first_cycle", "Q"), ("count", "I")], columns)
+            scalars = [("first_cycle", "Q"), ("count", "I")]
+            scalars += [(name, "d") for name in OF_THE_BLOCK] if self.derived else []
+            self._packers[count] = Packer(scalars, columns)
         return self._packers[count]
 
 
@@ -132,6 +140,34 @@ def fill_states(kind: StateKind, messages: Records, rows: Records, cycles: Cycle
     messages["cycle"] = cycles
     for name in kind.columns:
         messages[name] = rows[name].reshape(-1)
+    if kind.derived:
+        count = rows["set_position"].shape[1]
+        begin, length, digits = (np.repeat(rows[name], count) for name in OF_THE_BLOCK)
+        for name in ("set_position", "actual_position"):
+            messages[f"{name}_modulo"] = within_modulo(messages[name], begin, length)
+        messages["actual_torque_digits"] = messages["actual_torque"] * digits
+        messages["set_direction"] = np.sign(messages["set_velocity"])
+
+
+def state_messages(block: StateBlock, start_ns: int, cycle_ns: int) -> list[bytes]:
+    """CDR of the states of a block, cycle by cycle; `start_ns` is the stamp of cycle 0."""
+    kind = kind_of(block)
+    packer = kind.packer(block.count)
+    rows = packer.rows([packer.pack(block)])
+    messages = kind.layout.empty(block.count)
+    cycles = cycles_of(rows, block.count)
+    fill_states(kind, messages, rows, cycles, np.uint64(start_ns) + cycles * np.uint64(cycle_ns))
+    return [message.tobytes() for message in messages]
+
+
+def within_modulo(
+    position: npt.NDArray[np.float64], begin: npt.NDArray[np.float64], length: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    """Positions within begin ... begin + length (excluded); the position itself where the length is 0. Shapes (n,)."""
+    turn = np.where(length > 0.0, length, 1.0)
+    within = begin + np.mod(position - begin, turn)
+    within = np.where(within >= begin + turn, begin, within)  # a tiny negative remainder rounds up to a whole turn
+    return np.where(length > 0.0, within, position)
 
 
 def set_stamps(messages: Records, stamps_ns: Times) -> None:

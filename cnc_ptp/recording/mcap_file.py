@@ -11,6 +11,7 @@ from __future__ import annotations
 import struct
 import zlib
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 
@@ -39,6 +40,7 @@ from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
 from cnc_ptp.recording.layout import Bytes
 
 Times = npt.NDArray[np.uint64]
@@ -58,6 +60,20 @@ RECORD_PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
 INDEX_ENTRY = np.dtype([("log_time", "<u8"), ("offset", "<u8")])
 
 
+@dataclass
+class Contents:
+    """What an MCAP file holds up to the offset `end`; `crc` is that of these bytes."""
+
+    statistics: Statistics = field(default_factory=lambda: Statistics(0, 0, {}, 0, 0, 0, 0, 0, 0))
+    end: int = 0
+    crc: int = 0
+    schemas: list[Schema] = field(default_factory=list)
+    channels: list[Channel] = field(default_factory=list)
+    chunk_indexes: list[ChunkIndex] = field(default_factory=list)
+    attachment_indexes: list[AttachmentIndex] = field(default_factory=list)
+    metadata_indexes: list[MetadataIndex] = field(default_factory=list)
+
+
 class McapFile:
     """An MCAP file of the ROS 2 profile being written.
 
@@ -66,30 +82,37 @@ class McapFile:
     written; the chunks before that moment stay readable.
     """
 
-    def __init__(self, path: Path, level: int = 1) -> None:
+    def __init__(self, path: Path, level: int = 1, *, found: Contents | None = None) -> None:
+        """Begins a file, or goes on behind what was `found` in one; all after that is cut off."""
         self.path = path
-        self.statistics = Statistics(0, 0, {}, 0, 0, 0, 0, 0, 0)
+        contents = found or Contents()
+        self.statistics = contents.statistics
         self._compressor = zstandard.ZstdCompressor(level=level)
-        self._offset = 0
-        self._crc = 0
-        self._schemas: list[Schema] = []
-        self._channels: list[Channel] = []
-        self._chunk_indexes: list[ChunkIndex] = []
-        self._attachment_indexes: list[AttachmentIndex] = []
-        self._metadata_indexes: list[MetadataIndex] = []
+        self._offset = contents.end
+        self._crc = contents.crc
+        self._schemas = contents.schemas
+        self._channels = contents.channels
+        self._chunk_indexes = contents.chunk_indexes
+        self._attachment_indexes = contents.attachment_indexes
+        self._metadata_indexes = contents.metadata_indexes
         self._chunk = _OpenChunk()
         self._closed_chunk: tuple[_OpenChunk, Future[tuple[bytes, int]]] | None = None
         self._worker = ThreadPoolExecutor(max_workers=1, thread_name_prefix="recording")
         self._failure: CncError | None = None
         try:
-            self._stream = path.open("wb")
+            self._stream = path.open("r+b" if found else "wb")
+            if found:
+                self._stream.seek(found.end)
+                self._stream.truncate()
         except OSError as error:
             raise CncError(
                 26007, f"recording {path}: cannot be created: {error.strerror}; nothing is recorded"
             ) from error
-        self._write(MCAP0_MAGIC)
-        self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
-        self._flush()
+        forget_beside(path)
+        if found is None:
+            self._write(MCAP0_MAGIC)
+            self._record(Header("ros2", f"cnc_ptp {LIBRARY_IDENTIFIER}"))
+            self._flush()
 
     def attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
         self.finish_chunk()
@@ -109,7 +132,7 @@ class McapFile:
         self.statistics.metadata_count += 1
         self._flush()
 
-    def channel(self, topic: str, type_name: str, schema_text: str) -> int:
+    def channel(self, topic: str, type_name: str, schema_text: str, metadata: dict[str, str]) -> int:
         """Announces a topic; its records go in front of the messages of the chunk being filled."""
         schema = next((known for known in self._schemas if known.name == type_name), None)
         if schema is None:
@@ -122,7 +145,7 @@ class McapFile:
             id=len(self._channels) + 1,
             topic=topic,
             message_encoding=MessageEncoding.CDR,
-            metadata={"offered_qos_profiles": ""},
+            metadata=metadata,
             schema_id=schema.id,
         )
         self._channels.append(channel)
@@ -187,19 +210,22 @@ class McapFile:
                 uncompressed_size=chunk.size,
             )
         )
-        self._count_chunk(chunk.message_count, first, last)
+        count_chunk(self.statistics, chunk.message_count, first, last)
 
     def close(self) -> None:
-        """Writes the last chunk and the summary, and closes the file."""
+        """Writes the last chunk and the summary, closes the file, and tells rosbag2 of it (bag)."""
         try:
             self.close_chunk()
             self.finish_chunk()
+            information = bag_information(self.path.name, self.statistics, self._channels, self._schemas)
+            self.metadata(RECORD, {"serialized_metadata": metadata_text(information)})
             self._record(DataEnd(self._crc))
             self._write_summary()
             self._flush()
         finally:
             self._worker.shutdown()
             self._close_stream()
+        write_beside(self.path, information)
 
     def __enter__(self) -> McapFile:
         return self
@@ -211,14 +237,6 @@ class McapFile:
 
     def _compress(self, data: bytes) -> tuple[bytes, int]:
         return self._compressor.compress(data), zlib.crc32(data)
-
-    def _count_chunk(self, messages: int, first: int, last: int) -> None:
-        statistics = self.statistics
-        if statistics.chunk_count == 0 or first < statistics.message_start_time:
-            statistics.message_start_time = first
-        statistics.message_end_time = max(statistics.message_end_time, last)
-        statistics.message_count += messages
-        statistics.chunk_count += 1
 
     def _write_summary(self) -> None:
         self.statistics.schema_count = len(self._schemas)
@@ -315,6 +333,15 @@ class _OpenChunk:
     def time_range(self) -> tuple[int, int]:
         times = [entries["log_time"] for runs in self.indexes.values() for entries in runs]
         return min(int(run.min()) for run in times), max(int(run.max()) for run in times)
+
+
+def count_chunk(statistics: Statistics, messages: int, first: int, last: int) -> None:
+    """Adds a chunk with log times from `first` to `last`."""
+    if statistics.chunk_count == 0 or first < statistics.message_start_time:
+        statistics.message_start_time = first
+    statistics.message_end_time = max(statistics.message_end_time, last)
+    statistics.message_count += messages
+    statistics.chunk_count += 1
 
 
 def _message_index(channel_id: int, runs: list[npt.NDArray[np.void]]) -> bytes:

@@ -14,11 +14,12 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from cnc_ptp.machine.blocks import CommandRecord, Event
+from cnc_ptp.machine.blocks import CommandRecord, Event, EventValue
+from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.layout import Layout, Records, fixed_layout
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
 from cnc_ptp.recording.schemas import full_name, parse_schema
-from cnc_ptp.recording.writer import MACHINE_FILE, METADATA
+from cnc_ptp.recording.writer import MACHINE_FILE, METADATA, MISSING
 
 AXIS_STATE = "cnc_ptp/msg/AxisState"
 SPINDLE_STATE = "cnc_ptp/msg/SpindleState"
@@ -32,13 +33,14 @@ DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 @dataclass(slots=True)
 class TopicInfo:
-    """What the file holds of a topic; log times in ns."""
+    """What the file holds of a topic; log times in ns, `qos`: its offered_qos_profiles."""
 
     topic: str
     type_name: str
     count: int = 0
     first_ns: int = 0
     last_ns: int = 0
+    qos: str = ""
 
 
 class Diagnostic(NamedTuple):
@@ -171,7 +173,8 @@ class _Names:
             self.schemas[item.id] = item
         elif item.id not in self.channels:
             schema = self.schemas.get(item.schema_id)
-            info = TopicInfo(item.topic, full_name(schema.name) if schema else "")
+            type_name = full_name(schema.name) if schema else ""
+            info = TopicInfo(item.topic, type_name, qos=item.metadata.get(QOS, ""))
             self.channels[item.id] = item
             self.topics[item.id] = self.by_name.setdefault(item.topic, info)
 
@@ -218,7 +221,8 @@ class _Reader:
 
     def finish(self) -> Recorded:
         recorded = self.recorded
-        recorded.complete, recorded.missing = self.records.complete, self.records.missing
+        recorded.missing = recorded.metadata.get(MISSING, self.records.missing)
+        recorded.complete = self.records.complete and not recorded.missing
         recorded.machine_yaml = recorded.attachments.pop(MACHINE_FILE, "")
         recorded.topics = {topic: info for topic, info in self.names.by_name.items() if info.count}
         for topic, rows in self._rows.items():
@@ -271,8 +275,9 @@ class _Reader:
         return self.names.schemas[self.names.channels[run.channel_id].schema_id]
 
     def _event(self, _time: int, message: Any) -> None:
+        values = [EventValue(value.name, value.value, value.unit) for value in getattr(message, "values", ())]
         self.recorded.events.append(
-            Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line)
+            Event(message.cycle, message.source, message.severity, message.error_id, message.text, message.line, values)
         )
 
     def _command(self, _time: int, message: Any) -> None:
@@ -285,6 +290,7 @@ class _Reader:
                 message.accepted,
                 message.error_id,
                 message.message,
+                getattr(message, "id", 0),
             )
         )
 

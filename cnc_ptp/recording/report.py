@@ -13,8 +13,10 @@ from plotly.offline import get_plotlyjs
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
-from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.report_figures import path_figures, time_figure
+from cnc_ptp.recording.command_words import argument_words, json_object
+from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
+from cnc_ptp.recording.report_figures import path_figures, rows_figure, time_columns
+from cnc_ptp.recording.rows import Row, standing, time_rows
 from cnc_ptp.recording.statistics import in_machine_order, last_diagnostics, summary, torque_units
 
 MOST_ROWS = 1000
@@ -29,6 +31,11 @@ CONFIG = {
 }
 SECURITY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"  # no network
+)
+SCRIPT = Path(__file__).with_name("report.js").read_text(encoding="utf-8")
+HINT = (
+    "Drag sideways to zoom all plots, double click for the whole run; the scales follow. The cursor shows the values "
+    "of a cycle: click for a reference, Δt and Δy count from there, Esc takes it away. Click a legend entry to hide it."
 )
 STYLE = """
 :root { --ink: #1c2430; --faint: #667085; --line: #e1e6ed; --paper: #f4f6f9; --blue: #1f5fa8; --red: #b3261e;
@@ -69,6 +76,13 @@ tr.warning .tag { background: #fbe6ae; color: var(--amber); }
 pre { background: var(--paper); border-radius: 8px; padding: 12px; overflow: auto; font-size: 12.5px;
       max-height: 420px; }
 summary { cursor: pointer; font-weight: 600; }
+.cursor-layer { position: absolute; inset: 0; pointer-events: none; font-size: 12px; }
+.cursor-layer > div { position: absolute; font-variant-numeric: tabular-nums; white-space: pre; }
+.cursor-line { width: 0; border-left: 1px solid var(--ink); opacity: 0.7; }
+.cursor-line.reference { border-left: 1px dashed var(--red); }
+.cursor-time { background: var(--ink); color: white; border-radius: 4px; padding: 0 6px; }
+.cursor-values { background: rgb(255 255 255 / 85%); border-radius: 4px; padding: 0 6px; text-align: right; }
+.cursor-values span { display: block; line-height: 1.3; }
 @media print { section, .card { break-inside: avoid; } }
 """
 
@@ -102,13 +116,20 @@ def report_page(recorded: Recorded, *, program: str = "", machine: str = "", dat
         _paths(path_figures(recorded, figures["units"])),
         _times(recorded, figures["units"]),
         _events(recorded.events, recorded.cycle_time_ns * 1e-9),
-        _commands(recorded.commands, recorded.cycle_time_ns * 1e-9),
+        _commands(recorded, {**dict.fromkeys(recorded.of_type(SPINDLE_STATE), "deg"), **figures["units"]}),
         _nodes(last_diagnostics(recorded)),
         _topics(recorded),
         _files(recorded),
         "</main></body></html>\n",
     ]
     return "\n".join(part for part in parts if part)
+
+
+def plots_page(recorded: Recorded, rows: list[Row], *, title: str) -> str:
+    """A page of some plots alone."""
+    plots = _section("Over time", time_plots(recorded, rows), HINT)
+    body = [_head(title, [recorded.path.name]), "<main>", _incomplete(recorded), plots, "</main></body></html>\n"]
+    return "\n".join(body)
 
 
 def _head(title: str, details: Sequence[str]) -> str:
@@ -135,9 +156,9 @@ def _cards(figures: dict[str, Any]) -> str:
     for name, extreme in figures["following_error"].items():
         label = f"largest following error of {name}, at {extreme.time_s:.3f} s"
         cards.append((label, f"{abs(extreme.value):.4f} {figures['units'].get(name, 'mm')}", False))
-    if figures["lateness_p50_us"] is not None and figures["lateness_p99_us"] is not None:
+    if figures["lateness_p50_ms"] is not None and figures["lateness_p99_ms"] is not None:
         cards.append(
-            ("lateness p50 / p99", f"{figures['lateness_p50_us']:.0f} / {figures['lateness_p99_us']:.0f} µs", False)
+            ("lateness p50 / p99", f"{figures['lateness_p50_ms']:.1f} / {figures['lateness_p99_ms']:.1f} ms", False)
         )
     cards += [
         ("errors / warnings", f"{figures['errors']} / {figures['warnings']}", figures["errors"] > 0),
@@ -165,8 +186,19 @@ def _paths(figures: list[go.Figure]) -> str:
 def _times(recorded: Recorded, units: dict[str, str]) -> str:
     if not recorded.states:
         return _section("Over time", "", "The recording holds no states.")
-    note = "Drag in one plot to zoom all of them, double click to see the whole run; click a legend entry to hide it."
-    return _section("Over time", _plot(time_figure(recorded, units, torque_units(recorded)), "time"), note)
+    still = standing(recorded)
+    notes = [HINT, f"Without plots, as they do not move: {', '.join(still)}."] if still else [HINT]
+    plots = time_plots(recorded, list(time_rows(recorded, units, torque_units(recorded))))
+    return _section("Over time", plots, " ".join(notes))
+
+
+def time_plots(recorded: Recorded, rows: list[Row]) -> str:
+    """The plots with every cycle of their lines, and the script that zooms them."""
+    columns = json.dumps(time_columns(recorded, rows), separators=(",", ":"))
+    return (
+        f"{_plot(rows_figure(recorded, rows), 'time')}"
+        f'<script type="application/json" id="columns">{columns}</script><script>{SCRIPT}</script>'
+    )
 
 
 def _plot(figure: go.Figure, name: str) -> str:
@@ -196,7 +228,9 @@ def _events(events: list[Event], cycle_time: float) -> str:
     return _section("Events", _table(head, rows), _count(len(events), "event"))
 
 
-def _commands(commands: list[CommandRecord], cycle_time: float) -> str:
+def _commands(recorded: Recorded, units: dict[str, str]) -> str:
+    """`units`: mm or deg by axis and spindle."""
+    commands, cycle_time = recorded.commands, recorded.cycle_time_ns * 1e-9
     rows = [
         (
             "" if command.accepted else "refused",
@@ -204,8 +238,8 @@ def _commands(commands: list[CommandRecord], cycle_time: float) -> str:
                 _number(command.cycle * cycle_time, 3),
                 _number(command.cycle),
                 _name(command.target),
-                _name(command.command),
-                _text(_arguments(command.arguments_json)),
+                _name(command.command.replace("_", " ")),
+                _text(argument_words(command.arguments_json, units.get(command.target, ""))),
                 _tag("accepted" if command.accepted else "refused"),
                 _text(f"P-ERR-{command.error_id} {command.message}" if command.error_id else command.message),
             ],
@@ -214,25 +248,6 @@ def _commands(commands: list[CommandRecord], cycle_time: float) -> str:
     ]
     head = ["time in s", "cycle", "to", "command", "arguments", "", "answer"]
     return _section("Commands", _table(head, rows), _count(len(commands), "command"))
-
-
-def _arguments(text: str) -> str:
-    """`{"target": 5.0}` -> `target 5.0`, of long texts the number of lines only; what is no object stays as it is."""
-    values = _object(text)
-    return text if values is None else ", ".join(f"{key} {_shortened(value)}" for key, value in values.items())
-
-
-def _object(text: str) -> dict[str, Any] | None:
-    try:
-        values = json.loads(text)
-    except ValueError:
-        return None
-    return values if isinstance(values, dict) else None
-
-
-def _shortened(value: Any) -> str:
-    lines = str(value).splitlines()
-    return f"({len(lines)} lines)" if len(lines) > 1 else str(value)
 
 
 def _nodes(nodes: dict[str, dict[str, str]]) -> str:
@@ -265,7 +280,7 @@ def _programs(commands: Iterable[CommandRecord]) -> dict[str, str]:
     """The texts of the loaded NC programs by file name, their lines numbered."""
     programs: dict[str, str] = {}
     for command in commands:
-        values = _object(command.arguments_json) or {}
+        values = json_object(command.arguments_json) or {}
         if command.accepted and command.command == "load" and isinstance(values.get("text"), str):
             lines = values["text"].splitlines()
             numbered = (f"{number:>5}  {line}" for number, line in enumerate(lines, start=1))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import IntEnum
 from html import escape
 from typing import Any
@@ -13,15 +13,25 @@ import numpy.typing as npt
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
-from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode, Severity
+from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode, CommandRecord, Severity
+from cnc_ptp.recording.columns import packed
+from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points, path_points
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+from cnc_ptp.recording.rows import OTHER, SET, Row, standing, time_rows
+from cnc_ptp.recording.statistics import axis_units
 
-SET, ACTUAL, OTHER, DEVIATION = "#5b93d6", "#d9480f", "#6a4fa3", "#b3261e"
+SET_COLOUR, ACTUAL_COLOUR, OTHER_COLOUR, DEVIATION = "#5b93d6", "#d9480f", "#6a4fa3", "#b3261e"
+COLOURS = ["#1f5fa8", "#e07b00", "#3f9b4f", "#6a4fa3", "#2aa198", "#b3261e", "#8c6d31", "#5b6b7f"]
+PRECISE = ("position", "angle", "following error")
+"""Keep all digits."""
 INK, GRID, FAINT = "#1c2430", "#e6eaf0", "#8a94a3"
 ROW_HEIGHT, ROW_GAP, TOP, BOTTOM = 150, 54, 84, 48
+BAND_HEIGHT = 24
 MOST_BANDS = 4000
+MOST_MARKS = 100
+LETTERS = 300
 STATE_COLOURS = {
     "DISABLED": "#c9ced6",
     "IDLE": "#dfe3e9",
@@ -42,47 +52,46 @@ STATE_COLOURS = {
 SEVERITY_COLOURS = {Severity.INFO: "#5b6b7f", Severity.WARNING: "#e0a100", Severity.ERROR: "#c62828"}
 
 
-@dataclass
-class Row:
-    """One plot of the time figure: a title and lines (name, colour, rows of the recording, field, factor)."""
-
-    title: str
-    lines: list[tuple[str, str, Records, str, float]] = field(default_factory=list)
-    precise: bool = False  # positions keep float64
-    legend: bool = False  # the row has its own legend
-
-
 def time_figure(
     recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str] | None = None
 ) -> go.Figure:
     """All quantities over time, one above the other; zooming one of them zooms all.
 
-    `units`: mm or deg by axis; `torque_units`: Nm or N. Feedforward, torque and friction compensation have a plot where
-    they are in use.
+    `units`: mm or deg by axis; `torque_units`: Nm or N. What does not move or is not in use has no plot. The lines are
+    thinned out; report.js takes their place by those of `time_columns` as the page is zoomed.
     """
-    rows = [row for row in _rows(recorded, units, torque_units or {}) if row.lines]
+    rows = list(time_rows(recorded, units, torque_units or {}))
+    return rows_figure(recorded, rows)
+
+
+def rows_figure(recorded: Recorded, rows: Sequence[Row]) -> go.Figure:
+    """States, events and commands, and below them the rows."""
     count = len(rows) + 1
-    height = count * ROW_HEIGHT + (count - 1) * ROW_GAP
+    first = max(ROW_HEIGHT, BAND_HEIGHT * (2 + len(recorded.states)))
+    height = first + len(rows) * (ROW_HEIGHT + ROW_GAP)
     figure = make_subplots(
         rows=count,
         cols=1,
         shared_xaxes="all",
         vertical_spacing=ROW_GAP / height if count > 1 else 0.0,
-        subplot_titles=["States and events", *(row.title for row in rows)],
+        row_heights=[first, *[ROW_HEIGHT] * len(rows)],
+        subplot_titles=["States, events and commands", *(escape(row.heading) for row in rows)],
     )
     _add_states(figure, recorded)
+    serial = 0
     for number, row in enumerate(rows, start=2):
-        _add_lines(figure, recorded, row, number)
+        _add_lines(figure, recorded, row, number, serial)
+        serial += len(row.lines)
     _style(figure, height + TOP + BOTTOM)
     figure.update_layout(
-        margin={"l": 86, "r": 24, "t": TOP, "b": BOTTOM}, hovermode="x", barmode="overlay", bargap=0.25
+        margin={"l": 86, "r": 24, "t": TOP, "b": BOTTOM}, hovermode="closest", barmode="overlay", bargap=0.25
     )
-    figure.update_xaxes(
-        showticklabels=True, hoverformat=".3f", showspikes=True, spikemode="across", spikethickness=1, spikecolor=FAINT
-    )
+    figure.update_xaxes(showticklabels=True, hoverformat=".3f")
+    figure.update_yaxes(fixedrange=True)  # they follow
     figure.update_xaxes(title_text="time in s", row=count, col=1)
-    figure.update_xaxes(range=[0.0, max(float(recorded.last_cycle + 1) * recorded.cycle_time_ns * 1e-9, 1e-3)])
+    figure.update_xaxes(range=time_range(recorded))
     figure.update_annotations(x=0.0, xanchor="left", font={"size": 13, "color": INK})
+    _mark_commands(figure, recorded)
     legend = {"orientation": "h", "traceorder": "normal", "x": 0.0, "xanchor": "left"}
     figure.update_layout(legend={**legend, "yref": "container", "y": 1.0 - 34 / figure.layout.height, "yanchor": "top"})
     for number, row in enumerate(rows, start=2):
@@ -93,90 +102,72 @@ def time_figure(
     return figure
 
 
-def _rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[Row]:
-    channels = recorded.of_type(CHANNEL_STATE)
-    axes = recorded.of_type(AXIS_STATE)
-    spindles = recorded.of_type(SPINDLE_STATE)
-    for name, rows in channels.items():
-        feed = [("set", SET, rows, "programmed_feed", 60.0), ("actual", ACTUAL, rows, "path_velocity", 60.0)]
-        yield Row(f"{escape(name)}: feed in mm/min, programmed and path velocity", feed)
-    overrides = {**channels, **axes, **spindles}
-    colours = ["#1f5fa8", "#e07b00", "#3f9b4f", "#6a4fa3", "#2aa198", "#b3261e", "#8c6d31", "#5b6b7f"]
-    yield Row(
-        "Override in %",
-        [
-            (name, colours[number % len(colours)], rows, "override_percent", 1.0)
-            for number, (name, rows) in enumerate(overrides.items())
-        ],
-        legend=True,
-    )
-    for name, rows in channels.items():
-        yield Row(f"{escape(name)}: program line", [("line", OTHER, rows, "line", 1.0)])
-    for name, rows in spindles.items():
-        speed = [("set", SET, rows, "set_speed_rpm", 1.0), ("actual", ACTUAL, rows, "actual_speed_rpm", 1.0)]
-        yield Row(f"{escape(name)}: speed in rpm", speed)
-    for name, rows in axes.items():
-        yield from _axis_rows(name, rows, units.get(name, "mm"))
-        yield from _control_rows(name, rows, units.get(name, "mm"), torque_units.get(name, "Nm or N"))
+def time_range(recorded: Recorded) -> list[float]:
+    """Begin and end of the states in s."""
+    first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
+    cycle_time = recorded.cycle_time_ns * 1e-9
+    return [first * cycle_time, max((recorded.last_cycle + 1) * cycle_time, first * cycle_time + 1e-3)]
 
 
-def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
-    label = escape(name.upper() if len(name) == 1 else name)
-    position = [("set", SET, rows, "set_position", 1.0), ("actual", ACTUAL, rows, "actual_position", 1.0)]
-    velocity = [("set", SET, rows, "set_velocity", 1.0), ("actual", ACTUAL, rows, "actual_velocity", 1.0)]
-    yield Row(f"{label}: position in {unit}", position, precise=True)
-    yield Row(f"{label}: velocity in {unit}/s", velocity)
-    yield Row(f"{label}: acceleration in {unit}/s²", [("set", SET, rows, "set_acceleration", 1.0)])
-    yield Row(f"{label}: jerk in {unit}/s³", [("set", SET, rows, "set_jerk", 1.0)])
-    yield Row(
-        f"{label}: following error in {unit}",
-        [("following error", DEVIATION, rows, "following_error", 1.0)],
-        precise=True,
-    )
+def time_columns(recorded: Recorded, rows: Iterable[Row]) -> dict[str, Any]:
+    """Every cycle of every line of the figure, for report.js: cycles of each unit once, values of each line."""
+    cycles: dict[int, int] = {}
+    packed_cycles: list[dict[str, Any]] = []
+    values = []
+    for line in (line for row in rows for line in row.lines):
+        place = cycles.get(id(line.rows))
+        if place is None:
+            place = cycles[id(line.rows)] = len(packed_cycles)
+            packed_cycles.append(packed(line.rows["cycle"]))
+        values.append({"cycles": place, "factor": line.factor, "values": packed(line.rows[line.field])})
+    return {"cycle_time": recorded.cycle_time_ns * 1e-9, "cycles": packed_cycles, "lines": values}
 
 
-def _control_rows(name: str, rows: Records, unit: str, torque_unit: str) -> Iterator[Row]:
-    """What goes to the drive besides the command of the position controller; only what is in use."""
-    label = escape(name.upper() if len(name) == 1 else name)
-    feedforward = [
-        ("to the position controller", SET, "feedforward_velocity"),
-        ("to the drive", ACTUAL, "additive_velocity"),
-    ]
-    torque = [("additive", SET, "additive_torque"), ("drive", ACTUAL, "actual_torque")]
-    friction = [("friction compensation", OTHER, "friction_current")]
-    yield Row(f"{label}: feedforward in {unit}/s", _in_use(rows, feedforward), legend=True)
-    yield Row(f"{label}: torque in {torque_unit}", _in_use(rows, torque), legend=True)
-    yield Row(f"{label}: friction compensation, current in digits of the drive", _in_use(rows, friction))
-
-
-def _in_use(rows: Records, columns: list[tuple[str, str, str]]) -> list[tuple[str, str, Records, str, float]]:
-    """Lines of the columns (name, colour, field) that the recording has and that are not 0 throughout."""
-    known = rows.dtype.names or ()
-    return [
-        (name, colour, rows, field, 1.0) for name, colour, field in columns if field in known and np.any(rows[field])
-    ]
-
-
-def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int) -> None:
+def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int, serial: int) -> None:
+    """The lines of a row; `meta` says which of all lines of the figure it is."""
     shown = {trace.name for trace in figure.data}
-    for name, colour, rows, column, factor in row.lines:
-        cycles, values = line_points(rows["cycle"], rows[column])
+    for index, line in enumerate(row.lines):
+        cycles, values = line_points(line.rows["cycle"], line.rows[line.field])
         figure.add_trace(
             go.Scatter(
                 x=_compact(cycles * (recorded.cycle_time_ns * 1e-9), precise=recorded.last_cycle > 2_000_000),
-                y=_compact(values * factor, precise=row.precise),
+                y=_compact(values * line.factor, precise=row.title in PRECISE),
                 mode="lines",
-                name=escape(name),
-                legendgroup=name,
-                showlegend=row.legend or (name in ("set", "actual") and name not in shown),
+                name=escape(line.name),
+                legendgroup=line.name,
+                showlegend=row.legend or (line.role != OTHER and line.name not in shown),
                 legend=f"legend{number}" if row.legend else "legend",
-                line={"color": colour, "width": 2.6 if name == "set" and len(row.lines) > 1 else 1.3},
-                hovertemplate="%{y}",
+                line={"color": colour_of(row, index), "width": 2.6 if line.role == SET and len(row.lines) > 1 else 1.3},
+                hoverinfo="skip",
                 connectgaps=False,
+                meta=serial + index,
             ),
             row=number,
             col=1,
         )
+
+
+def colour_of(row: Row, index: int) -> str:
+    """Set and actual values have theirs; other lines of a row one each."""
+    line = row.lines[index]
+    if line.role != OTHER:
+        return SET_COLOUR if line.role == SET else ACTUAL_COLOUR
+    if line.name == "following error":
+        return DEVIATION
+    return COLOURS[index % len(COLOURS)] if len(row.lines) > 1 else OTHER_COLOUR
+
+
+def _mark_commands(figure: go.Figure, recorded: Recorded) -> None:
+    """A thin line through all plots at each command; of very many none."""
+    times = sorted({command.cycle * recorded.cycle_time_ns * 1e-9 for command in recorded.commands})
+    if len(times) > MOST_MARKS:
+        return
+    line = {"color": FAINT, "width": 1, "dash": "dot"}
+    shapes = [
+        {"type": "line", "xref": "x", "yref": "paper", "x0": time, "x1": time, "y0": 0, "y1": 1, "line": line}
+        for time in times
+    ]
+    figure.update_layout(shapes=[{**shape, "layer": "below"} for shape in shapes])
 
 
 def _compact(values: npt.NDArray[np.float64], *, precise: bool) -> npt.NDArray[Any]:
@@ -193,7 +184,7 @@ def _add_states(figure: go.Figure, recorded: Recorded) -> None:
     ]
     for type_name, codes in state_codes:
         units += [(name, rows, codes) for name, rows in recorded.of_type(type_name).items()]
-    names = ["events", *(name for name, _, _ in reversed(units))]
+    names = [*(["commands"] if recorded.commands else []), "events", *(name for name, _, _ in reversed(units))]
     bands: dict[str, list[tuple[str, float, float]]] = {}
     for name, rows, codes in units:
         for state, begin, end in state_bands(rows, codes, recorded.cycle_time_ns * 1e-9):
@@ -201,6 +192,7 @@ def _add_states(figure: go.Figure, recorded: Recorded) -> None:
     for state in sorted(bands, key=list(STATE_COLOURS).index):
         _add_bands(figure, state, bands[state])
     _add_events(figure, recorded)
+    _add_commands(figure, recorded)
     figure.update_yaxes(
         categoryorder="array", categoryarray=[escape(name) for name in names[::-1]], autorange="reversed", row=1, col=1
     )
@@ -262,18 +254,55 @@ def _add_events(figure: go.Figure, recorded: Recorded) -> None:
         )
 
 
+def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
+    """A mark for each moment at which something was commanded; report.js writes the words where there is room."""
+    moments: dict[int, list[CommandRecord]] = {}
+    for command in recorded.commands:
+        moments.setdefault(command.cycle, []).append(command)
+    if not moments:
+        return
+    units = {**dict.fromkeys(recorded.of_type(SPINDLE_STATE), "deg"), **axis_units(recorded)}
+    words = [
+        ", ".join(f"{command.target} {command_words(command, units)}" for command in of) for of in moments.values()
+    ]
+    refused = [not all(command.accepted for command in of) for of in moments.values()]
+    figure.add_trace(
+        go.Scatter(
+            x=[cycle * recorded.cycle_time_ns * 1e-9 for cycle in moments],
+            y=["commands"] * len(moments),
+            mode="markers+text",
+            name="command",
+            meta="commands",
+            marker={"color": [DEVIATION if no else INK for no in refused], "size": 9, "symbol": "triangle-down"},
+            text=[""] * len(words),
+            textposition="middle right",
+            textfont={"size": 10},
+            customdata=[escape(shortened(text, LETTERS)) for text in words],
+            hovertemplate="%{x:.3f} s %{customdata}<extra></extra>",
+        ),
+        row=1,
+        col=1,
+    )
+
+
 def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
-    """The axes of the path plot: x, y, z where they exist, otherwise the first three linear axes."""
-    names = [name for name in recorded.of_type(AXIS_STATE) if units.get(name, "mm") == "mm"]
+    """The axes of the path plot: x, y, z where they move, otherwise the first three linear axes that do."""
+    still = standing(recorded)
+    axes = recorded.of_type(AXIS_STATE)
+    names = [name for name in axes if units.get(name, "mm") == "mm" and name not in still]
     spatial = [name for name in names if name in ("x", "y", "z")]
     spatial.sort()
     return spatial if len(spatial) >= 2 else names[:3]
 
 
 def path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
-    """The actual path in the plane of the first two axes and, with a third axis, in space; coloured by feed."""
+    """The actual path in the plane of the first two axes and, with a third axis, in space; coloured by feed.
+
+    None where no channel moves along a path.
+    """
     axes = path_axes(recorded, units)
-    if len(axes) < 2:
+    on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())
+    if len(axes) < 2 or not on_path:
         return []
     path = _path(recorded, axes)
     figures = [_plane_figure(path, axes)]

@@ -6,6 +6,7 @@ a line `MSG: package/Name` (MCAP registry, schema encoding `ros2msg`).
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from collections.abc import Iterator
@@ -88,6 +89,17 @@ def schema_text(type_name: str) -> str:
         used = (field.type for field in _fields(name, text) if field.type not in PRIMITIVES and field.type != "string")
         todo.extend(other for other in dict.fromkeys(used) if other not in todo)
     return "".join(parts)
+
+
+@cache
+def type_hash(type_name: str) -> str:
+    """The hash of an installed message type (REP 2016), as ROS has generated it; empty where it has not."""
+    try:
+        generated = json.loads(message_file(type_name).with_suffix(".json").read_text(encoding="utf-8"))
+        hashes = {entry["type_name"]: str(entry["hash_string"]) for entry in generated["type_hashes"]}
+        return hashes.get(full_name(type_name), "")
+    except (OSError, ValueError, KeyError):
+        return ""
 
 
 def parse_schema(type_name: str, text: str) -> Schema:

@@ -13,6 +13,7 @@ from cnc_ptp.machine.blocks import ChannelStateCode, Severity
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.node_figures import LATENESS_P50, LATENESS_P99, LOST_BLOCKS
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
 from cnc_ptp.recording.writer import MACHINE_FILE
 
@@ -40,11 +41,11 @@ def summary(recorded: Recorded) -> dict[str, Any]:
     `program_time_s` (None without a channel): time in which a program was being executed, waiting included;
     `duration_s`: recorded time; `cycles`, `blocks`; `lost_blocks`: blocks that the nodes reported as lost, or that are
     missing in the recording, whichever is more; `following_error`: Extreme by axis; `units`: mm or deg by axis, as far
-    as known; `lateness_p50_us`, `lateness_p99_us`: of the node that was latest, None if no node reported; `errors`,
+    as known; `lateness_p50_ms`, `lateness_p99_ms`: of the node that was latest, None if no node reported; `errors`,
     `warnings`: events; `commands`, `refused`; `complete`, `missing`: of the file.
     """
     nodes = last_diagnostics(recorded)
-    reported = sum(_number(values, "lost_blocks") or 0 for values in nodes.values())
+    reported = sum(_number(values, LOST_BLOCKS) or 0 for values in nodes.values())
     return {
         "program_time_s": program_time(recorded),
         "duration_s": cycles(recorded) * recorded.cycle_time_ns * 1e-9,
@@ -53,8 +54,8 @@ def summary(recorded: Recorded) -> dict[str, Any]:
         "lost_blocks": max(int(reported), missing_blocks(recorded)),
         "following_error": largest_following_errors(recorded),
         "units": axis_units(recorded),
-        "lateness_p50_us": _largest(nodes, "lateness_p50_us"),
-        "lateness_p99_us": _largest(nodes, "lateness_p99_us"),
+        "lateness_p50_ms": _largest(nodes, LATENESS_P50),
+        "lateness_p99_ms": _largest(nodes, LATENESS_P99),
         "errors": sum(event.severity == Severity.ERROR for event in recorded.events),
         "warnings": sum(event.severity == Severity.WARNING for event in recorded.events),
         "commands": len(recorded.commands),

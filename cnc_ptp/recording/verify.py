@@ -7,7 +7,7 @@ from -0.0.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import Block, PlcBlock
-from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, kind_of, set_stamps
+from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import Stamps, topic_of
@@ -51,7 +51,7 @@ class TopicResult:
     """What the comparison of one topic found.
 
     `missing`: cycles that were computed but not recorded; `duplicated`: recorded more than once; `surplus`: recorded
-    but not computed.
+    but not computed. `not_recorded`: fields that are computed here and that the recording does not have.
     """
 
     topic: str
@@ -61,6 +61,7 @@ class TopicResult:
     missing: list[int] = field(default_factory=list)
     duplicated: list[int] = field(default_factory=list)
     surplus: list[int] = field(default_factory=list)
+    not_recorded: list[str] = field(default_factory=list)
 
     @property
     def equal(self) -> bool:
@@ -107,18 +108,30 @@ class VerifyResult:
     def text(self) -> str:
         """One line when all is equal, otherwise a line for each finding."""
         if self.equal:
-            return f"{self.path}: {self.compared} states of {len(self.topics)} topics are equal to the bit"
+            equal = f"{self.path}: {self.compared} states of {len(self.topics)} topics are equal to the bit"
+            return "\n".join([equal, *self._not_compared()])
         if not self.topics:
             return f"{self.path}: holds no per-cycle states, nothing could be compared"
         findings = [line for result in self.topics.values() for line in result.lines()]
-        return "\n".join([f"{self.path}: {self.differences} differences in {self.compared} states", *findings])
+        found = f"{self.path}: {self.differences} differences in {self.compared} states"
+        return "\n".join([found, *findings, *self._not_compared()])
+
+    def _not_compared(self) -> Iterator[str]:
+        """A line for each set of fields that an older version has not recorded."""
+        topics: dict[str, list[str]] = {}
+        for result in self.topics.values():
+            if result.not_recorded:
+                topics.setdefault(", ".join(result.not_recorded), []).append(result.topic)
+        for fields, names in topics.items():
+            yield f"note: recorded without {fields} ({', '.join(names)}): not compared"
 
 
 def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
     """Compares the recorded states with what `replay(recorded)` computes: pairs of unit name (or topic) and block.
 
     PLC blocks among them are passed over, they have no per-cycle states.
-    Raises CncError 26004 when the recording has no machine file or its states have other fields than those computed
+    An older recording may lack fields that are computed today: those that it has are compared, the result names the
+    others. Raises CncError 26004 when the recording has no machine file or its states have fields that are not computed
     here. Of a file that was cut off, cycles after the last recorded one are not counted as missing.
     """
     if not recorded.machine_yaml:
@@ -177,14 +190,16 @@ class _Check:
         return self.result
 
     def require_fields(self, kind: StateKind) -> None:
-        if self.rows is None or set(self.rows.dtype.names or ()) == set(kind.layout.dtype.names or ()):
+        if self.rows is None:
             return
-        raise CncError(
-            26004,
-            f"recording {self.recorded.path}: {self.result.topic} has the fields {_names(self.rows)}, this version "
-            f"computes {', '.join(kind.layout.dtype.names or ())}; it cannot be verified, use the version that "
-            "recorded it",
-        )
+        recorded, computed = self.rows.dtype.names or (), kind.layout.dtype.names or ()
+        if unknown := [name for name in recorded if name not in computed]:
+            raise CncError(
+                26004,
+                f"recording {self.recorded.path}: {self.result.topic} has the fields {', '.join(unknown)}, which this "
+                "version does not compute; it cannot be verified, use the version that recorded it",
+            )
+        self.result.not_recorded = [name for name in computed if name not in recorded]
 
     def compare_batch(self) -> None:
         if self.form is None or not self.batch:
@@ -194,9 +209,7 @@ class _Check:
         cycles = cycles_of(packed, count)
         computed = np.zeros(len(cycles), dtype=kind.layout.dtype)
         computed["cycle"] = cycles
-        set_stamps(computed, self.stamps.at_all(cycles))
-        for name in kind.columns:
-            computed[name] = packed[name].reshape(-1)
+        fill_states(kind, computed, packed, cycles, self.stamps.at_all(cycles))
         self.compare(computed[np.argsort(cycles, kind="stable")])
 
     def compare(self, computed: Records) -> None:
@@ -220,7 +233,7 @@ class _Check:
 
     def compare_rows(self, recorded: Records, computed: Records) -> None:
         found: list[Difference] = []
-        for name in computed.dtype.names or ():
+        for name in recorded.dtype.names or ():
             places = np.flatnonzero(_as_bits(recorded[name]) != _as_bits(computed[name]))
             self.result.differences += len(places)
             found += [
@@ -248,10 +261,6 @@ def ranges_text(numbers: list[int], most: int = 5) -> str:
             ranges.append([number, number])
     texts = [str(first) if first == last else f"{first}-{last}" for first, last in ranges[:most]]
     return ", ".join(texts + ["…"] * (len(ranges) > most))
-
-
-def _names(rows: Records) -> str:
-    return ", ".join(rows.dtype.names or ())
 
 
 def _as_bits(values: npt.NDArray[Any]) -> npt.NDArray[Any]:

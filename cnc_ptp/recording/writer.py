@@ -26,6 +26,7 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     SpindleBlock,
 )
+from cnc_ptp.recording.bag import QOS, TYPE_HASH
 from cnc_ptp.recording.blocks import (
     BlockLayout,
     Packer,
@@ -39,11 +40,14 @@ from cnc_ptp.recording.blocks import (
 )
 from cnc_ptp.recording.layout import Bytes, Header, encode, header_at, repeat
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
-from cnc_ptp.recording.schemas import full_name, load_schema
+from cnc_ptp.recording.qos import offered, profiles_text
+from cnc_ptp.recording.schemas import full_name, load_schema, type_hash
 
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
 METADATA = "cnc_ptp"
+MISSING = "missing"
+"""Key of the metadata: what a recording that was closed for a dead recorder does not have."""
 BEFORE_ALL = -1  # end of the chunk before the first block
 
 
@@ -233,11 +237,14 @@ class Recording:
             self._block_and_states(name, block, (block.count, block.master, block.master_wanted, block.source))
 
     def channel_block(self, name: str, block: ChannelBlock) -> None:
+        """`/<name>/block`, per cycle `/<name>/state`, and `/<name>/handshake` for each request in it."""
         if block.commands or block.requests:
             self.channel_block_message(name, block)
             self.states(name, block)
         else:
             self._block_and_states(name, block, _channel_shape(block))
+        for request in block.requests:
+            self._single(topic_of(name, "handshake"), "cnc_ptp/msg/HandshakeRequest", request)
 
     # states alone, blocks alone
 
@@ -373,7 +380,7 @@ class Recording:
         if known is None:
             self._require_open(topic)
             schema = load_schema(type_name)
-            known = _Topic(self._file.channel(topic, full_name(type_name), schema.text), schema.name)
+            known = _Topic(self._file.channel(topic, full_name(type_name), schema.text, offer(type_name)), schema.name)
             self._topics[topic] = known
         elif type_name not in known.type_names:
             raise CncError(
@@ -405,6 +412,11 @@ class Recording:
             for encoder, collected in topic.take():
                 for rows, times in encoder.messages(collected, self.stamps):
                     self._file.messages(topic.channel_id, rows, times)
+
+
+def offer(type_name: str) -> dict[str, str]:
+    """What a channel says of a topic besides its type: quality of service, hash of the type."""
+    return {QOS: profiles_text(offered(full_name(type_name))), TYPE_HASH: type_hash(type_name)}
 
 
 def topic_of(name: str, leaf: str) -> str:

@@ -38,6 +38,11 @@ class Job:
     number: int = 0
     """Of the order for which it is done."""
 
+    @property
+    def homes(self) -> bool:
+        """The zero pulse is still to come."""
+        return Step.SEARCH in self.steps
+
 
 @dataclass(slots=True)
 class Work:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import copysign
 
 from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
 from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
@@ -49,11 +50,12 @@ class Jobs:
     @property
     def _loop_stays_open(self) -> bool:
         """The loop is open for another reason than the control limit, which ends by itself on the way down."""
-        parameters = self._spindle.parameters
-        return self._spindle.loop.velocity_control or (parameters.open_loop and parameters.has_position)
+        parameters, loop = self._spindle.parameters, self._spindle.loop
+        return loop.velocity_control or (parameters.open_loop and parameters.has_position and not loop.closed)
 
     def _begin_step(self, cycle: int) -> None:
         self._since = cycle
+        self._spindle.exact_stop.forget()
         {
             Step.APPROACH: self._approach,
             Step.SEARCH: self._search,
@@ -69,11 +71,16 @@ class Jobs:
 
     def _approach(self, cycle: int) -> None:
         spindle = self._spindle
-        homes = Step.POSITION not in self._current().steps
-        spindle.state, spindle.mode = self._state(homes)
+        spindle.state, spindle.mode = self._state(self._current().homes)
         speed = spindle.motion(cycle)[1]
-        limit = 0.0 if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
+        limit = self._job_speed if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
         spindle.ramp_to(cycle, copysign(min(abs(speed), limit), speed))
+
+    @property
+    def _job_speed(self) -> float:
+        """Of the motion after the approach, without override."""
+        job = self._current()
+        return self._homing_speed if job.homes else self._spindle.limits.positioning(job.speed).speed
 
     @staticmethod
     def _state(homes: bool) -> tuple[S, SpindleMode]:
@@ -144,7 +151,7 @@ class Jobs:
         job = self._current()
         step = job.steps[0]
         if step is Step.APPROACH:
-            done = self._approached(cycle, actual_speed)
+            done = self._approached(cycle)
         elif step is Step.SEARCH:
             done = self._found(cycle)
         elif step is Step.SHIFT:
@@ -159,13 +166,13 @@ class Jobs:
         else:
             self._finish()
 
-    def _approached(self, cycle: int, actual_speed: float) -> bool:
+    def _approached(self, cycle: int) -> bool:
         spindle = self._spindle
         if not spindle.parameters.open_loop:
             return not spindle.loop.velocity_control
-        if not spindle.finished(cycle) or abs(actual_speed) > spindle.gear.zero_speed:
+        if not spindle.finished(cycle):
             return False
-        spindle.place(cycle, spindle.loop.position)
+        spindle.place(cycle, spindle.loop.close(spindle.motion(cycle)[1]))
         return True
 
     def _found(self, cycle: int) -> bool:
@@ -189,7 +196,7 @@ class Jobs:
         return False
 
     def _stands(self, cycle: int, actual_speed: float) -> bool:
-        """The setpoint is at its end and the actual value in the window; an error when that takes too long."""
+        """Exact stop at the end of the setpoint; an error when that takes too long."""
         spindle, step = self._spindle, self._current().steps[0]
         position, speed, _ = spindle.motion(cycle)
         if speed != 0.0 or not spindle.finished(cycle):
@@ -198,18 +205,38 @@ class Jobs:
             return False  # held by override 0
         loop = spindle.loop
         measured = loop.measures_position and not (step is Step.HALT and not loop.closed)
-        away = abs(position - loop.position) if measured else 0.0
-        window = spindle.gear.position_window
-        if away <= window and (measured or abs(actual_speed) <= spindle.gear.zero_speed):
+        away = position - loop.position if measured else 0.0
+        if spindle.note_position(cycle, away, actual_speed):
             return True
-        patience = spindle.parameters.target_time / spindle.cycle_time
-        if patience and spindle.cycles_since_end(cycle) >= patience:
-            reason = (
-                f"{spindle.parameters.target_time:g} s after its end the positioning is {away:g} deg away from its "
-                f"target, more than the position window {window:g} deg (P-AXIS-00236)"
-            )
-            spindle.fault(cycle, POSITION_MISSED, reason)
+        if self._too_long(spindle.cycles_since_end(cycle)):
+            since = f"{spindle.parameters.target_time:g} s after its end the positioning"
+            spindle.fault(cycle, POSITION_MISSED, f"{since} {self._missed(away, actual_speed)}")
         return False
+
+    def hold(self, cycle: int, actual: float, actual_speed: float) -> None:
+        """After a positioning: the spindle stays at its target; an error when it leaves it and does not come back."""
+        spindle = self._spindle
+        if not spindle.holds_position or spindle.target is None:
+            return
+        away = spindle.target - actual
+        spindle.note_position(cycle, away, actual_speed)
+        if self._too_long(cycle - spindle.exact_stop.left_at):
+            since = f"the position was left and has not come back for {spindle.parameters.target_time:g} s: the spindle"
+            spindle.fault(cycle, POSITION_MISSED, f"{since} {self._missed(away, actual_speed)}")
+
+    def _too_long(self, cycles: float) -> bool:
+        """The position has been missing for so many cycles, and is not about to be reached."""
+        spindle = self._spindle
+        patience = spindle.parameters.target_time / spindle.cycle_time
+        return patience > 0.0 and cycles >= patience and not spindle.exact_stop.settles
+
+    def _missed(self, away: float, actual_speed: float) -> str:
+        gear = self._spindle.gear
+        if abs(away) > gear.position_window:
+            window = f"position window {gear.position_window:g} deg (P-AXIS-00236)"
+            return f"is {abs(away):g} deg away from its target, more than the {window}"
+        limit = f"zero speed {gear.zero_speed / DEG_S_PER_RPM:g} rpm (P-AXIS-00216)"
+        return f"still turns at {abs(actual_speed) / DEG_S_PER_RPM:g} rpm, more than the {limit}"
 
     def _shifted(self, cycle: int) -> bool:
         """Only the PLC says so; an error when it does not."""

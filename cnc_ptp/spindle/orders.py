@@ -1,7 +1,8 @@
 """Who commands a spindle: order of arrival, work for one source at a time, acknowledgements to the PLC.
 
 A channel gives its name as `source`, the PLC's external commanding "plc"; commands of people and scenarios have none.
-Source: TF5200 spindle 2.1 (several channels), 2.2.1.1 (sequential in order of arrival, acknowledgements).
+A homing is finished first: the state graphs lead from it to a rotation through standstill only.
+Source: TF5200 spindle 2.1 (several channels), 2.2.1.1 (sequential in order of arrival, acknowledgements), 2.3, 2.7.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ class Orders:
 
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
+        spindle.when_faulted = self.clear
         self.waiting: deque[Order] = deque()
         self.source = ""
         """For whom the spindle is at work: until its speed, position, reference or gear is there."""
@@ -72,12 +74,19 @@ class Orders:
             self._spindle.refuse(command, AT_WORK, reason)
 
     def must_wait(self, command: str, source: str) -> bool:
-        """During a gear change all commands wait; those of the PLC for whatever is in work, too. A stop never waits."""
+        """For what is finished first; those of the PLC for whatever is in work. A stop never waits."""
         if command == "stop":
             return False
-        if self._spindle.work.changes_gear or (self.waiting and source != PLC and self.waiting[0].source != PLC):
+        if self._finished_before(command) or (self.waiting and source != PLC and self.waiting[0].source != PLC):
             return True
         return source == PLC and bool(self.waiting or self.source)
+
+    def _finished_before(self, command: str) -> bool:
+        """A gear change before all commands, a homing before all that act, a positioning before a homing."""
+        state = self._spindle.state
+        if self._spindle.work.changes_gear:
+            return True
+        return (state == S.HOMING and command != "set_speed") or (state == S.DISCRETE_MOTION and command == "home")
 
     def add(self, order: Order) -> None:
         self.waiting.append(order)
@@ -93,7 +102,7 @@ class Orders:
 
     def next(self) -> Order | None:
         """The order whose turn it is."""
-        if not self.waiting or self._spindle.work.changes_gear:
+        if not self.waiting or self._finished_before(self.waiting[0].command):
             return None
         source = self.waiting[0].source
         if self.source and source and (source == PLC or source != self.source):
@@ -126,8 +135,6 @@ class Orders:
     def watch(self) -> None:
         """Ends the work for a source when it is done."""
         spindle = self._spindle
-        if spindle.state == S.ERROR_STOP:
-            self.clear()
         if not self.source or spindle.work.job is not None:
             return
         turns_as_told = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached

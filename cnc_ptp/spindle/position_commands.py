@@ -15,6 +15,7 @@ from cnc_ptp.spindle.faults import (
     NO_REFERENCE,
     NO_SUCH_GEAR,
     SENSORLESS,
+    SPEED_LIMITED,
 )
 from cnc_ptp.spindle.job import Job, Step
 from cnc_ptp.spindle.jobs import Jobs
@@ -57,9 +58,9 @@ class PositionCommands:
         speed = spindle.gear.positioning_speed if speed_rpm is None else speed_rpm * DEG_S_PER_RPM
         job = Job("orient", deque([Step.POSITION]), goal=float(position_deg), speed=speed, direction=direction)
         self._jobs.start(cycle, job)
-        return self._slower(speed)
+        return self._slower(cycle, speed)
 
-    def _slower(self, speed: float) -> str | None:
+    def _slower(self, cycle: int, speed: float) -> str | None:
         """What people hear of a positioning speed in °/s that tool or control limit do not permit."""
         limits = self._spindle.limits
         used = limits.max_positioning_speed
@@ -67,7 +68,7 @@ class PositionCommands:
             return None
         rpm, used_rpm = speed / DEG_S_PER_RPM, f"{used / DEG_S_PER_RPM:g} rpm"
         bound = "maximum of the tool" if used == limits.max_speed else f"control limit {used_rpm} (P-AXIS-00220)"
-        return f"spindle {self._spindle.name}: speed {rpm:g} rpm is above the {bound}, {used_rpm} is used"
+        return self._spindle.warn(cycle, SPEED_LIMITED, f"speed {rpm:g} rpm is above the {bound}, {used_rpm} is used")
 
     def _require_position(self, command: str) -> None:
         if not self._spindle.parameters.has_position:
@@ -112,7 +113,7 @@ class PositionCommands:
             job.steps[0] = Step.POSITION
             job.goal, job.speed = spindle.gear.change_position, spindle.gear.positioning_speed
         self._jobs.start(cycle, job)
-        return self._slower(job.speed)
+        return self._slower(cycle, job.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
         """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""
@@ -124,9 +125,7 @@ class PositionCommands:
             return None
         if abs(job.resume) > spindle.gear.max_speed:
             rpm, limit = abs(job.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
-            return (
-                f"spindle {spindle.name}: speed {rpm:g} rpm of before is above the maximum {limit:g} rpm of gear "
-                f"{spindle.gear.stage} (P-AXIS-00212); the spindle stays at rest"
-            )
+            above = f"speed {rpm:g} rpm of before is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
+            return spindle.warn(cycle, SPEED_LIMITED, f"{above} (P-AXIS-00212); the spindle stays at rest")
         spindle.rotate(cycle, job.resume)
         return None

@@ -1,9 +1,11 @@
 """Position loop of a spindle: closed, opened at the control limit or by velocity control, or open for good.
 
 TF5200 spindle 2.2.4 (open position loop), 2.4.2 (control limit), P-AXIS-00265 and 00266 (velocity control). In the open
-loop the speed setpoint goes to the drive. Above the control limit the actual values are simulated: position controller
-and feedforward go on with an ideal drive, so that the drive of the spindle notices nothing of the limit; at constant
-speed the following error is speed / Kv. Units: °, °/s.
+loop the speed setpoint goes to the drive. The loop of a controlled spindle whose drive sends its position is open in
+rotation and closed while it is positioned, homed or held; it closes and opens without a step of the command. Above the
+control limit the actual values are simulated: position controller and feedforward go on with an ideal drive, so that
+the drive of the spindle notices nothing of the limit; at constant speed the following error is speed / Kv without
+feedforward. Units: °, °/s.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from cnc_ptp.parameters import GearParameters, SpindleParameters
 
 ROUNDING = 1e-12
 """Part of the control limit by which a speed that was cut to it may be above."""
-Cycles = tuple[list[float], list[float], list[float], list[int]]
+Cycles = tuple[list[float], list[float], list[float], list[int], list[float]]
 """Actual positions, actual speeds, following errors, drive outputs."""
 
 
@@ -48,8 +50,13 @@ class PositionLoop:
         self._simulated: SimulatedActuals | None = None
         self._feedforward = 0.0
         """Part of the set speed that went out beside the position controller."""
+        self._positions = False
+        """A controlled spindle is positioned, homed or held."""
+        self._commanded_speed = 0.0
         self.velocity_control = False
         self.drive_output = 0
+        self.feedforward_percent = 0.0
+        """Weight with which feedforward acts, 0 = off."""
         self._last_position: float | None = None
         self._feedforward_on, self._weight_percent = False, 100.0
         self.use_gear(gear, drive)
@@ -105,7 +112,8 @@ class PositionLoop:
 
     @property
     def closed(self) -> bool:
-        return not (self._parameters.open_loop or self.beyond_limit or self.velocity_control)
+        closes = self._positions or not self._parameters.open_loop
+        return closes and not (self.beyond_limit or self.velocity_control)
 
     @property
     def measures_position(self) -> bool:
@@ -119,7 +127,17 @@ class PositionLoop:
 
     def lag(self, speed: float) -> float:
         """Following error of a closed loop at a constant speed."""
-        return speed / self.control.kv
+        return speed * (1.0 - self.feedforward.velocity_part) / self.control.kv
+
+    def close(self, speed: float) -> float:
+        """A controlled spindle at `speed` is positioned from now on; the set position at which its command stays."""
+        self._positions = True
+        return self.position + self.lag(speed)
+
+    def open(self) -> float | None:
+        """A controlled spindle is not positioned any more: the speed it was commanded to; None if the loop was open."""
+        closed, self._positions = self._positions, False
+        return self._commanded_speed if closed else None
 
     def passes_limit(self, set_speed: float) -> bool:
         """True in the cycle in which the speed goes above the control limit; the reference is lost with it."""
@@ -195,28 +213,32 @@ class PositionLoop:
 
         The same as actual_position, actual_speed and command, cycle by cycle.
         """
-        if on and self.closed:
+        if on and self.closed and not self._parameters.open_loop:
             return self._closed_cycles(setpoints, watched)
-        cycles: Cycles = [], [], [], []
-        actuals, actual_speeds, errors, outputs = cycles
+        cycles: Cycles = [], [], [], [], []
+        actuals, actual_speeds, errors, outputs, percents = cycles
         for setpoint in setpoints:
+            if watched and self.control.too_far(setpoint):
+                break
             actual = self.actual_position(setpoint[0], setpoint[1])
             actuals.append(actual)
             actual_speeds.append(self.actual_speed(setpoint[1]))
             errors.append(setpoint[0] - actual)
             self.command(setpoint, on=on)
             outputs.append(self.drive_output)
+            percents.append(self.feedforward_percent)
         return cycles
 
     def _closed_cycles(self, setpoints: Sequence[State], watched: bool) -> Cycles:
-        actuals, actual_speeds, errors, commands, feedforward, additive, *_ = self.control.follow(
+        actuals, actual_speeds, errors, commands, feedforward, additive, _, _, _, percents = self.control.follow(
             setpoints, True, watched=watched
         )
         outputs = self._output.encode_all(commands)
         if outputs:
             self.drive_output = outputs[-1]
+            self.feedforward_percent = percents[-1]
             self._note_feedforward(feedforward[-1] + additive[-1], setpoints[len(outputs) - 1][1])
-        return actuals, actual_speeds, errors, outputs
+        return actuals, actual_speeds, errors, outputs, percents
 
     def _note_feedforward(self, feedforward_speed: float, set_speed: float) -> None:
         self._feedforward = feedforward_speed / set_speed if set_speed else 0.0
@@ -224,7 +246,7 @@ class PositionLoop:
     def command(self, setpoint: State, *, on: bool) -> None:
         """Moves the drive for one cycle. `on` is False without power.
 
-        A spindle that is never under position control turns as fast as the digits say that go out (spindle 2.2.4).
+        In the open loop a controlled spindle turns as fast as the digits say that go out (spindle 2.2.4).
         """
         speed = setpoint[1] if on else 0.0
         if self._parameters.open_loop:
@@ -233,4 +255,6 @@ class PositionLoop:
             speed = self._simulated.step(setpoint, self._cycle_time)
         cycle = self.control.step(setpoint, on and self.closed, speed)
         self._note_feedforward(cycle.feedforward_velocity + cycle.additive_velocity, setpoint[1])
+        self.feedforward_percent = cycle.feedforward_percent
+        self._commanded_speed = cycle.command_velocity + cycle.additive_velocity
         self.drive_output = self._output.encode(cycle.command_velocity)

@@ -13,22 +13,22 @@ class PowerCommands:
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
 
-    def do_power(self, cycle: int, *, on: bool) -> str | None:
+    def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """Enables or disables the spindle; one that moves stops on its ramp with an error first (24011).
 
         While the PLC changes the gear an enable counts after that; no rotation goes on then. The enable itself moves
         nothing.
         """
         spindle = self._spindle
-        if on == spindle.powered:
-            return f"spindle {spindle.name}: power is {'on' if on else 'off'} already"
-        spindle.powered = on
+        if enabled == spindle.powered:
+            return f"spindle {spindle.name}: power is {'on' if enabled else 'off'} already"
+        spindle.powered = enabled
         spindle.unsettled = True
         if spindle.work.gear_request:
             spindle.state = S.DISABLED
             spindle.work.forget_rotation()
-            return f"spindle {spindle.name}: power on counts when the PLC has changed the gear" if on else None
-        if on:
+            return f"spindle {spindle.name}: power on counts when the PLC has changed the gear" if enabled else None
+        if enabled:
             self._switch_on(cycle)
         elif spindle.state == S.STANDSTILL:
             spindle.state = S.DISABLED
@@ -40,6 +40,7 @@ class PowerCommands:
         spindle = self._spindle
         if spindle.state == S.DISABLED:
             spindle.state = S.STANDSTILL
+            spindle.exact_stop.forget()
             if spindle.loop.measures_position:
                 spindle.place(cycle, spindle.loop.position)
 

@@ -12,6 +12,7 @@ from cnc_ptp.spindle.faults import (
     BAD_OVERRIDE,
     BAD_SPEED,
     BAD_TOOL_LIMITS,
+    SPEED_LIMITED,
     SPEED_TOO_HIGH,
 )
 from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
@@ -43,7 +44,7 @@ class RotationCommands:
         check_speed(spindle, "start", speed_rpm)
         check_direction(spindle, "start", cycle, direction)
         spindle.rotate(cycle, DIRECTIONS[direction] * speed_rpm * DEG_S_PER_RPM)
-        return self._limited(speed_rpm)
+        return self._limited(cycle, speed_rpm)
 
     def do_set_speed(self, cycle: int, *, speed_rpm: float) -> str | None:
         """An S word alone: a new speed in the same direction; without effect while the spindle does not rotate."""
@@ -53,9 +54,9 @@ class RotationCommands:
             return f"spindle {spindle.name}: set_speed without effect in {state_name(spindle.state)}"
         sign = 1.0 if spindle.mode == SpindleMode.CW else -1.0
         spindle.rotate(cycle, sign * speed_rpm * DEG_S_PER_RPM)
-        return self._limited(speed_rpm)
+        return self._limited(cycle, speed_rpm)
 
-    def _limited(self, speed_rpm: float) -> str | None:
+    def _limited(self, cycle: int, speed_rpm: float) -> str | None:
         """What people hear of a speed that the tool does not take."""
         limits, speed = self._spindle.limits, speed_rpm * DEG_S_PER_RPM
         used = abs(limits.endless(speed))
@@ -63,7 +64,8 @@ class RotationCommands:
             return None
         bound = "above the maximum" if used < speed else "below the minimum"
         used_rpm = used / DEG_S_PER_RPM
-        return f"spindle {self._spindle.name}: speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
+        text = f"speed {speed_rpm} rpm is {bound} of the tool, {used_rpm:g} rpm is used"
+        return self._spindle.warn(cycle, SPEED_LIMITED, text)
 
     def do_stop(self, cycle: int, *, homes: bool = True) -> None:
         """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.
@@ -95,12 +97,12 @@ class RotationCommands:
         spindle.override_percent = float(percent)
         return self._override_changed(cycle, f"override {percent} %")
 
-    def do_suppress_override(self, cycle: int, *, on: bool) -> str | None:
+    def do_suppress_override(self, cycle: int, *, enabled: bool) -> str | None:
         """G167: the override does not act (100 %) until it is switched off again."""
-        if on == self._spindle.override_suppressed:
+        if enabled == self._spindle.override_suppressed:
             return None
-        self._spindle.override_suppressed = on
-        return self._override_changed(cycle, f"override suppression {'on' if on else 'off'}")
+        self._spindle.override_suppressed = enabled
+        return self._override_changed(cycle, f"override suppression {'on' if enabled else 'off'}")
 
     def _override_changed(self, cycle: int, what: str) -> str | None:
         spindle = self._spindle
@@ -147,9 +149,9 @@ class RotationCommands:
         self._spindle.next_tool = limits
         self._spindle.take_tool(cycle)
 
-    def do_stop_at_program_end(self, cycle: int, *, on: bool) -> None:
+    def do_stop_at_program_end(self, cycle: int, *, enabled: bool) -> None:
         """HLI: the channel is to stop the spindle at the end of its program (2.4.3)."""
-        self.stops_at_program_end = on
+        self.stops_at_program_end = enabled
 
 
 def check_speed(spindle: Spindle, command: str, speed_rpm: float) -> None:

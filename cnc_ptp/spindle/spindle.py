@@ -11,6 +11,7 @@ from cnc_ptp.control.control_loop import State
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
 from cnc_ptp.spindle.job import Work
 from cnc_ptp.spindle.position_loop import PositionLoop
@@ -70,14 +71,23 @@ class Spindle:
         """What the actual speed is compared with: the programmed one under override and limits."""
         self.target: float | None = None
         """Where positioning is to end, or has ended."""
+        self.exact_stop = ExactStop(time=parameters.settling_time, cycle_time=cycle_time)
         self.speed_was_reached = True
         self.speed_lost_at = -inf
         """First cycle in which a speed that was reached was there no more."""
         self.unsettled = True
         """Something may happen in the next cycles besides following the setpoint."""
         self.work = Work()
+        self.when_faulted: Callable[[], None] = lambda: None
+        """Told of every fault at once."""
         self.report_error = report_error
         self.report_warning = report_warning
+
+    def warn(self, cycle: int, number: int, reason: str) -> str:
+        """Tells a warning as an event; returns it as the record of a command shows it."""
+        text = f"spindle {self.name}: {reason}"
+        self.report_warning(cycle, number, text)
+        return f"P-WARN-{number} {text}"
 
     # setpoints
 
@@ -150,6 +160,7 @@ class Spindle:
         self.mode = SpindleMode.CW if copysign(1.0, speed) > 0.0 else SpindleMode.CCW
         self.state = S.CONTINUOUS_MOTION
         self.programmed_speed = speed
+        self._open_loop(cycle)
         self.apply_speed(cycle)
 
     def apply_speed(self, cycle: int) -> None:
@@ -170,10 +181,12 @@ class Spindle:
         self.programmed_speed = self.wanted_speed = 0.0
         self._await_speed()
         self.state = S.STOPPING
+        self._open_loop(cycle)
         self.ramp_to(cycle, 0.0)
 
     def end_job(self) -> None:
         self.work.cancel()
+        self.exact_stop.forget()
         self.target = None
         self.job_error = False
 
@@ -199,7 +212,27 @@ class Spindle:
         control_limit = inf if self.parameters.open_loop else self.gear.control_limit
         return SpindleLimits(self.gear, self.tool, control_limit=control_limit)
 
+    # position
+
+    @property
+    def holds_position(self) -> bool:
+        """A positioning has come to its end, and nothing else was commanded since."""
+        return self.work.done and self.target is not None and self.state == S.STANDSTILL
+
+    def note_position(self, cycle: int, away: float, speed: float) -> bool:
+        """Exact stop at a standing setpoint, `away` in ° from it."""
+        gear = self.gear
+        return self.exact_stop.note(
+            cycle, in_position=abs(away) <= gear.position_window, at_rest=abs(speed) <= gear.zero_speed
+        )
+
     # position loop
+
+    def _open_loop(self, cycle: int) -> None:
+        """The speed of a controlled spindle goes on from what the position controller has commanded."""
+        speed = self.loop.open()
+        if speed is not None:
+            self.follow(cycle, plan_speed(self.loop.position, speed, speed, self.limits.ramp))
 
     def watch_loop(self, cycle: int, speed: float) -> None:
         """Opens and closes the position loop where the speed asks for it; the closed loop goes on without a jump."""
@@ -232,6 +265,7 @@ class Spindle:
         self.error_id = error_id
         self.job_error = had_job
         self.state = S.ERROR_STOP
+        self.when_faulted()
         text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
         self.report_error(cycle, error_id, text)
 

@@ -150,13 +150,13 @@ def refused(factor: float, master_position: float, slave_position: float, states
 def test_what_cannot_be_synchronised() -> None:
     late = "the run-up takes 0.75 s, the master is there in 0.65 s"
     assert refused(1.0, 1300.0, 1000.0, moving(2000.0)) == late
-    past = "the run-up takes 0.75 s, the master is there in -0.1 s"
+    past = "the run-up takes 0.75 s, the master was there 0.1 s ago"
     assert refused(1.0, -200.0, 1000.0, moving(2000.0)) == past
-    near = "the run-up takes 500, the synchronous position is 400 away"
+    near = "the run-up takes 500 mm, the synchronous position is 400 mm away"
     assert refused(1.0, 3000.0, 400.0, moving(2000.0)) == near
-    behind = "the run-up takes 500, the synchronous position is -1000 away"
+    behind = "the run-up takes 500 mm, the synchronous position is 1000 mm behind the axis"
     assert refused(1.0, 3000.0, -1000.0, moving(2000.0)) == behind
-    fast = "it would have to run at 3000, its velocity is limited to 2000"
+    fast = "it would have to run at 3000 mm/s, its velocity is limited to 2000 mm/s"
     assert refused(-1.5, 3000.0, -1000.0, moving(2000.0)) == fast
     stands = "the master stands; a flying saw needs a moving master"
     assert refused(1.0, 3000.0, 1000.0, moving(0.0)) == stands
@@ -164,8 +164,10 @@ def test_what_cannot_be_synchronised() -> None:
 
 def test_master_that_gets_too_fast_or_turns_round_while_the_slave_waits() -> None:
     text = refused(1.0, 3000.0, 450.0, varying([(0.5, 0.0), (1.0, 1000.0)], 1000.0))
-    assert text.startswith("the run-up takes ") and text.endswith(", the synchronous position is 450 away")
-    assert refused(1.0, 3000.0, 1000.0, varying([(0.1, 0.0), (1.0, -2000.0)], 1000.0)).endswith("is 1000 away")
+    assert text.startswith("the run-up takes ") and text.endswith(", the synchronous position is 450 mm away")
+    assert refused(1.0, 3000.0, 1000.0, varying([(0.1, 0.0), (1.0, -2000.0)], 1000.0)).endswith(
+        "is 1000 mm behind the axis"
+    )
 
 
 def test_change_of_the_source_moves_nothing() -> None:
@@ -177,3 +179,15 @@ def test_change_of_the_source_moves_nothing() -> None:
         shifted.change_source(10.0, 35.0)
         moved = shifted.follow(0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[cut:]])
         assert np.array(moved) == pytest.approx(np.array(plain.follow(0.0, states[cut:])), abs=1e-8)
+
+
+@pytest.mark.parametrize("place", [0.0, 99_000.0, -99_000.0])
+@pytest.mark.parametrize("velocity", [1.0, 0.01])
+def test_a_slow_saw_without_time_to_spare_is_not_late_far_from_zero(place: float, velocity: float) -> None:
+    """The run-up fills the whole way of the slave and the whole time of the master, wherever they are."""
+    ramp = ramp_of(velocity)
+    for begin in np.random.default_rng(5).uniform(0.0, 1.0, 200):
+        slave = place + begin
+        coupling = saw(1.0, slave + velocity * ramp, slave + 0.5 * velocity * ramp)
+        rows = follow(coupling, moving(velocity, 0.5, slave), slave)
+        assert coupling.synchronous and rows[-1, 1] == velocity

@@ -14,6 +14,9 @@ MILL = ROOT / "config" / "mill.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
 
 
+OF_THE_BLOCK = ("master", "target_velocity", "modulo_begin", "modulo_length", "torque_digits", "couples_actual")
+
+
 def call(*arguments):
     return CliRunner().invoke(cli.main, [str(argument) for argument in arguments])
 
@@ -50,11 +53,7 @@ def paste(machine, lines, path):
 
 def recording_of(path, axis, columns, *, machine=""):
     """A recording of one axis: `columns` by field, 10 values a block; what is not given is 0."""
-    names = [
-        name
-        for name in AxisBlock.__dataclass_fields__
-        if name not in ("first_cycle", "count", "master", "target_velocity", "couples_actual")
-    ]
+    names = [name for name in AxisBlock.__dataclass_fields__ if name not in ("first_cycle", "count", *OF_THE_BLOCK)]
     length = len(next(iter(columns.values()))) // 10 * 10
     with Recording(str(path), machine, 0, 1_000_000) as recording:
         for first in range(0, length, 10):

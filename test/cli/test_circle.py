@@ -11,6 +11,7 @@ import yaml
 from commands_support import MILL, PTP, call, changed_mill
 
 from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, comparison_lines
+from cnc_ptp.recording.reader import read_recording
 
 RADIUS, FEED = 25.0, 2000.0
 NUMBER = r"(-?\d+\.\d\d)"
@@ -187,8 +188,14 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
             ["--radius", 25, "--feed", 2000, "--centre", 0, "-inf"],
             "P-ERR-27020 centre -inf mm is not within -100000 … 100000; nothing was started",
         ),
-        (["--radius", 25, "--feed", 0], "P-ERR-27020 feed 0 mm/min is not within 0 … 100000; nothing was started"),
-        (["--radius", 25, "--feed", -5], "P-ERR-27020 feed -5 mm/min is not within 0 … 100000; nothing was started"),
+        (
+            ["--radius", 25, "--feed", 0],
+            "P-ERR-27020 feed 0 mm/min is not above 0 and up to 100000; nothing was started",
+        ),
+        (
+            ["--radius", 25, "--feed", -5],
+            "P-ERR-27020 feed -5 mm/min is not above 0 and up to 100000; nothing was started",
+        ),
         (
             ["--radius", 25, "--feed", 1e-3],
             "P-ERR-27020 radius 25 mm at feed 0.001 mm/min takes 3.76991e+07 s of machine time, the limit is 3600 s; "
@@ -201,7 +208,7 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
         ),
         (
             ["--radius", 25, "--feed", 2000, "--magnification", 0],
-            "P-ERR-27020 magnification 0 is not within 0 … 100000; nothing was started",
+            "P-ERR-27020 magnification 0 is not above 0 and up to 100000; nothing was started",
         ),
         (
             ["--radius", 25, "--feed", 2000, "--plane", "XC"],
@@ -356,8 +363,12 @@ def test_what_is_compared_is_not_chosen(compare, option, name):
         (0.002, 0.00202, "as large"),
         (0.00202, 0.002, "as large"),
         (0.0, 0.0, "as large"),
-        (0.002, 0.0, "inf times smaller"),
-        (0.0, 0.002, "inf times larger"),
+        (0.002, 0.0, "practically zero"),
+        (0.0, 0.002, "from practically zero"),
+        (0.03, 1e-8, "practically zero"),
+        (1e-8, 0.03, "from practically zero"),
+        (1e-9, 4e-6, "as large"),
+        (0.03, 5e-6, "6000.0 times smaller"),
     ],
 )
 def test_better_and_worse_are_told_apart(before, after, text):
@@ -370,3 +381,30 @@ def test_better_and_worse_are_told_apart(before, after, text):
     lines = list(comparison_lines(CircleTest(("X", "Y"), (0.0, 0.0), RADIUS, FEED, (result(before), result(after)))))
     changes = f"{1000 * before:9.2f} -> {1000 * after:.2f} µm, {text}"
     assert lines[1:] == [f"  {name:14}{changes}" for name in ("G", "largest |F|", "largest peak")]
+
+
+@pytest.mark.parametrize(
+    ("more", "files"),
+    [([], ["run.mcap"]), (["--compare", "friction"], ["run_1.mcap", "run_2.mcap"])],
+)
+def test_the_runs_are_kept_and_replay_to_the_bit(more, files, tmp_path):
+    """They show which feedforward and friction compensation were in force."""
+    record = tmp_path / "run.mcap"
+    result = call(
+        "circle", MILL, "--radius", 5, "--feed", 6000, "--direction", "cw", "--feedforward", "--record", record, *more
+    )
+    assert result.exit_code == 0, result.output
+    assert sorted(path.name for path in tmp_path.glob("*.mcap")) == files
+    for number, file in enumerate(files):
+        states = read_recording(tmp_path / file).states["/x/state"]
+        assert states["feedforward_percent"][-1] == 100.0
+        compensated = bool(states["status_bits"][-1] & 65536)
+        assert compensated is (not more or number == 1)
+        assert bool(np.any(states["friction_current"])) is compensated
+        assert call("replay", tmp_path / file).exit_code == 0
+
+
+def test_a_recording_that_would_overwrite_the_machine_is_refused():
+    result = call("circle", MILL, "--radius", 5, "--feed", 6000, "--record", MILL)
+    assert result.exit_code == 2
+    assert f"P-ERR-27030 {MILL} would overwrite the machine file {MILL}; nothing was started" in result.stderr

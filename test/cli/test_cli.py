@@ -37,9 +37,7 @@ def program(tmp_path):
     return path
 
 
-@pytest.mark.parametrize(
-    "command", [[], *([name] for name in ("simulate", "run", "check", "replay", "report", "params"))]
-)
+@pytest.mark.parametrize("command", [[], *([name] for name in cli.main.commands)])
 def test_help_everywhere(command):
     for option in ("--help", "-h"):
         result = call(*command, option)
@@ -125,7 +123,7 @@ def test_simulate_tells_a_summary(program, tmp_path):
         ),
         (
             "%p\nN10 M3 S99999\nM30\n",
-            "P-ERR-22010 {file} line 2 column 1 'N10 M3 S99999': spindle S: 99999 rpm is above the maximum 12000 rpm "
+            "P-ERR-22010 {file} line 2 column 8 'N10 M3 S99999': spindle S: 99999 rpm is above the maximum 12000 rpm "
             "(P-AXIS-00212)",
         ),
         (
@@ -227,6 +225,31 @@ def test_a_refused_command_is_no_failed_run(tmp_path):
     result = call("simulate", MILL, "--scenario", path)
     assert result.exit_code == 0
     assert "refused: P-ERR-120002 axis x: move_absolute refused: target 400.0 mm lies beyond" in result.output
+    assert result.output.splitlines()[-1] == "1 command was refused"
+
+
+@pytest.mark.parametrize(("targets", "status"), [((400, 400, 5), 1), ((5, 6), 0)])
+def test_strict_makes_a_refused_command_a_failed_run(targets, status, tmp_path):
+    path = tmp_path / "s.yaml"
+    entries = (f"- {{at: {n}, to: x, do: move_absolute, target: {target}}}\n" for n, target in enumerate(targets))
+    path.write_text("".join(entries))
+    result = call("simulate", MILL, "--scenario", path, "--strict")
+    assert result.exit_code == status
+    assert (result.output.splitlines()[-1] == "2 commands were refused") == bool(status)
+
+
+def test_an_empty_scenario_and_an_unknown_master_are_told_before_the_run(tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text("# nothing\n")
+    result = call("simulate", MILL, "--scenario", path)
+    assert (result.exit_code, result.stderr.strip()) == (
+        2,
+        f"P-ERR-25101 scenario {path} has no entries; nothing was started",
+    )
+    path.write_text("- {at: 0, to: x, do: couple, master: q, factor: 1}\n")
+    result = call("simulate", MILL, "--scenario", path)
+    reason = "axis x: couple refused: there is no axis 'q'. Known: y, z; nothing was changed"
+    assert result.exit_code == 2 and result.stderr.startswith(f"P-ERR-25101 {path}:1: {reason}")
 
 
 def test_a_refusal_is_told_once(tmp_path):
@@ -236,6 +259,7 @@ def test_a_refusal_is_told_once(tmp_path):
     assert [line for line in result.output.splitlines() if "largest" not in line and "time" not in line] == [
         "refused: P-ERR-20131 mdi line 1 column 1 'G77': unknown G function G77",
         "warning: axis y: stop without effect in Standstill",
+        "1 command was refused",
     ]
 
 
@@ -253,7 +277,7 @@ def test_a_refusal_is_told_once_in_whatever_order_command_and_event_come():
 
 def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):
     path = tmp_path / "s.yaml"
-    path.write_text("- {at: 0.1, to: x, do: power, on: off}\n")
+    path.write_text("- {at: 0.1, to: x, do: power, enabled: off}\n")
     result = call("simulate", MILL, "--program", program, "--scenario", path)
     assert result.exit_code == 1
     assert "error: P-ERR-23010 axis x: the enable was removed during path motion" in result.output
@@ -263,7 +287,7 @@ def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):
 def test_a_duration_that_ends_in_the_block_of_a_fault_is_status_1(program, tmp_path):
     """The PLC would know of it in the next block; a fault that comes after the end is none."""
     path = tmp_path / "s.yaml"
-    path.write_text("- {at: 0.1, to: x, do: power, on: off}\n")
+    path.write_text("- {at: 0.1, to: x, do: power, enabled: off}\n")
     for duration, status in (("0.1", 0), ("0.11", 1), ("0.12", 1)):
         result = call("simulate", MILL, "--program", program, "--scenario", path, "--duration", duration)
         assert result.exit_code == status, duration
@@ -351,11 +375,6 @@ def test_a_report_overwrites_neither_its_recording_nor_other_files(tmp_path):
     assert (recording.read_bytes(), MILL.read_bytes()) == before
     assert not (tmp_path / "a.htm").exists()
     assert call("report", recording, "-o", tmp_path / "A.HTML").exit_code == 0
-
-
-def test_params_shows_one_or_all():
-    assert "P-AXIS-00099  getriebe[i].kv" in call("params", "P-AXIS-00099").output
-    assert "P-CHAN-00056" in call("params").output
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ HEAD = "## Errors, warnings, faults\n"
 NAMES = {
     17744: ("axis.faults", "FOLLOWING_ERROR", "following error"),
     23060: ("control.commands", "BAD_WEIGHT", "weight_percent"),
+    23061: ("control.commands", "FEEDFORWARD_WAITS", "feedforward waits"),
     25008: ("parameters.errors", "OUT_OF_RANGE", "out of range"),
     25009: ("parameters.errors", "CONTRADICTION", "above max_points"),
     25019: ("parameters.errors", "DENOMINATOR", "denominator"),
@@ -48,7 +49,7 @@ NAMES = {
 }
 """Number: module and name of the constant, and what the document must say of it."""
 PROGRAM = {
-    21090: ("WEIGHT_RANGE", "weight", "weight outside 0 … 100"),
+    21090: ("WEIGHT_RANGE", "weight", "weight below 0"),
     21091: ("WEIGHTS_WITHOUT_AXIS", "without an axis", "no axis"),
     21092: ("WEIGHTS_AND_MOTION", "takes the axis words of its block", "beside a motion"),
     21093: ("FEEDFORWARD_ALONE", "in the brackets", "wrong words in brackets"),
@@ -58,13 +59,15 @@ PROGRAM = {
     21097: ("COMP_WORD", "not available behind COMP", "unknown word"),
     21098: ("COMP_INCOMPLETE", "does not say", "incomplete"),
     21099: ("COMP_TWICE", "twice in one block", "twice in a block"),
+    21110: ("SLOPE_UNKNOWN", "is not known", "unknown type"),
+    21111: ("SLOPE_NOT_AVAILABLE", "is not available", "SIN2 and HSC are not available"),
 }
 """Faults of the NC language: name, what their text says, what the document says."""
 NOTICES = {
     70348: ('"P-AXIS-00390": 70348', "P-AXIS-00390"),
     70349: ('"P-AXIS-00389": 70349', "P-AXIS-00389"),
-    110465: ("P-ERR-110465: value 0 is no denominator, no additive torque is put out", "no additive torque is put out"),
-    110473: ("P-ERR-110473: value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used", "100 is used"),
+    110465: ("NO_TORQUE_SCALE = 110465", "no additive torque is put out"),
+    110473: ("NO_JERK_DENOMINATOR = 110473", "100 is used"),
 }
 """Warnings of a machine file: source of parameters/control_notices.py, what the document says."""
 

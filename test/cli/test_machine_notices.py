@@ -19,7 +19,7 @@ def files(tmp_path):
     program.write_text("%p\nG00 X1\nM30\n")
     column = "        wegaufz: 0".index("0") + 1
     place = f"{machine}:{gear + 3}:{column}"
-    text = f"{place}: P-AXIS-00234 getriebe[0].wegaufz of /s: P-WARN-110386 value 0 is corrected to 1"
+    text = f"{place}: P-AXIS-00234 getriebe[0].wegaufz of /s: value 0 is corrected to 1"
     return machine, program, text
 
 
@@ -27,9 +27,10 @@ def test_simulate_tells_them_and_they_are_events(files, tmp_path):
     machine, program, text = files
     result = call("simulate", machine, "--program", program, "--record", tmp_path / "a.mcap")
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout.splitlines()[-1] == f"warning: P-WARN-26120 {text}"
+    assert result.stdout.splitlines()[-1] == f"warning: P-WARN-110386 {text}"
     events = [event for event in read_recording(tmp_path / "a.mcap").events if event.severity == 1]
-    assert [(event.cycle, event.source, event.error_id, event.text) for event in events] == [(0, "plc", 26120, text)]
+    assert [(event.cycle, event.source, event.error_id, event.text) for event in events] == [(0, "plc", 110386, text)]
+    assert [tuple(value) for value in events[0].values] == [("P-AXIS-00234", 0.0, "increments")]
     assert call("replay", tmp_path / "a.mcap").exit_code == 0
 
 
@@ -37,5 +38,5 @@ def test_check_tells_them(files):
     machine, program, text = files
     result = call("check", program, "--machine", machine)
     assert (result.exit_code, result.stdout) == (0, "p.nc: no errors in 3 lines\n")
-    assert result.stderr == f"warning: P-WARN-26120 {text}\n"
+    assert result.stderr == f"warning: P-WARN-110386 {text}\n"
     assert call("check", program, "--machine", MILL).stderr == ""

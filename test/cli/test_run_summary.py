@@ -18,8 +18,8 @@ ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
 
 
-def reported(**more):
-    return {"blocks": "7", "lost_blocks": "0", "duplicates": "1", **more}
+def reported(more=()):
+    return {"blocks": "7", "lost blocks": "0", "blocks that came twice": "1", **dict(more)}
 
 
 def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
@@ -27,17 +27,21 @@ def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
         diagnostics=diagnostics,
         progress=Progress(cycle=70),
         programs=programs,
+        ending="",
         lateness=Lateness,
         errors=[],
         notes=list(notes),
+        refused=sum(note.startswith("refused") for note in notes),
         run_failed=run_failed,
     )
 
 
 def test_axes_come_in_the_order_of_the_machine_file(capsys):
     """The nodes report in any order; z has not reported at all."""
-    heard = {"c": "0.5", "y": "0.25", "x": "0.125"}
-    diagnostics = {"plc": reported()} | {name: reported(following_error_max=text) for name, text in heard.items()}
+    heard = {"c": ("0.5", "deg"), "y": ("0.25", "mm"), "x": ("0.125", "mm")}
+    diagnostics = {"plc": reported()}
+    for name, (text, unit) in heard.items():
+        diagnostics[name] = reported({f"following error, largest [{unit}]": text})
     print_summary(read_machine(PTP), monitor(diagnostics), [])
     assert capsys.readouterr().out.splitlines() == [
         "machine time 0.070 s (70 cycles)",
@@ -75,7 +79,7 @@ def test_a_graph_without_anything_to_do_says_so(duration, told, capsys, monkeypa
     monkeypatch.setattr(command, "Supervisor", lambda *_, **__: supervisor)
     assert command.run(str(PTP), None, None, duration, None, free_run=True, composed=False) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert (last == "note: there was nothing to do, give --program, --scenario or --duration") is told
+    assert (last == "note: there was nothing to do, give --program, --scenario, --duration or --stay") is told
 
 
 def test_a_terminal_sees_each_note_as_it_comes_once(capsys, monkeypatch):

@@ -71,10 +71,49 @@ def test_speeds_of_one_direction_and_uneven_ones_are_named():
     sticks = np.abs(velocity) == 3.0
     slipping = np.where(np.arange(len(velocity)) % 40 < 20, 2.0, 0.0)
     run.actual_velocity[sticks] = (velocity * slipping)[sticks]
+    run.actual_position[:] = np.cumsum(run.actual_velocity) * T
     curve = friction_curve(run, settling=always(0.1))
     assert [point.speed for point in curve.points] == pytest.approx([30.0])
     assert curve.one_way == (7.0, 70.0)
     assert curve.uneven == (-3.0, 3.0)
+
+
+@pytest.mark.parametrize("noise", [0.5, 5.0])
+def test_noise_of_the_velocity_is_no_stick_slip(noise):
+    """Positions are steady: no speed is left out, however slow (0.5 mm/s of noise are 500 % of 0.1 mm/s)."""
+    run = friction_run(SPEEDS)
+    run.actual_velocity[:] += noise * np.random.default_rng(4).standard_normal(len(run))
+    run.actual_position[:] = np.round(run.actual_position / 1e-5) * 1e-5
+    curve = friction_curve(run, settling=always(0.1))
+    assert [point.speed for point in curve.points] == pytest.approx(SPEEDS)
+    assert curve.uneven == ()
+
+
+@pytest.mark.parametrize("period", [20, 100, 300])
+def test_stick_slip_shows_through_the_noise(period):
+    velocity = phases([0.3], seconds=1.0)
+    moved = velocity * np.where(np.arange(len(velocity)) % period < period // 2, 2.0, 0.0)
+    noise = 0.5 * np.random.default_rng(5).standard_normal(len(velocity))
+    run = trace_of(
+        set_velocity=velocity,
+        actual_velocity=moved + noise,
+        actual_position=np.cumsum(moved) * T,
+        actual_torque=np.sign(velocity),
+    )
+    assert "moves unevenly at every constant velocity (-0.3, 0.3)" in refused(run)
+
+
+def test_speeds_at_which_the_axis_stands_still_are_told_apart_from_stick_slip():
+    """A torque limit of 150 N: Stribeck friction is above it up to 3.5 mm/s."""
+    run = friction_run(SPEEDS)
+    held = np.abs(run.actual_torque) > 150.0
+    run.actual_torque[:] = np.clip(run.actual_torque, -150.0, 150.0)
+    run.actual_velocity[held] = 0.0
+    run.actual_position[:] = np.cumsum(run.actual_velocity) * T
+    curve = friction_curve(run, settling=always(0.1))
+    slow = [speed for speed in SPEEDS if stribeck(speed) > 150.0]
+    assert curve.standing == tuple(sorted([-speed for speed in slow] + slow)) and curve.uneven == ()
+    assert [point.speed for point in curve.points] == [speed for speed in SPEEDS if stribeck(speed) <= 150.0]
 
 
 def test_phases_stop_at_gaps_and_ramps():
@@ -145,8 +184,8 @@ def test_repeated_and_unordered_cycles_count_once():
                 actual_position=np.zeros(len(phases([5.0]))),
                 actual_torque=phases([5.0]),
             ),
-            "P-ERR-27006 axis x: moves unevenly at every constant velocity (-5, 5): it sticks and slips, or had not settled; "
-            "no table was made, drive faster or longer",
+            "P-ERR-27006 axis x: stands still at every constant velocity (-5, 5), the torque comes up to 5 and not above "
+            "the friction: is the torque limit of the drive too low, or the axis blocked? no table was made",
         ),
     ],
 )

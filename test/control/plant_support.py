@@ -50,7 +50,7 @@ def friction_torque(of: PlantParameters, velocity: float) -> float:
 
 @dataclass(frozen=True)
 class Point:
-    """What the solver found at the end of a cycle."""
+    """What the solver found at the end of a cycle; the torque is its mean over the cycle."""
 
     position: float
     velocity: float
@@ -60,12 +60,13 @@ class Point:
 class Reference:
     """The plant's equations in torques, integrated piece by piece between the instants where friction changes its kind.
 
-    The state is (w, z, m, v, x): z the integral of the velocity deviation in mm (deg), m the motor's torque in Nm.
+    The state is (w, z, m, v, x, i): z the integral of the velocity deviation in mm (deg), m the motor's torque in Nm
+    behind its lag, i the integral of the torque over the cycle.
     """
 
     def __init__(self, of: PlantParameters) -> None:
         self.plant = of
-        self.state = np.array([0.0, 0.0, 0.0, 0.0, of.start_position])
+        self.state = np.array([0.0, 0.0, 0.0, 0.0, of.start_position, 0.0])
         self.direction = 0.0 if of.static > 0.0 else 1.0
 
     def asked(self, s: np.ndarray, u: float, add_v: float, add_m: float) -> float:
@@ -94,17 +95,18 @@ class Reference:
             (min(limit, max(-limit, asked)) - s[2]) / of.current_time_constant if of.current_time_constant else 0.0,
             (self.motor(s, u, add_v, add_m) - friction) / of.torque_per_acceleration if self.direction else 0.0,
             s[3] if self.direction else 0.0,
+            self.motor(s, u, add_v, add_m),
         ]
 
     def cycle(self, u: float, add_v: float = 0.0, add_m: float = 0.0) -> Point:
         """One NC cycle under held inputs."""
         inputs = (u, add_v, add_m)
-        time = 0.0
+        time = self.state[5] = 0.0
         while time < T:
             if not self.direction and abs(self.motor(self.state, *inputs)) > self.plant.static:
                 self.direction = math.copysign(1.0, self.motor(self.state, *inputs))
             time = self.piece(time, inputs)
-        return Point(self.state[4], self.state[3], self.motor(self.state, *inputs))
+        return Point(self.state[4], self.state[3], self.state[5] / T)
 
     def piece(self, start: float, inputs: tuple[float, float, float]) -> float:
         """On to the end of the cycle or to the next zero of the velocity, breakaway or end of the torque limit."""

@@ -136,7 +136,7 @@ def test_a_virtual_axis_is_where_it_is_told_to_be() -> None:
     for closed in (True, False):
         for state in STATES:
             cycle = loop.step(state, closed)
-            assert cycle == (state[0], state[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            assert cycle == (state[0], state[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             assert loop.position == state[0]
 
 

@@ -92,7 +92,7 @@ def test_outputs_are_finite(loop, states, switches) -> None:  # type: ignore[no-
 
 
 def bits(row: ControlCycle) -> bytes:
-    return struct.pack("<9d", *(value + 0.0 for value in row))
+    return struct.pack("<10d", *(value + 0.0 for value in row))
 
 
 @seed(20260802)

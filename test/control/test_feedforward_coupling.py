@@ -244,3 +244,30 @@ def test_an_open_loop_takes_the_selection_over_at_once() -> None:
     for state in states[:300]:
         assert loop.step(state, False).feedforward_velocity == 0.0
     assert loop.step(states[300], True).feedforward_velocity == pytest.approx(50.0)
+
+
+def waited(v: float, cycles: int = 1500, at_cycle: int = 460) -> tuple[ControlLoop, list[tuple[int, float]]]:
+    """Selected at the constant velocity `v`; where and with what the wait was told."""
+    loop, told = made_loop(VEL), []
+    for cycle, state in enumerate(at_velocity(v, cycles)):
+        if cycle == at_cycle:
+            loop.select_feedforward(True, 100.0)
+        loop.step(state, True)
+        limit = loop.feedforward.take_wait()
+        if limit is not None:
+            told.append((cycle, limit))
+    return loop, told
+
+
+@pytest.mark.parametrize("v", [500.0, 499.999])
+def test_a_selection_that_never_comes_into_force_is_told_once(v: float) -> None:
+    """At P-AXIS-00212 no room is left; after half a second that is worth a warning."""
+    loop, told = waited(v)
+    assert [limit for _, limit in told] == [V_MAX] and 955 <= told[0][0] <= 970
+    assert loop.feedforward.percent < 1.0
+
+
+@pytest.mark.parametrize("v", [480.0, 300.0, 20.0])
+def test_one_that_does_is_not(v: float) -> None:
+    loop, told = waited(v)
+    assert told == [] and loop.feedforward.percent == 100.0

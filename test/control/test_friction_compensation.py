@@ -221,7 +221,7 @@ def test_delay_cycles_delay_every_value(cycles: int) -> None:
 
 
 def test_switched_off_there_is_no_current_and_the_direction_is_known_all_the_same() -> None:
-    """COMP OFF before a reversal, ON again within the way of the weighting after it."""
+    """COMP OFF before a reversal, ON again within the way of the weighting after it; in between softly."""
     states = motion(through_zero(0, -1.0))
     loop = make_loop(control(friction=friction(position_delay=0.05)))
     always = currents(states, friction(position_delay=0.05))
@@ -230,9 +230,10 @@ def test_switched_off_there_is_no_current_and_the_direction_is_known_all_the_sam
         if cycle in (50, 100):
             loop.friction.switch(cycle == 100)
         got.append(loop.step(state, True).friction_current)
-    off = np.array(got)
-    off[50:100] = always[50:100]
-    assert set(got[50:100]) == {0.0} and np.array_equal(off, always) and np.count_nonzero(always[50:100]) > 40
+    turns = next(cycle for cycle in range(50, 100) if states[cycle][1] < 0.0)
+    assert got[:50] == always[:50].tolist()
+    assert set(got[turns:100]) == {0.0} and np.count_nonzero(always[turns:100]) > 5
+    assert np.all(np.abs(got[50:]) <= np.abs(always[50:])) and got[-10] == pytest.approx(always[-10] * 0.8, rel=0.1)
 
 
 @pytest.mark.parametrize("of", [friction(active=False), replace(NO_FRICTION, permitted=True, active=True)])
@@ -261,3 +262,40 @@ def test_the_current_goes_to_the_drive_as_torque(scale: float) -> None:
     assert np.abs(column(cycles, "additive_torque") * scale - column(cycles, "friction_current")).max() < 1e-9
     silent = run(make_loop(control(friction=FRICTION, torque_scale=0.0)), states)
     assert set(column(silent, "additive_torque")) == {0.0}
+
+
+# ---------------------------------------------------------------- switched
+
+
+def switched(states: list[State], plan: dict[int, bool], of: FrictionParameters = FRICTION) -> NDArray[np.float64]:
+    loop = make_loop(control(friction=of))
+    values = []
+    for cycle, state in enumerate(states):
+        if cycle in plan:
+            loop.friction.switch(plan[cycle])
+        values.append(loop.step(state, True).friction_current)
+    return np.array(values)
+
+
+@pytest.mark.parametrize("cycle", [60, 100, 400])
+def test_switched_in_motion_the_current_goes_and_comes_without_a_step(cycle: int) -> None:
+    """In 0.1 s: no cycle changes it by more than 1 % of the table's largest value beside what the velocity does."""
+    states = motion([(40, 25_000.0), (40, -25_000.0), (900, 0.0)])
+    steady = from_table(states)
+    off = switched(states, {cycle: False})
+    assert np.array_equal(off[:cycle], steady[:cycle]) and np.all(off[cycle + 100 :] == 0.0)
+    back = switched(states, {cycle: False, cycle + 200: True})
+    assert back[cycle + 300 :] == pytest.approx(steady[cycle + 300 :])
+    for values in (off, back):
+        assert np.abs(np.diff(values[80:])).max() <= 0.01 * max(CURRENTS) + 0.3
+    share = switched(states, {cycle: False, cycle + 30: True})[400 if cycle < 400 else 500 :]
+    assert share == pytest.approx(steady[-len(share) :])
+
+
+@pytest.mark.parametrize("first", [5, 20])
+def test_switched_at_a_standstill_it_is_there_at_once(first: int) -> None:
+    """Also in the cycle in which the motion starts."""
+    states = motion([(20, 0.0), *trapezoid(25_000.0, 40, 0, 100)])
+    off = replace(FRICTION)
+    values = switched(states, {0: False, first: True}, off)
+    assert np.array_equal(values, switched(states, {}, off))

@@ -21,7 +21,7 @@ def in_short_steps(of: PlantParameters, commands: Iterable[float]) -> list[Point
     x = of.start_position
     points = []
     for u in commands:
-        torque = 0.0
+        impulse = 0.0
         for _ in range(SHORT_STEPS):
             error = (w if of.time_constant else u) - v
             asked = k * of.velocity_gain * (error + integral)
@@ -30,6 +30,7 @@ def in_short_steps(of: PlantParameters, commands: Iterable[float]) -> list[Point
                 integral += growth
             w += h * (u - w) / of.time_constant if of.time_constant else 0.0
             torque = min(limit, max(-limit, asked))
+            impulse += h * torque
             if v == 0.0 and abs(torque) <= of.static:
                 continue
             way = math.copysign(1.0, v or torque)
@@ -38,7 +39,7 @@ def in_short_steps(of: PlantParameters, commands: Iterable[float]) -> list[Point
             new_v = 0.0 if v and of.static and new_v * v < 0.0 else new_v
             x += h * (v + new_v) / 2.0
             v = new_v
-        points.append(Point(x, v, torque))
+        points.append(Point(x, v, impulse / T))
     return points
 
 

@@ -34,11 +34,12 @@ def test_against_viscous_friction_it_reaches_torque_over_friction() -> None:
 
 
 def test_a_current_loop_delays_the_torque() -> None:
-    """M(t) = M (1 - e^(-t/Ti))."""
+    """M(t) = M (1 - e^(-t/Ti)), shown as the mean of a cycle."""
     drive = TorqueCommandedDrive(frictionless(current_time_constant=0.002), cycle_time=T)
     for cycle in range(1, 20):
         drive.step(0.4)
-        assert drive.torque == pytest.approx(0.4 * (1.0 - math.exp(-cycle * T / 0.002)), rel=1e-12)
+        begin, end = (math.exp(-time * T / 0.002) for time in (cycle - 1, cycle))
+        assert drive.torque == pytest.approx(0.4 * (1.0 - 0.002 / T * (begin - end)), rel=1e-12)
 
 
 @pytest.mark.parametrize("encoder_at_load", [True, False])

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from figure_support import head_and_scenario, run_of, texts_of
 
+from cnc_ptp.plots.svg import svg_text
 from figures.kinds import draw
 from figures.picture import last_above, shown_cycles
 from figures.run import Marker, run_figure
 from figures.scenario_head import FigureError, read_head
-from figures.svg import svg_text
 
 MOVE = "- {at: 0.05, to: x, do: move_absolute, target: 1}\n"
 PTP, MILL, FRICTION = "config/ptp.yaml", "config/mill.yaml", "config/friction.yaml"

@@ -8,16 +8,16 @@ import pytest
 from click.testing import CliRunner
 from figure_support import SCENARIOS, head_and_scenario, run_of, texts_of
 
+from cnc_ptp.plots.colours import BAND, DARK
+from cnc_ptp.plots.panels import UNIT_KINDS
+from cnc_ptp.plots.sheet import number, wrapped
+from cnc_ptp.plots.svg import svg_text
 from figures import __main__ as command
-from figures.colours import BAND, DARK
 from figures.external_profile import FILE, csv_text
 from figures.kinds import KINDS, draw
-from figures.panels import UNIT_KINDS
 from figures.picture import label_rows
 from figures.run import Marker, run_figure
 from figures.scenario_head import ROOT, FigureError, FigureScenario, read_head
-from figures.sheet import number, wrapped
-from figures.svg import svg_text
 
 HEAD = {"title": "A move", "caption": "One millimetre.", "machine": "config/ptp.yaml", "axes": "x"}
 MOVE = "- {at: 0.05, to: x, do: move_absolute, target: 1}\n"
@@ -102,7 +102,7 @@ def test_a_refused_command_is_no_figure(tmp_path):
 
 
 def test_a_fault_is_no_figure(tmp_path):
-    silence = "- {at: 0.06, to: plc, do: set_life_sign, on: off}\n"
+    silence = "- {at: 0.06, to: plc, do: set_life_sign, enabled: off}\n"
     text = fault_of(written(tmp_path, HEAD, "- {at: 0.05, to: x, do: move_absolute, target: 5000}\n" + silence))
     assert text.startswith("figure move.yaml: P-ERR-26101 axis x: no block of 'plc' came within the watchdog time; ")
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from figure_support import CYCLE_TIME, SCENARIOS, head_and_scenario, run_of, texts_of
 
+from cnc_ptp.plots.svg import svg_text
 from figures.kinds import draw
 from figures.run import run_figure
 from figures.scenario_head import FigureError, read_head
 from figures.spindle_curve import BRAKING, RUN_UP, measured, thinned
-from figures.svg import svg_text
 
 TOP = 54_000.0
 FIGURES = {

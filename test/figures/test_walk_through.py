@@ -53,4 +53,9 @@ def test_commands_print_what_the_text_says(tmp_path):
         assert lags == [line for line in expected if line.startswith(RESULT)]
         compared += len(lags)
     assert compared == 4 * 3
-    assert {file.name for file in (tmp_path / "runs").glob("*.yaml")} == {"new.yaml", "vel.yaml", "acc.yaml"}
+    assert {file.name for file in (tmp_path / "runs").glob("*.yaml")} == {
+        "new.yaml",
+        "vel.yaml",
+        "acc.yaml",
+        "metadata.yaml",
+    }

@@ -121,7 +121,7 @@ class Client(Node):
         self.write(f"/{unit}/override", msg.Override, percent=float(percent), **{"valid": True, **fields})
 
     def switch(self, topic, on, **fields):
-        self.write(topic, msg.Switch, on=on, **{"valid": True, **fields})
+        self.write(topic, msg.Switch, enabled=on, **{"valid": True, **fields})
 
     def action(self, action_type, name, **fields):
         """Sends a goal; returns its handle and the feedback that comes."""

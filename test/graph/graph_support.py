@@ -34,8 +34,8 @@ N100 M30
 """
 SHORT_SCENARIO = """
 - {at: 0.9, to: channel, do: set_override, percent: 50}
-- {at: 1.3, to: channel, do: feed_hold, on: true}
-- {at: 1.6, to: channel, do: feed_hold, on: false}
+- {at: 1.3, to: channel, do: feed_hold, enabled: true}
+- {at: 1.6, to: channel, do: feed_hold, enabled: false}
 - {at: 1.65, to: channel, do: set_override, percent: 0}
 - {at: 1.85, to: channel, do: set_override, percent: 50}
 - {at: 1.9, to: s, do: set_override, percent: 80}

@@ -41,6 +41,24 @@ SLAVE_SCENARIO = """
 - {at: 1.4, to: x, do: stop}
 """
 
+Z_IN_CHANNEL = '          "2": {bezeichnung: Z, log_achs_nr: 3}\n'
+ON_A_PATH = """%CIRCLE
+N10 G01 X20 Y0 F6000
+N20 G04 X1
+N30 G02 X20 Y0 I-20 J0 F3000
+N40 G01 X0 Y0 F6000
+N50 M30
+"""
+ON_A_PATH_SCENARIO = """
+- {at: 0.0, to: z, do: jog, velocity: 8}
+- {at: 0.4, to: x, do: couple_flying_saw, master: z, factor: 1, master_position: 8, slave_position: 3}
+- {at: 2.0, to: x, do: decouple}
+- {at: 2.2, to: x, do: external_enable, mode: relative}
+- {at: 2.3, to: x, do: external_setpoints, file: setpoints.csv}
+- {at: 2.35, to: x, do: external_disable}
+- {at: 3.0, to: z, do: stop}
+"""
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
@@ -50,6 +68,8 @@ def folder(tmp_path_factory):
     (folder / "ptp.yaml").write_text(PTP_SCENARIO)
     (folder / "setpoints.csv").write_text(SETPOINTS)
     (folder / "slaves.yaml").write_text(SLAVE_SCENARIO)
+    (folder / "circle.nc").write_text(ON_A_PATH)
+    (folder / "circle.yaml").write_text(ON_A_PATH_SCENARIO)
     return folder
 
 
@@ -99,6 +119,21 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
     assert np.abs(y + 0.5 * x).max() <= 1e-9 and x[-1] > 500.0
 
 
+@pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
+def test_superpositions_on_a_path_equal_the_offline_run(folder, options):
+    """The flying saw and external setpoints on top of a circle, with z as the conveyor."""
+    machine = without_z_in_the_channel(folder)
+    job = (machine, "--program", folder / "circle.nc", "--scenario", folder / "circle.yaml")
+    run("simulate", *job, "--record", folder / "e.mcap")
+    output = run("run", *job, *options, "--record", folder / "f.mcap").stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in output
+    assert states_equal(folder / "e.mcap", folder / "f.mcap") == []
+    states = verified(folder / "f.mcap").states
+    on_workpiece = slice(1500, 2000)
+    x, y, z = (states[f"/{axis}/state"]["set_position"][on_workpiece] for axis in ("x", "y", "z"))
+    assert np.abs(np.hypot(x - 3.0 - (z - 8.0), y) - 20.0).max() <= 1e-9
+
+
 def test_offline_run_is_verified_and_a_refused_move_is_recorded(offline):
     assert "equal to the bit" in run("replay", offline).stdout
     refused = [record for record in read_recording(offline).commands if not record.accepted]
@@ -123,6 +158,13 @@ def test_an_absurd_cycle_number_neither_hangs_nor_passes(offline, tmp_path):
     output = run("replay", altered, expect=1).stderr
     assert "/y/state: 1 cycles missing: 700" in output
     assert f"/y/state: 1 cycles not computed: {700 + 2**40}" in output
+
+
+def without_z_in_the_channel(folder):
+    mill = MILL.read_text()
+    path = folder / "conveyor.yaml"
+    path.write_text(mill.replace("achs_anzahl: 3", "achs_anzahl: 2").replace(Z_IN_CHANNEL, ""))
+    return path
 
 
 def flip_bit(data, place):

@@ -113,7 +113,7 @@ def test_a_missing_tick_ends_in_a_controlled_stop(bench):
     lost = [(record.cycle, record.command, record.arguments_json) for record in bench.outside.records[1:]]
     assert lost == [(300, "upstream_lost", '{"source": "clock"}')]
     assert bench.outside.blocks[-1].error_id[-1] == 26101
-    assert bench.axis._blocks_lost == 1
+    assert bench.axis.health.lost_blocks == 1
 
 
 def test_a_missing_block_ends_in_a_controlled_stop(bench):
@@ -192,6 +192,11 @@ def test_what_comes_twice_is_computed_once(bench):
     bench.spin_until(lambda: len(bench.outside.blocks) == 4)
     assert [block.first_cycle for block in bench.outside.blocks] == [0, 10, 20, 30]
     assert bench.axis._gate.duplicates == 2
+    text = "x: block 20 of '{0}' came twice, the first one counts; is there a second '{0}'?"
+    bench.spin_until(lambda: len(errors(bench.outside)) == 2)
+    assert errors(bench.outside) == [(26142, text.format("clock")), (26142, text.format("plc"))]
+    status = bench.axis.health.status(bench.axis._gate.duplicates)
+    assert (status.level, status.message) == (b"\x02", "2 blocks came twice")
 
 
 def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
@@ -209,9 +214,18 @@ def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
 
 def test_converted_blocks_are_the_same():
     """What the node publishes is what its unit has computed."""
-    block = AxisBlock(10, 1, *([0.1 * n] for n in range(14)), [1], [2], [3], "y", 7.5, True)
+    block = AxisBlock(10, 1, *([0.1 * n] for n in range(15)), [1], [2], [3], "y", 7.5, -180.0, 360.0, 250.0, True)
     again = convert.message_to_block(convert.block_to_message(block, convert.time_message(5)))
-    of_the_block = ("first_cycle", "count", "master", "target_velocity", "couples_actual")
+    of_the_block = (
+        "first_cycle",
+        "count",
+        "master",
+        "target_velocity",
+        "modulo_begin",
+        "modulo_length",
+        "torque_digits",
+        "couples_actual",
+    )
     for name in AxisBlock.__slots__:
         value = getattr(again, name)
         assert (value if name in of_the_block else list(value)) == getattr(block, name), name

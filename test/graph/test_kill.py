@@ -16,6 +16,8 @@ from graph_support import (
     verified,
     wait_until_gone,
 )
+from mcap.reader import SeekingReader, make_reader
+from rosbags.rosbag2 import Reader
 
 from cnc_ptp.parameters import read_machine
 
@@ -45,10 +47,22 @@ def test_killed_node(running, node):
     recorded = verified(recording, whole=False)
     assert recorded.complete == (node != "recorder")
     assert recorded.last_cycle > 500
+    check_every_reader_opens(recording)
     check_ramps(recorded, skip=node, ended=node != "recorder")
     lost = {event.source for event in recorded.events if event.error_id == 26101}
     if node != "recorder":
         assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
+
+
+def check_every_reader_opens(recording):
+    """The file has its end and its summary, and rosbag2 its metadata, whoever has closed it."""
+    with recording.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        assert isinstance(reader, SeekingReader)
+        count = sum(1 for _ in reader.iter_messages())
+        assert count == reader.get_summary().statistics.message_count
+    with Reader(recording.parent) as bag:
+        assert bag.message_count == count == sum(1 for _ in bag.messages())
 
 
 def check_ramps(recorded, *, skip, ended):

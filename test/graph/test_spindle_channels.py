@@ -24,11 +24,12 @@ N130 M5 S2[M5]
 M30
 """
 SCENARIO = """
-- {at: 0.0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0.0, to: plc, do: auto_acknowledge, enabled: off}
 - {at: 0.1, to: second, do: mdi, text: "M19 S60 S.POS=90\\nG01 Y5 F3000"}
 - {at: 1.0, to: s, do: gear_changed}
-- {at: 2.5, to: plc, do: acknowledge, id: 1}
-- {at: 4.0, to: plc, do: acknowledge, id: 3}
+- {at: 1.0, to: plc, do: acknowledge, id: 1}
+- {at: 2.5, to: plc, do: acknowledge, id: 3}
+- {at: 4.0, to: plc, do: acknowledge, id: 5}
 - {at: 4.5, to: channel, do: mdi, text: "S3[M3 REV100]"}
 - {at: 4.7, to: channel, do: reset}
 """
@@ -92,9 +93,9 @@ def test_channels_with_spindles_in_the_graph_equal_the_offline_run(tmp_path, opt
     offline = run("simulate", *job, "--record", tmp_path / "a.mcap").stdout
     output = run("run", *job, *options, "--record", tmp_path / "b.mcap").stdout
     assert "lost 0, computed twice 0" in output
-    notices = [line for line in output.splitlines() if line.startswith("warning: P-WARN-26120")]
-    assert notices == [line for line in offline.splitlines() if line.startswith("warning: P-WARN-26120")]
-    assert [notice.partition(" of ")[2] for notice in notices] == ["/t: P-WARN-110386 value 0 is corrected to 1"]
+    notices = [line for line in output.splitlines() if line.startswith("warning: P-WARN-110386")]
+    assert notices == [line for line in offline.splitlines() if line.startswith("warning: P-WARN-110386")]
+    assert [notice.partition(" of ")[2] for notice in notices] == ["/t: value 0 is corrected to 1"]
     assert states_equal(tmp_path / "a.mcap", tmp_path / "b.mcap") == []
     recorded = verified(tmp_path / "b.mcap")
     assert [record.message for record in recorded.commands if not record.accepted] == []

@@ -147,7 +147,7 @@ def test_a_homing_that_is_overtaken_is_no_success(client):
 
 def test_actions_wait_for_the_gear_and_a_cancel_forgets_them(client):
     gear = client.wait_last("s", lambda block: block.speed_zero[-1], "at rest").gear[-1]
-    client.done("plc", "auto_acknowledge", on=False)
+    client.done("plc", "auto_acknowledge", enabled=False)
     goals = [
         (3 - gear, action.OrientSpindle, "/s/position", {"position_deg": 111.0, "speed_rpm": 120.0}),
         (gear, action.Home, "/s/homing", {}),
@@ -164,7 +164,7 @@ def test_actions_wait_for_the_gear_and_a_cancel_forgets_them(client):
         client.done("s", "gear_changed")
         if cancelled:
             results.append(client.result_of(goal))
-    client.done("plc", "auto_acknowledge", on=True)
+    client.done("plc", "auto_acknowledge", enabled=True)
     statuses = [(status, result.success) for status, result in results]
     assert statuses == [(GoalStatus.STATUS_SUCCEEDED, True)] * 2 + [(GoalStatus.STATUS_CANCELED, False)]
     assert results[0][1].position_deg % 360.0 == pytest.approx(111.0, abs=0.06)

@@ -38,7 +38,7 @@ def follow_path(bench: UnitBench, blocks: int = 3, velocity: float = 100.0, begi
 
 
 def disabled(bench: UnitBench) -> None:
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
 
 
 def standing(bench: UnitBench) -> None:
@@ -92,7 +92,7 @@ def waiting(bench: UnitBench) -> None:
 
 def powered_off_in_motion(bench: UnitBench) -> None:
     moving(bench)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(50)
 
 
@@ -113,6 +113,19 @@ def external_beside(bench: UnitBench) -> None:
     """External setpoints are enabled (relative) on top of a PTP motion."""
     moving(bench)
     bench.accepted("external_enable", mode="relative")
+    bench.run(50)
+
+
+def jogging(bench: UnitBench) -> None:
+    """Endlessly at 500 mm/s."""
+    bench.accepted("jog", velocity=500.0)
+    bench.run(400)
+
+
+def jog_ended(bench: UnitBench) -> None:
+    """On the ramp that ends a jog."""
+    jogging(bench)
+    bench.accepted("jog", velocity=0.0)
     bench.run(50)
 
 
@@ -145,14 +158,16 @@ STATES: dict[str, tuple[Callable[[UnitBench], None], S]] = {
     "compensating": (compensating, S.DISCRETE_MOTION),
     "external": (external, S.CONTINUOUS_MOTION),
     "external_beside": (external_beside, S.DISCRETE_MOTION),
+    "jogging": (jogging, S.CONTINUOUS_MOTION),
+    "jog_ended": (jog_ended, S.DISCRETE_MOTION),
     "on_path": (on_path, S.SYNCHRONIZED_MOTION),
     "error_ramp": (error_ramp, S.ERROR_STOP),
     "error_stop": (error_stop, S.ERROR_STOP),
 }
 
 COMMANDS: dict[str, tuple[str, dict[str, Any]]] = {
-    "power on": ("power", {"on": True}),
-    "power off": ("power", {"on": False}),
+    "power on": ("power", {"enabled": True}),
+    "power off": ("power", {"enabled": False}),
     "reset": ("reset", {}),
     "move_absolute": ("move_absolute", {"target": 100.0, **DYNAMICS}),
     "move_relative": ("move_relative", {"distance": 100.0, **DYNAMICS}),
@@ -161,6 +176,8 @@ COMMANDS: dict[str, tuple[str, dict[str, Any]]] = {
     "set_override_type": ("set_override_type", {"type": 3}),
     "stop": ("stop", {}),
     "halt": ("halt", {}),
+    "jog": ("jog", {"velocity": -300.0}),
+    "jog 0": ("jog", {"velocity": 0.0}),
     "emergency_stop": ("emergency_stop", {"deceleration": 20_000.0, "jerk": 500_000.0}),
     "new_target": ("new_target", {"target": 2500.0}),
     "new_velocity_and_target": (

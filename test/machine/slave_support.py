@@ -44,12 +44,14 @@ class SlaveBench(MachineBench):
         return self.send_all([(unit, command, arguments)])[0]
 
     def send_all(self, commands: Iterable[tuple[str, str, dict[str, Any]]]) -> list[CommandRecord]:
-        """Commands that go out with the same block; the records of the axes in the order of the commands."""
+        """Commands for the same block; runs until all are answered. The records in the order of the commands."""
         wanted = [Command(unit, command, arguments) for unit, command, arguments in commands]
         for command in wanted:
             self.units["plc"].input(command)
         before = len(self.records)
         self.tick()
+        while self.units["plc"]._outgoing:
+            self.tick()
         news = self.records[before:]
         answers = []
         for command in wanted:

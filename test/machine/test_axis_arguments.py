@@ -30,8 +30,6 @@ NUMBERS = [
     ("move_relative", "distance", {}),
     ("move_modulo", "position", {}),
     ("set_override", "percent", {}),
-    ("emergency_stop", "deceleration", {"jerk": 1e6}),
-    ("emergency_stop", "jerk", {"deceleration": 1e4}),
     ("new_target", "target", {}),
     *[("new_velocity_and_target", name, {other: 1.0 for other in TWO_STAGE if other != name}) for name in TWO_STAGE],
     *[("move_absolute", name, {"target": 1.0}) for name in DYNAMICS],
@@ -104,8 +102,8 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
         ("new_target", {}, "22001 axis x: new_target refused: argument 'target' is missing; nothing was changed"),
         (
             "emergency_stop",
-            {"deceleration": 1e4},
-            "22001 axis x: emergency_stop refused: argument 'jerk' is missing; nothing was changed",
+            {"deceleration": 1e4, "now": True},
+            "22001 axis x: emergency_stop refused: unknown argument 'now'; nothing was changed. Known: deceleration, jerk",
         ),
         (
             "new_velocity_and_target",
@@ -114,8 +112,12 @@ def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: in
         ),
         ("halt", {"now": True}, "22001 axis x: halt refused: unknown argument 'now'; nothing was changed. Known: none"),
         ("stop", {"now": True}, "22001 axis x: stop refused: unknown argument 'now'; nothing was changed. Known: none"),
-        ("power", {"on": 1}, "22001 axis x: power refused: on = 1 is not a switch; nothing was changed"),
-        ("power", {"on": "on"}, "22001 axis x: power refused: on = 'on' is not a switch; nothing was changed"),
+        ("power", {"enabled": 1}, "22001 axis x: power refused: enabled = 1 is not a switch; nothing was changed"),
+        (
+            "power",
+            {"enabled": "on"},
+            "22001 axis x: power refused: enabled = 'on' is not a switch; nothing was changed",
+        ),
         (
             "jump",
             {},

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from axis_control_support import (
     BOTH,
+    COMPENSATED,
     CONVENTIONAL,
     MECHANICS,
     control_bench,
@@ -21,9 +22,10 @@ from loop_support import KV, PLANT, TA, feedforward
 from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
 from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.states import StatusBit
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisStateCode as S
-from cnc_ptp.machine.blocks import Severity
+from cnc_ptp.machine.blocks import CycleTick, Severity
 from cnc_ptp.parameters.control_view import ControlParameters, LagMonitoring
 
 # ---------------------------------------------------------------- what a user sees
@@ -35,7 +37,7 @@ def test_feedforward_takes_the_lag_away_while_the_axis_moves() -> None:
     move(bench, 800.0)
     bench.run(500)
     assert bench.column("following_error")[-1] == pytest.approx(200.0 / KV, abs=1e-6)
-    assert bench.accepted("set_feedforward", on=True) == ""
+    assert bench.accepted("set_feedforward", enabled=True) == ""
     bench.run(500)
     assert bench.column("following_error")[-1] == pytest.approx(0.0, abs=1e-6)
     bench.accepted("set_feedforward", weight_percent=50)
@@ -49,11 +51,38 @@ def test_feedforward_takes_the_lag_away_while_the_axis_moves() -> None:
     assert np.abs(actual).max() <= 4000.0
 
 
+@pytest.mark.parametrize("selected_first", [True, False])
+@pytest.mark.parametrize("delay", [0, 4])
+@pytest.mark.parametrize("mode", [CONVENTIONAL, BOTH])
+@pytest.mark.parametrize(("target", "jerk"), [(5.0, 40_000.0), (-0.2, 2_000_000.0)])
+def test_feedforward_selected_in_the_cycle_of_a_start_is_there_at_once(
+    mode: int, delay: int, target: float, jerk: float, selected_first: bool
+) -> None:
+    """In either order, after a motion before it, with and without a delay line: as if it had been on for long."""
+    lookahead = replace(COMPENSATED, reversal_lookahead=delay, active=False)
+    benches = [
+        control_bench(control_of(plant=PLANT, of_feedforward=feedforward(mode), friction=lookahead)) for _ in "12"
+    ]
+    for bench, enabled in zip(benches, (True, False), strict=True):
+        bench.accepted("set_feedforward", enabled=enabled)
+        move(bench, 3.0)
+        bench.run(1000)
+        if not enabled and selected_first:
+            bench.accepted("set_feedforward", enabled=True)
+        move(bench, target, jerk=jerk)
+        if not enabled and not selected_first:
+            bench.accepted("set_feedforward", enabled=True)
+        bench.run(300)
+    long_on, together = (np.array(bench.column("following_error"))[1000:] for bench in benches)
+    assert benches[1].column("feedforward_percent")[1000:] == [100.0] * 300
+    assert together == pytest.approx(long_on, abs=1e-9)
+
+
 def test_lags_of_a_ptp_motion() -> None:
     """v/Kv and a·Ta/Kv in a motion that the axis plans itself."""
     for mode, lag in ((0x1, 1000.0 * TA / KV), (CONVENTIONAL, 0.0)):
         bench = control_bench(plain_control(mode))
-        bench.accepted("set_feedforward", on=True)
+        bench.accepted("set_feedforward", enabled=True)
         move(bench, 900.0, velocity=480.0, acceleration=1000.0, jerk=400_000.0)
         bench.run(450)
         assert bench.column("set_acceleration")[-1] == 1000.0
@@ -68,7 +97,7 @@ def test_what_velocity_and_acceleration_feedforward_leave_of_a_whole_motion(targ
     """
     z = changed(MILL.axes["z"], encoder_increment=0.0)
     bench = UnitBench(AxisUnit(z, cycle_time=CYCLE_TIME))
-    bench.accepted("set_feedforward", on=True)
+    bench.accepted("set_feedforward", enabled=True)
     bench.accepted(
         "move_absolute", target=target, velocity=200.0, acceleration=1500.0, deceleration=1700.0, jerk=z.jerk
     )
@@ -81,19 +110,19 @@ def test_what_velocity_and_acceleration_feedforward_leave_of_a_whole_motion(targ
 
 def test_refusals_and_warnings_of_the_unit() -> None:
     bench = control_bench(plain_control())
-    assert bench.accepted("set_feedforward", on=True) == (
+    assert bench.accepted("set_feedforward", enabled=True) == (
         "axis x: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
     )
-    assert bench.refused("set_feedforward", weight_percent=100.5) == (
-        "P-ERR-23060 axis x: set_feedforward refused: weight_percent = 100.5 is not within 0 ... 100 (G136); nothing "
+    assert bench.refused("set_feedforward", weight_percent=-0.5) == (
+        "P-ERR-23060 axis x: set_feedforward refused: weight_percent = -0.5 is no number of 0 or more (G136); nothing "
         "was changed"
     )
-    assert bench.refused("set_friction_compensation", on=True) == (
+    assert bench.refused("set_friction_compensation", enabled=True) == (
         "P-ERR-70495 axis x: set_friction_compensation refused: friction compensation is not activated (P-AXIS-00522 "
         "lr_param.frict_comp = 0); nothing was changed"
     )
-    assert bench.refused("set_feedforward", on="yes") == (
-        "P-ERR-22001 axis x: set_feedforward refused: on = 'yes' is not a switch; nothing was changed"
+    assert bench.refused("set_feedforward", enabled="yes") == (
+        "P-ERR-22001 axis x: set_feedforward refused: enabled = 'yes' is not a switch; nothing was changed"
     )
     bench.run(10)
     assert [event.severity for event in bench.events] == [Severity.WARNING] * 3
@@ -210,20 +239,20 @@ CONTROLS: dict[str, Callable[[], ControlParameters]] = {
 }
 
 SCRIPT: list[tuple[int, str, dict[str, Any]]] = [
-    (0, "set_feedforward", {"on": True}),
+    (0, "set_feedforward", {"enabled": True}),
     (70, "move_absolute", {"target": 90.0, "velocity": 200.0, "acceleration": 2000.0, "jerk": 40_000.0}),
     (210, "set_feedforward", {"weight_percent": 60.0}),
     (280, "set_override", {"percent": 40.0}),
     (420, "new_target", {"target": -5.0}),
-    (490, "set_friction_compensation", {"on": False}),
-    (560, "set_feedforward", {"on": False}),
+    (490, "set_friction_compensation", {"enabled": False}),
+    (560, "set_feedforward", {"enabled": False}),
     (700, "set_override", {"percent": 100.0}),
-    (1050, "set_friction_compensation", {"on": True}),
-    (1120, "set_feedforward", {"on": True, "weight_percent": 100.0}),
+    (1050, "set_friction_compensation", {"enabled": True}),
+    (1120, "set_feedforward", {"enabled": True, "weight_percent": 100.0}),
     (1400, "move_absolute", {"target": 300.0, "velocity": 450.0, "acceleration": 4000.0, "jerk": 50_000.0}),
     (1610, "stop", {}),
-    (1680, "power", {"on": False}),
-    (2170, "power", {"on": True}),
+    (1680, "power", {"enabled": False}),
+    (2170, "power", {"enabled": True}),
     (2240, "move_absolute", {"target": 0.0, "velocity": 300.0, "acceleration": 3000.0, "jerk": 50_000.0}),
     (2590, "upstream_lost", {"source": "plc"}),
     (3150, "reset", {}),
@@ -304,11 +333,60 @@ def test_feedforward_off_is_the_plain_axis_to_the_bit() -> None:
 
 def test_a_virtual_axis_shows_its_setpoints() -> None:
     bench = control_bench(control_of("none", plant=PLANT, monitoring=monitored(4, moving_limit=1e-6)))
-    bench.accepted("set_feedforward", on=True)
+    bench.accepted("set_feedforward", enabled=True)
     move(bench, 300.0)
     bench.run(400)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(1000)
     assert bench.events == [] and bench.state == S.DISABLED
     assert bench.column("actual_position") == bench.column("set_position")
     assert set(bench.column("following_error")) == {0.0}
+
+
+def test_feedforward_without_room_is_a_warning_with_number_and_text() -> None:
+    bench = control_bench(plain_control(0x1))
+    move(bench, 5000.0, velocity=500.0)
+    bench.run(800)
+    bench.accepted("set_feedforward", enabled=True)
+    bench.run(2000)
+    assert [event.severity for event in bench.events] == [Severity.WARNING]
+    assert bench.event_texts() == [
+        "P-ERR-23061 axis x: feedforward waits: at 500 mm/s there is no room up to 500 mm/s (P-AXIS-00212) to make up the "
+        f"following error; {bench.last.feedforward_percent[-1]:g} % act, the rest does when the motion is slower"
+    ]
+
+
+def test_the_status_says_whether_friction_compensation_is_on() -> None:
+    """In every way in which cycles are computed: standing, moving, superimposed, without power."""
+    bench = control_bench()
+    bit = int(StatusBit.FRICTION_COMPENSATION)
+    assert bit == 65536
+
+    def shown(cycles: int) -> set[int]:
+        bench.run(cycles)
+        return {bits & bit for bits in bench.column("status_bits")[-cycles:]}
+
+    assert shown(20) == {bit}
+    move(bench, 50.0)
+    assert shown(100) == {bit}
+    bench.accepted("set_friction_compensation", enabled=False)
+    assert shown(100) == {0}
+    bench.run(1000)
+    bench.accepted("set_friction_compensation", enabled=True)
+    move(bench, 450.0)
+    bench.accepted(
+        "compensation_start",
+        length=100.0,
+        difference=5.0,
+        process_velocity=200.0,
+        velocity_increase=50.0,
+        acceleration=500.0,
+        deceleration=500.0,
+    )
+    assert shown(200) == {bit}
+    bench.run(3500)
+    bench.accepted("power", enabled=False)
+    assert shown(20) == {bit}
+    bench.accepted("set_friction_compensation", enabled=False)
+    assert shown(20) == {0}
+    assert control_bench(plain_control()).unit.step(CycleTick(0, 10), {}).status_bits[0] & bit == 0

@@ -189,7 +189,7 @@ def test_power_off_takes_it_back_and_the_axis_stays_where_it_stops() -> None:
         each.run(50)
     bench.accepted("new_target", target=0.0)
     for each in (bench, undisturbed):
-        each.accepted("power", on=False)
+        each.accepted("power", enabled=False)
         each.run(2000)
     assert bench.columns() == undisturbed.columns() and bench.state == S.DISABLED
 

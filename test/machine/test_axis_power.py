@@ -55,7 +55,7 @@ def test_a_path_continues_in_one_cycle_at_its_velocity_before_the_ramp_begins() 
 def test_power_off_while_moving_ramps_down_and_then_disables() -> None:
     bench = axis_bench(kv=50.0, drive_time_constant=0.003)
     moving(bench)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(1000)
     states, velocity = bench.column("state"), bench.column("set_velocity")
     end = states.index(S.DISABLED)
@@ -71,11 +71,11 @@ def test_the_enable_moves_nothing() -> None:
     """What the drive still lacked when the loop was opened is no step of the command velocity later on."""
     bench = axis_bench(kv=50.0, drive_time_constant=0.003)
     moving(bench)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(1500)
     rest, actual = bench.column("following_error")[-1], bench.column("actual_position")[-1]
     assert abs(rest) > 1e-6
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(100)
     assert set(bench.column("command_velocity")[-100:]) == {0.0}
     assert bench.column("set_position")[-1] == bench.column("actual_position")[-1] == pytest.approx(actual, abs=1e-9)
@@ -88,7 +88,7 @@ def test_the_enable_moves_nothing() -> None:
 def test_power_on_again_on_the_ramp_ends_in_standstill() -> None:
     bench = axis_bench()
     powered_off_in_motion(bench)
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(1000)
     assert bench.state == S.STANDSTILL and S.DISABLED not in bench.column("state")
     assert_axis_smooth(bench, acceleration=5000.0, jerk=50_000.0)
@@ -97,7 +97,7 @@ def test_power_on_again_on_the_ramp_ends_in_standstill() -> None:
 def test_power_off_on_the_path_is_a_fault_and_the_loop_opens_at_standstill() -> None:
     bench = axis_bench(kv=50.0, drive_time_constant=0.003)
     follow_path(bench, blocks=20)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(1000)
     assert bench.event_texts() == [
         "P-ERR-23010 axis x: the enable was removed during path motion; the axis stops on its own ramp (ErrorStop)"
@@ -108,7 +108,7 @@ def test_power_off_on_the_path_is_a_fault_and_the_loop_opens_at_standstill() -> 
     bench.accepted("reset")
     bench.run(10)
     assert bench.state == S.DISABLED
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(10)
     assert bench.state == S.STANDSTILL and set(bench.column("command_velocity")[-10:]) == {0.0}
 
@@ -116,9 +116,9 @@ def test_power_off_on_the_path_is_a_fault_and_the_loop_opens_at_standstill() -> 
 def test_power_on_in_error_stop_closes_the_loop_and_keeps_the_error() -> None:
     bench = axis_bench()
     on_path(bench)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(500)
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(10)
     assert bench.state == S.ERROR_STOP and bench.column("error_id")[-1] == 23010
     bench.accepted("reset")
@@ -130,7 +130,7 @@ def test_an_axis_without_power_at_the_start() -> None:
     bench = axis_bench(powered_at_start=False)
     bench.run(10)
     assert set(bench.column("state")) == {S.DISABLED}
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(10)
     assert set(bench.column("state")[10:]) == {S.STANDSTILL}
 

@@ -53,8 +53,8 @@ others = st.sampled_from(
         ("halt", {}),
         ("halt", {}),
         ("reset", {}),
-        ("power", {"on": False}),
-        ("power", {"on": True}),
+        ("power", {"enabled": False}),
+        ("power", {"enabled": True}),
         ("upstream_lost", {"source": "plc"}),
     ]
 )

@@ -14,6 +14,7 @@ PTP_MOTION = ("moving", "braking", "held", "returning", "halting", "compensating
 STOPPED = ("stopping", "waiting", "powered_off_in_motion")
 IN_ERROR = ("error_ramp", "error_stop")
 AT_REST = ("disabled", "standing")
+JOGGING = ("jogging", "jog_ended")
 EXTERNAL = ("external", "external_beside")
 NAME = {state: state_name(code) for state, (_, code) in STATES.items()}
 """The PLCopen name of each situation's state."""
@@ -53,12 +54,20 @@ REFUSALS: Texts = {
         tuple(state for state in STATES if state not in ("standing", *EXTERNAL)),
         "the axis is in {state}, it must be in Standstill",
     ),
-    **refused(23027, MOVES, EXTERNAL, "external setpoints are enabled; a PTP start beside them is not permitted"),
+    **refused(
+        23005,
+        ("jog",),
+        tuple(state for state in STATES if state not in ("standing", "jogging", "jog_ended", *EXTERNAL)),
+        "the axis is in {state}, it must be in Standstill or jogging",
+    ),
+    **refused(
+        23027, (*MOVES, "jog"), EXTERNAL, "external setpoints are enabled; a PTP start beside them is not permitted"
+    ),
     **refused(23005, STOPS, ("on_path",), "the channel path moves the axis; use feed_hold or reset of the channel"),
     **refused(
         23017,
         ("emergency_stop",),
-        ("braking", "halting", "stopping", "powered_off_in_motion"),
+        ("braking",),
         "the axis is in its brake phase",
     ),
     **refused(
@@ -78,7 +87,7 @@ REFUSALS: Texts = {
     **refused(
         23020,
         ("compensation_start",),
-        ("braking", "halting", *STOPPED),
+        ("braking", "halting", "jog_ended", *STOPPED),
         "the axis is stopping or in its brake phase",
     ),
     **refused(23020, ("compensation_start",), ("returning",), "the axis stops in order to return to its target"),
@@ -88,14 +97,25 @@ REFUSALS: Texts = {
         ("compensating",),
         "a position compensation is active; it cannot be started again",
     ),
+    **refused(  # the jog leads to the limit, and the compensation would lead beyond
+        120002,
+        ("compensation_start",),
+        ("jogging",),
+        "target 100005.0 mm lies beyond the positive soft limit 100000.0 mm (P-AXIS-00178)",
+    ),
     **refused(23028, ENABLES, ("disabled", "powered_off_in_motion"), "the axis is not enabled; power it on"),
     **refused(23029, ENABLES, IN_ERROR, "the axis has error 26101; reset it"),
-    **refused(23030, ENABLES, ("on_path",), "the channel path moves the axis"),
+    **refused(
+        23026,
+        ENABLES[:1],
+        ("on_path",),
+        "absolute setpoints beside the path of a channel are not permitted; use relative",
+    ),
     **refused(23005, ENABLES, ("stopping", "waiting"), "the axis is in {state}"),
     **refused(
         23026,
         ENABLES[:1],
-        PTP_MOTION[:-1],
+        (*PTP_MOTION[:-1], *JOGGING),
         "absolute setpoints beside a PTP motion are not permitted; use relative",
     ),
     **refused(
@@ -119,7 +139,7 @@ WARNINGS: Texts = {
     **warned(STOPS, (*AT_REST, *IN_ERROR), "{command} without effect in {state}"),
     **warned(STOPS[:2], ("stopping", "powered_off_in_motion"), "{command} without effect in {state}"),
     **warned(STOPS, ("waiting",), "{command} takes the new target back; the axis stops"),
-    **warned(("set_override",), ("halting", *STOPPED), f"{OVERRIDE_IDLE} (the axis stops)"),
+    **warned(("set_override",), ("halting", "jog_ended", *STOPPED), f"{OVERRIDE_IDLE} (the axis stops)"),
     **warned(("set_override",), ("braking",), f"{OVERRIDE_IDLE} (brake phase or level out of reach)"),
     **warned(REDIRECTIONS, ("stopping", "waiting"), "{command} waits for the end of the stop"),
     **warned(
@@ -148,6 +168,10 @@ def led_to(state: S, commands: tuple[str, ...], situations: tuple[str, ...]) -> 
 AFTER: dict[tuple[str, str], S] = {
     **led_to(S.DISCRETE_MOTION, MOVES, ("standing",)),
     **led_to(S.CONTINUOUS_MOTION, ENABLES, ("standing",)),
+    **led_to(S.CONTINUOUS_MOTION, ("jog",), ("standing", "jog_ended")),
+    **led_to(S.DISCRETE_MOTION, ("jog 0", *REDIRECTIONS), ("jogging",)),
+    **led_to(S.STOPPING, ("stop", "reset", "power off"), JOGGING),
+    **led_to(S.STOPPING, ("halt", "emergency_stop"), ("jogging",)),
     **led_to(S.STANDSTILL, ("power on",), ("disabled",)),
     **led_to(S.STANDSTILL, ("reset",), ("error_stop",)),
     **led_to(S.STANDSTILL, (*STOPS, "reset"), ("held", "external")),
@@ -158,7 +182,11 @@ AFTER: dict[tuple[str, str], S] = {
         ("stop", "reset"),
         ("moving", "braking", "returning", "halting", "compensating", "external_beside"),
     ),
-    **led_to(S.STOPPING, ("emergency_stop",), ("moving", "returning", "compensating", "external_beside")),
+    **led_to(
+        S.STOPPING,
+        ("emergency_stop",),
+        ("moving", "returning", "halting", "jog_ended", "compensating", "external_beside"),
+    ),
     **led_to(
         S.STOPPING,
         ("power off",),
@@ -232,6 +260,9 @@ def go_on(bench: UnitBench, state: S) -> None:
         follow_path(bench, begin=3.0)
         return
     bench.run(3000)
+    if bench.column("set_velocity")[-1]:  # a jog has no end
+        bench.accepted("stop")
+        bench.run(3000)
     assert bench.column("set_velocity")[-1] == 0.0
 
 

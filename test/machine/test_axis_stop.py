@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from math import inf, nan
 
 import pytest
 from axis_motion_support import expected, motion, ramp_way, run_to_standstill, start, started, to_rest
@@ -166,48 +168,93 @@ def test_the_ramp_of_an_emergency_stop(cycle: int, direction: float) -> None:
     assert_axis_smooth(bench, acceleration=20_000.0, jerk=500_000.0)
 
 
-NOT_LARGER = "{} is not larger than {} of the start; use stop"
+def correction(name: str, value: object, used: float) -> str:
+    """What is said of a value that the ramp does not have."""
+    unit = "mm/s²" if name == "deceleration" else "mm/s³"
+    if value is None:
+        return f"{name} is not given; {used} {unit} of the start is used"
+    if isinstance(value, float) and value > 0.0:
+        return f"{name} {value} {unit} is less than {used} {unit} of the start, which is used"
+    return f"{name} = {value} must be greater than 0; {used} {unit} of the start is used"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "number", "reason"),
-    [
-        ({"deceleration": 5000.0, "jerk": 5e5}, 23016, NOT_LARGER.format("deceleration 5000.0 mm/s²", "5000.0 mm/s²")),
-        ({"deceleration": 4000.0, "jerk": 5e5}, 23016, NOT_LARGER.format("deceleration 4000.0 mm/s²", "5000.0 mm/s²")),
-        ({"deceleration": 2e4, "jerk": 5e4}, 23016, NOT_LARGER.format("jerk 50000.0 mm/s³", "50000.0 mm/s³")),
-        ({"deceleration": 2e4, "jerk": 1.0}, 23016, NOT_LARGER.format("jerk 1.0 mm/s³", "50000.0 mm/s³")),
-        ({"deceleration": 0.0, "jerk": 5e5}, 23003, "deceleration = 0.0 must be greater than 0"),
-        ({"deceleration": -1.0, "jerk": 5e5}, 23003, "deceleration = -1.0 must be greater than 0"),
-        ({"deceleration": 2e4, "jerk": -0.0}, 23003, "jerk = -0.0 must be greater than 0"),
-        ({"deceleration": 1e-300, "jerk": 5e5}, 23003, "deceleration = 1e-300 must be at least 1e-09"),
-        (
-            {"deceleration": 50_000.5, "jerk": 5e5},
-            23013,
-            "deceleration 50000.5 mm/s² is above the maximum 50000.0 mm/s² (P-AXIS-00008, P-AXIS-00003)",
-        ),
-    ],
-)
-def test_an_emergency_stop_must_be_stronger_in_both(arguments: dict[str, float], number: int, reason: str) -> None:
-    bench, undisturbed = started(5000.0, 700), started(5000.0, 700)
-    assert bench.refused("emergency_stop", **arguments) == (
-        f"P-ERR-{number} axis x: emergency_stop refused: {reason}; nothing was changed"
+WARNING = "P-WARN-23016 axis x: emergency_stop: "
+NO_USE = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast", [1.0]]
+
+
+@pytest.mark.parametrize("jerk", [50_000.0, 500_000.0, 1.0, 0.0, nan, None])
+@pytest.mark.parametrize("deceleration", [5000.0, 10_000.0, *NO_USE])
+def test_an_emergency_stop_stops_with_the_larger_of_what_is_given_and_the_start(
+    deceleration: object, jerk: object
+) -> None:
+    """10,000 mm/s² with the jerk of the start (5000, 50,000) is one of them. The way is that of the closed form."""
+    bench = started(5000.0, 800)
+    given = {"deceleration": deceleration, "jerk": jerk}
+    a, j = (
+        x if isinstance(x, float) and x >= least else least for x, least in zip(given.values(), (A, J), strict=True)
     )
-    for each in (bench, undisturbed):
-        each.run(2500)
-    assert bench.columns() == undisturbed.columns() and bench.column("set_position")[-1] == 5000.0
+    values = {name: value for name, value in given.items() if value is not None}
+    corrections = [
+        correction(name, value, used)
+        for (name, value), used in zip(given.items(), (a, j), strict=True)
+        if value != used
+    ]
+    assert bench.accepted("emergency_stop", **values) == (WARNING + "; ".join(corrections) if corrections else "")
+    run_to_standstill(bench)
+    way = ramp_way(V, 0.0, a, j)
+    assert bench.column("set_position")[-1] == pytest.approx(ramp_way(0.0, V) + 0.3 * V + way, abs=1e-6)
+    assert bench.column("state")[800] == S.STOPPING and bench.column("status_bits")[-1] & STOPPED
+    assert_axis_smooth(bench, acceleration=a, jerk=j)
 
 
-def test_the_dynamics_of_the_start_count_and_not_those_of_the_axis() -> None:
+@pytest.mark.parametrize("start_values", [(30_000.0, 600_000.0), (100.0, 2000.0)])
+@pytest.mark.parametrize("given", [(20_000.0, 1e6), (40_000.0, 500_000.0), (1.0, 1.0), (45_000.0, 2e6)])
+def test_the_dynamics_of_the_start_count_and_not_those_of_the_axis(
+    start_values: tuple[float, float], given: tuple[float, float]
+) -> None:
     bench = axis_bench(count=100)
-    start(bench, 20_000.0, deceleration=30_000.0, jerk=600_000.0)
+    start(bench, 20_000.0, deceleration=start_values[0], jerk=start_values[1])
     bench.run(700)
-    assert "is not larger than 30000.0 mm/s² of the start" in bench.refused(
-        "emergency_stop", deceleration=20_000.0, jerk=1e6
+    bench.accepted("emergency_stop", deceleration=given[0], jerk=given[1])
+    run_to_standstill(bench)
+    used = tuple(map(max, given, start_values))
+    cycles = to_rest(motion(bench)[700], *used).duration / CYCLE_TIME
+    assert bench.column("state").index(S.STANDSTILL) == pytest.approx(700 + cycles, abs=1.1)
+    assert_axis_smooth(bench, acceleration=max(used[0], A), jerk=used[1])
+
+
+def test_an_emergency_deceleration_above_the_maximum_is_the_maximum() -> None:
+    bench = started(5000.0, 800)
+    assert bench.accepted("emergency_stop", deceleration=50_000.5, jerk=5e5) == (
+        WARNING + "deceleration 50000.5 mm/s² is above the maximum 50000.0 mm/s² (P-AXIS-00008, P-AXIS-00003), which "
+        "is used"
     )
-    assert "is not larger than 600000.0 mm/s³ of the start" in bench.refused(
-        "emergency_stop", deceleration=40_000.0, jerk=500_000.0
-    )
-    assert bench.accepted("emergency_stop", deceleration=40_000.0, jerk=700_000.0) == ""
+    run_to_standstill(bench)
+    assert_axis_smooth(bench, acceleration=50_000.0, jerk=5e5)
+
+
+def test_a_recorded_emergency_stop_with_nan_and_infinity_stops_in_the_same_way() -> None:
+    """In a recording they are text."""
+    benches = []
+    for values in ({"deceleration": nan, "jerk": inf}, {"deceleration": "nan", "jerk": "inf"}):
+        bench = started(5000.0, 800)
+        record = bench.give("emergency_stop", **values)
+        assert record.accepted and json.loads(record.arguments_json) == {"deceleration": "nan", "jerk": "inf"}
+        assert record.message == (
+            WARNING + "deceleration = nan must be greater than 0; 5000.0 mm/s² of the start is used; "
+            "P-WARN-23012 axis x: emergency_stop: jerk inf mm/s³ is above A/T, the acceleration over one cycle; "
+            "5000000.0 mm/s³ is used"
+        )
+        bench.run(1000)
+        benches.append(bench)
+    assert benches[0].columns() == benches[1].columns() and benches[0].state == S.STANDSTILL
+
+
+def test_a_number_that_is_too_long_is_the_maximum() -> None:
+    bench = started(5000.0, 800)
+    assert "which is used" in bench.accepted("emergency_stop", deceleration=10**400, jerk=10**400)
+    bench.run(100)
+    assert bench.state == S.STANDSTILL and min(bench.column("set_acceleration")) == pytest.approx(-50_000.0)
 
 
 def test_the_emergency_deceleration_of_the_axis_may_be_above_its_largest_acceleration() -> None:
@@ -215,6 +262,26 @@ def test_the_emergency_deceleration_of_the_axis_may_be_above_its_largest_acceler
     start(bench, 5000.0)
     bench.run(700)
     assert bench.accepted("emergency_stop", deceleration=30_000.0, jerk=1e6) == ""
+
+
+@pytest.mark.parametrize("command", ["halt", "stop"])
+@pytest.mark.parametrize(("weak", "strong"), [(500.0, 20_000.0), (1000.0, 8000.0)])
+def test_an_emergency_stop_makes_the_ramp_of_a_stop_or_halt_stronger(command: str, weak: float, strong: float) -> None:
+    bench = axis_bench()
+    bench.accepted("move_absolute", target=5000.0, velocity=1000.0, acceleration=A, deceleration=weak, jerk=50_000.0)
+    bench.run(900)
+    bench.accepted(command)
+    bench.run(100)
+    p, v, _ = motion(bench)[-1]
+    assert bench.accepted("emergency_stop", deceleration=strong, jerk=500_000.0) == ""
+    bench.run(5)
+    assert bench.state == S.STOPPING
+    assert bench.accepted("new_target", target=0.0) == "axis x: new_target waits for the end of the stop"
+    bench.accepted("emergency_stop", deceleration=strong, jerk=500_000.0)
+    run_to_standstill(bench)
+    assert bench.column("set_position")[-1] < p + ramp_way(v, 0.0, strong, 500_000.0) + v * 0.002
+    assert min(bench.column("set_acceleration")) == pytest.approx(-strong)
+    assert_axis_smooth(bench, acceleration=strong, jerk=500_000.0)
 
 
 def test_no_emergency_stop_in_the_natural_brake_phase() -> None:

@@ -39,7 +39,7 @@ def assert_all_smooth(bench: MachineBench) -> None:
 def test_feed_hold_ramps_down_holds_and_goes_on() -> None:
     """From 100 mm/s A- 2400 is not reached: 2·√(v/J) and half of v·t; then the rest in the closed-form time."""
     bench = running(LINE, 0.5)
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.5)
     velocity, to_go = path(bench)
     assert velocity[500] == pytest.approx(100.0)
@@ -50,7 +50,7 @@ def test_feed_hold_ramps_down_holds_and_goes_on() -> None:
     assert set(state[velocity.index(0.0, 500) :]) == {C.HOLD}
     assert to_go[500] - to_go[-1] == pytest.approx(50.0 * ramp, abs=1e-6)
     rest = to_go[-1]
-    bench.give("channel", "feed_hold", on=False)
+    bench.give("channel", "feed_hold", enabled=False)
     bench.run(1.5)
     assert bench.position("x") == 100.0
     end = sum(d for d, _ in seven_phases(rest, 100.0, UP, DOWN, J))
@@ -63,10 +63,10 @@ def test_feed_hold_ramps_down_holds_and_goes_on() -> None:
 @pytest.mark.parametrize("milliseconds", range(10, 900, 110))
 def test_feed_hold_stays_on_the_geometry(milliseconds: int) -> None:
     bench = running(CIRCLE, milliseconds / 1000.0)
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.3)
     assert bench.column("channel", "path_velocity")[-1] == 0.0
-    bench.give("channel", "feed_hold", on=False)
+    bench.give("channel", "feed_hold", enabled=False)
     bench.run(4.0)
     for x, y in zip(bench.column("x", "set_position"), bench.column("y", "set_position"), strict=True):
         assert math.hypot(x - 20.0, y) == pytest.approx(20.0, abs=1e-9)
@@ -76,12 +76,12 @@ def test_feed_hold_stays_on_the_geometry(milliseconds: int) -> None:
 
 def test_feed_hold_before_the_start_holds_at_the_first_motion() -> None:
     bench = MachineBench(LINE, end_when_idle=False, start=False).run(0.05)
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.give("channel", "start")
     bench.run(0.5)
     assert bench.states("channel") == [C.IDLE, C.READY, C.HOLD] or bench.states("channel")[-1] == C.HOLD
     assert bench.position("x") == 0.0 and bench.column("channel", "distance_to_go")[-1] == 100.0
-    bench.give("channel", "feed_hold", on=False)
+    bench.give("channel", "feed_hold", enabled=False)
     bench.run(2.0)
     assert bench.position("x") == 100.0
 
@@ -89,7 +89,7 @@ def test_feed_hold_before_the_start_holds_at_the_first_motion() -> None:
 def test_feed_hold_in_the_brake_phase_lets_the_block_end_and_holds_the_next() -> None:
     bench = running("%P\nG01 X100 F6000\nG01 X200\nM30", 1.07)
     assert 0.0 < bench.column("channel", "path_velocity")[-1] < 100.0
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.5)
     assert bench.position("x") == 100.0 and bench.last("channel").state[-1] == C.HOLD
     assert bench.last("channel").line[-1] == 3
@@ -97,7 +97,7 @@ def test_feed_hold_in_the_brake_phase_lets_the_block_end_and_holds_the_next() ->
 
 def test_feed_hold_does_not_stretch_a_dwell() -> None:
     bench = running("%P\nG04 0.3\nG01 X10 F3000\nM30", 0.1)
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(1.0)
     assert bench.states("channel") == [C.RUNNING, C.WAITING, C.HOLD]
     assert bench.column("channel", "state").index(C.HOLD) == pytest.approx(300, abs=1)
@@ -120,12 +120,12 @@ def test_override_scales_the_feed(percent: float, velocity: float) -> None:
 
 def test_override_and_feed_hold_together() -> None:
     bench = running(LINE, 0.3, "- {at: 0, to: channel, do: set_override, percent: 50}")
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.3)
     bench.give("channel", "set_override", percent=80.0)
     bench.run(0.2)
     assert bench.column("channel", "path_velocity")[-1] == 0.0
-    bench.give("channel", "feed_hold", on=False)
+    bench.give("channel", "feed_hold", enabled=False)
     bench.run(0.3)
     assert bench.column("channel", "path_velocity")[-1] == pytest.approx(80.0)
 
@@ -197,7 +197,7 @@ def test_reset_in_the_brake_phase_ends_at_the_target_of_the_block() -> None:
 
 def test_reset_while_the_path_is_held() -> None:
     bench = running(LINE, 0.5)
-    bench.give("channel", "feed_hold", on=True)
+    bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.5)
     held = bench.position("x")
     bench.give("channel", "reset")
@@ -206,7 +206,7 @@ def test_reset_while_the_path_is_held() -> None:
     bench.give("channel", "start")
     bench.run(0.1)
     assert bench.last("channel").state[-1] == C.HOLD  # the feed hold is still on
-    bench.give("channel", "feed_hold", on=False)
+    bench.give("channel", "feed_hold", enabled=False)
     bench.run(2.0)
     assert bench.position("x") == 100.0
 
@@ -214,7 +214,7 @@ def test_reset_while_the_path_is_held() -> None:
 @pytest.mark.parametrize("program", ["%P\nG04 5\nG01 X10 F3000\nM30", "%P\nM08\nG01 X10 F3000\nM30", "%P\nM00\nM30"])
 def test_reset_while_the_program_waits_and_another_program_at_once(program: str) -> None:
     """A dwell, a handshake, a programmed stop: nothing of them is left for the next program."""
-    bench = running(program, 0.5, "- {at: 0, to: plc, do: auto_acknowledge, on: off}")
+    bench = running(program, 0.5, "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}")
     bench.give("channel", "reset")
     bench.run(0.01)
     assert bench.last("channel").done and bench.last("channel").state[-1] == C.READY
@@ -357,7 +357,8 @@ def test_a_broken_program_keeps_the_old_one() -> None:
 )
 def test_vetoes_come_before_anything_moves_and_show_the_line(line: str, error: str) -> None:
     bench = MachineBench(f"%P\nG01 X10 F3000\n{line}\nM30").run()
-    place = f"test.nc line 3 column 1 '{line}'"
+    column = {"120": 1, "220": line.index("S") + 1 if "S" in line else 5}[error[:3]]
+    place = f"test.nc line 3 column {column} '{line}'"
     assert bench.refusals()[0] == "P-ERR-" + error.format(place)
     assert set(bench.column("x", "set_position")) == {0.0}
 
@@ -376,7 +377,7 @@ def test_an_arc_beyond_a_soft_limit_between_its_end_points() -> None:
 @pytest.mark.parametrize(
     ("prepare", "state"),
     [
-        ("- {at: 0, to: y, do: power, on: off}", "Disabled"),
+        ("- {at: 0, to: y, do: power, enabled: off}", "Disabled"),
         ("- {at: 0, to: y, do: move_absolute, target: 50, velocity: 10}", "DiscreteMotion"),
     ],
 )
@@ -454,7 +455,7 @@ def test_ptp_commands_while_the_program_runs_are_refused() -> None:
 def test_an_axis_fault_stops_path_and_other_axes_together() -> None:
     """x loses its enable at 0.5 s: x stops on its own ramp, y on the path's; the spindle stops; reset and go on."""
     bench = running("%P\nM03 S600\nG01 X100 Y50 F6000\nM30", 0.6)
-    bench.give("x", "power", on=False)
+    bench.give("x", "power", enabled=False)
     bench.run(1.5)
     assert bench.errors() == [
         "P-ERR-23010 axis x: the enable was removed during path motion; the axis stops on its own ramp (ErrorStop)",
@@ -470,7 +471,7 @@ def test_an_axis_fault_stops_path_and_other_axes_together() -> None:
         "P-ERR-22004 channel channel: start refused: the channel is in error P-ERR-22012; reset it first; "
         "nothing was changed"
     )
-    bench.give("x", "power", on=True)
+    bench.give("x", "power", enabled=True)
     bench.give("x", "reset")
     bench.give("channel", "reset")
     bench.run(0.05)
@@ -495,8 +496,8 @@ def test_reset_is_refused_on_the_error_ramp() -> None:
 def test_an_axis_that_is_reset_while_the_channel_ramps_down_does_not_jump_onto_the_path() -> None:
     """z stands, its fault is over at once: its reset brings it back onto the path while x still ramps down there."""
     bench = running("%P\nG01 X100 F30000\nM30", 0.5)
-    bench.give("z", "power", on=False)
-    bench.give("z", "power", on=True)
+    bench.give("z", "power", enabled=False)
+    bench.give("z", "power", enabled=True)
     bench.give("z", "reset")
     bench.run(1.0)
     assert_all_smooth(bench)
@@ -614,7 +615,7 @@ def test_commands_at_random_cycles_never_step_the_axes() -> None:
             bench.run(draw.randrange(1, 30) * 0.01)
             unit, command, arguments = draw.choice(
                 [
-                    ("channel", "feed_hold", {"on": draw.random() < 0.3}),
+                    ("channel", "feed_hold", {"enabled": draw.random() < 0.3}),
                     (
                         "channel",
                         "set_override",

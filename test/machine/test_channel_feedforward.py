@@ -51,15 +51,15 @@ def test_program_start_resets_all_axes_and_the_rest_goes_out_with_the_next_block
     by_block = sent(bench)
     assert [command for block, command in by_block if block == 0] == RESETS
     assert [command for block, command in by_block if block == 1] == [
-        ("x", "set_feedforward", {"on": True}),
-        ("y", "set_feedforward", {"on": True}),
-        ("z", "set_feedforward", {"on": True}),
+        ("x", "set_feedforward", {"enabled": True}),
+        ("y", "set_feedforward", {"enabled": True}),
+        ("z", "set_feedforward", {"enabled": True}),
         ("x", "set_feedforward", {"weight_percent": 80.0}),
         ("y", "set_feedforward", {"weight_percent": 95.0}),
         ("z", "set_feedforward", {"weight_percent": 0.0}),
     ]
     last = [(block, command) for block, command in by_block if block > 1]
-    assert [command for _, command in last] == [(axis, "set_feedforward", {"on": False}) for axis in "xyz"]
+    assert [command for _, command in last] == [(axis, "set_feedforward", {"enabled": False}) for axis in "xyz"]
     assert bench.position("x") == 1.0 and bench.position("y") == 0.0
 
 
@@ -112,9 +112,9 @@ def test_a_look_ahead_of_one_axis_does_not_bend_the_path() -> None:
 def test_selection_and_weights_of_one_block_are_one_command_an_axis() -> None:
     commands = [command for block, command in sent(run("%P\nG135 G136 Y50\nM30")) if block]
     assert commands == [
-        ("x", "set_feedforward", {"on": True}),
-        ("y", "set_feedforward", {"on": True, "weight_percent": 50.0}),
-        ("z", "set_feedforward", {"on": True}),
+        ("x", "set_feedforward", {"enabled": True}),
+        ("y", "set_feedforward", {"enabled": True, "weight_percent": 50.0}),
+        ("z", "set_feedforward", {"enabled": True}),
     ]
 
 
@@ -122,7 +122,7 @@ def test_functions_of_a_block_with_a_motion_go_out_before_it() -> None:
     """They come up in the block of cycles in which the motion begins, and go out with the next one."""
     bench = run("%P\nG01 X10 F600\nX20 G135 Y[COMP ON FRICT]\nM30", permitting("y"))
     begin = bench.column("channel", "line").index(3) // 10
-    on = [block for block, command in sent(bench) if command[2] == {"on": True}]
+    on = [block for block, command in sent(bench) if command[2] == {"enabled": True}]
     assert on == [begin + 1] * 4
 
 
@@ -131,9 +131,9 @@ def test_compensation_by_axis_names_of_the_channel() -> None:
     bench = run(program, permitting("x"))
     assert bench.errors() == [] and bench.refusals() == []
     assert [command for _, command in sent(bench) if command not in RESETS] == [
-        ("x", "set_friction_compensation", {"on": True}),
-        ("y", "set_friction_compensation", {"on": False}),
-        ("x", "set_friction_compensation", {"on": False}),
+        ("x", "set_friction_compensation", {"enabled": True}),
+        ("y", "set_friction_compensation", {"enabled": False}),
+        ("x", "set_friction_compensation", {"enabled": False}),
     ]
 
 
@@ -142,7 +142,7 @@ def test_compensation_stays_after_program_end_and_start() -> None:
     bench.give("channel", "start")
     bench.run(0.1)
     assert [c for _, c in sent(bench) if c[1] == "set_friction_compensation"] == [
-        ("x", "set_friction_compensation", {"on": True})
+        ("x", "set_friction_compensation", {"enabled": True})
     ] * 2
     assert [c for _, c in sent(bench) if c[1] == "reset_feedforward"] == RESETS * 2
 
@@ -152,10 +152,10 @@ def test_spindles_by_their_names_one_command_each() -> None:
     words = ["S[G135]", "S[G136=80]", "S[G137]", "S2[G135 G136=90]", "S2[G136=0]"]
     bench = run("%P\n" + "\n".join(words) + "\nM30", with_two_spindles())
     assert [command for _, command in sent(bench) if command[1] == "set_feedforward"] == [
-        ("s", "set_feedforward", {"on": True}),
+        ("s", "set_feedforward", {"enabled": True}),
         ("s", "set_feedforward", {"weight_percent": 80.0}),
-        ("s", "set_feedforward", {"on": False}),
-        ("t", "set_feedforward", {"on": True, "weight_percent": 90.0}),
+        ("s", "set_feedforward", {"enabled": False}),
+        ("t", "set_feedforward", {"enabled": True, "weight_percent": 90.0}),
         ("t", "set_feedforward", {"weight_percent": 0.0}),
     ]
 
@@ -167,9 +167,9 @@ def test_mdi_resets_nothing() -> None:
     assert bench.give("channel", "mdi", text="G01 X1 F600").accepted
     bench.run(0.5)
     assert [command for _, command in sent(bench)] == [
-        ("x", "set_feedforward", {"on": True, "weight_percent": 50.0}),
-        ("y", "set_feedforward", {"on": True}),
-        ("z", "set_feedforward", {"on": True}),
+        ("x", "set_feedforward", {"enabled": True, "weight_percent": 50.0}),
+        ("y", "set_feedforward", {"enabled": True}),
+        ("z", "set_feedforward", {"enabled": True}),
     ]
 
 

@@ -109,11 +109,11 @@ def test_a_gear_change_that_somebody_gives_up() -> None:
     aborted(bench, "change to gear 2 as it was told, it is in Stopping", 2, "M41 S600 M3")
 
 
-@pytest.mark.parametrize(("command", "by"), [("do: stop", "stop"), ("do: power, on: off", "power off")])
+@pytest.mark.parametrize(("command", "by"), [("do: stop", "stop"), ("do: power, enabled: off", "power off")])
 def test_a_gear_change_that_is_overtaken_while_the_plc_changes(command: str, by: str) -> None:
     """The speed of the same block does not come: the spindle stays at rest, with power again too."""
     machine = machine_of(*three(ranges=GEAR_RANGES, automatic=False), units={"s": two_gears()}, gear_change=True)
-    scenario = MANUAL + f"- {{at: 0.5, to: s, {command}}}\n- {{at: 0.8, to: s, do: power, on: on}}\n"
+    scenario = MANUAL + f"- {{at: 0.5, to: s, {command}}}\n- {{at: 0.8, to: s, do: power, enabled: on}}\n"
     bench = run("M41 S600 M3\nG01 X20 F6000", machine, scenario + "- {at: 1, to: s, do: gear_changed}")
     overtaken = f"spindle s: {by} while the PLC changes the gear for 'channel'; the spindle stays at rest"
     assert bench.errors() == [
@@ -151,7 +151,7 @@ def test_a_slave_that_somebody_stops() -> None:
 
 
 def test_a_slave_without_power() -> None:
-    scenario = "- {at: 0.1, to: t, do: power, on: off}"
+    scenario = "- {at: 0.1, to: t, do: power, enabled: off}"
     bench = run(LINK + "G04 X0.3\nM3 S1000\nG01 X20 F6000", machine_of(*three()), scenario)
     text = (
         "P-ERR-24025 spindle t: cannot carry out 'start' of its master s: the spindle is in Disabled; give it power "
@@ -305,7 +305,7 @@ def test_what_the_reset_channel_has_waiting_is_forgotten() -> None:
 
 def test_the_program_end_does_not_stop_what_another_channel_has_taken_over() -> None:
     scenario = """
-- {at: 0, to: s, do: stop_at_program_end, on: on}
+- {at: 0, to: s, do: stop_at_program_end, enabled: on}
 - {at: 0, to: channel, do: mdi, text: "M3 S1000"}
 - {at: 0.5, to: second, do: mdi, text: "M4 S2000"}
 - {at: 1, to: channel, do: mdi, text: "G04 X0.1 M30"}

@@ -189,7 +189,7 @@ def test_m_functions_are_acknowledged_automatically() -> None:
 
 def test_without_acknowledgement_the_channel_waits() -> None:
     bench = MachineBench(
-        "%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, on: off}", end_when_idle=False
+        "%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}", end_when_idle=False
     ).run(2.0)
     assert bench.states("channel") == [C.RUNNING, C.WAITING]
     assert bench.position("x") == 0.0
@@ -213,7 +213,7 @@ def test_without_acknowledgement_the_channel_waits() -> None:
 def test_auto_acknowledge_answers_what_already_waits() -> None:
     bench = MachineBench(
         "%P\nM08\nG01 X5 F3000\nM30",
-        "- {at: 0, to: plc, do: auto_acknowledge, on: off}\n- {at: 1, to: plc, do: auto_acknowledge, on: on}",
+        "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n- {at: 1, to: plc, do: auto_acknowledge, enabled: on}",
     ).run()
     assert first_motion(bench) == 1001 and bench.errors() == []
 
@@ -221,7 +221,7 @@ def test_auto_acknowledge_answers_what_already_waits() -> None:
 def test_mvs_sns_of_an_m_function_moves_and_waits_at_the_end() -> None:
     bench = MachineBench(
         "%P\nG01 X5 F3000 M07\nG01 X10\nM30",
-        "- {at: 0, to: plc, do: auto_acknowledge, on: off}\n- {at: 1.5, to: plc, do: acknowledge, id: 1}",
+        "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n- {at: 1.5, to: plc, do: acknowledge, id: 1}",
         machine=with_m(m7=MVS_SNS),
     ).run()
     x = bench.column("x", "set_position")
@@ -233,7 +233,7 @@ def test_plc_info_waits_for_speed_and_acknowledgement(acknowledge_first: bool) -
     at = 0.05 if acknowledge_first else 1.5
     bench = MachineBench(
         "%P\nM03 S1200\nG01 X5 F3000\nM30",
-        f"- {{at: 0, to: plc, do: auto_acknowledge, on: off}}\n- {{at: {at}, to: plc, do: acknowledge, id: 1}}",
+        f"- {{at: 0, to: plc, do: auto_acknowledge, enabled: off}}\n- {{at: {at}, to: plc, do: acknowledge, id: 1}}",
         machine=with_spindle(m3=MVS_SVS | PLC_INFO),
     ).run()
     request = requests(bench)[0]
@@ -262,7 +262,7 @@ def test_m_functions_without_output() -> None:
 def test_an_aborted_program_withdraws_its_requests() -> None:
     """The number that waited is void for the PLC too; the next program gets new ones."""
     bench = MachineBench(
-        "%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, on: off}", end_when_idle=False
+        "%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}", end_when_idle=False
     ).run(0.5)
     bench.give("channel", "reset")
     bench.run(0.05)
@@ -281,7 +281,7 @@ def test_two_channels_never_share_a_request_number() -> None:
     second = replace(channel, name="second", axes=channel.axes[2:], spindles=())
     two = replace(MILL, channels={"channel": first, "second": second})
     scenario = "- {at: 0, to: second, do: mdi, text: M08 M07}\n- {at: 0, to: channel, do: mdi, text: M07 M08}\n"
-    off = "- {at: 0, to: plc, do: auto_acknowledge, on: off}\n"
+    off = "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n"
     bench = MachineBench(None, off + scenario, machine=two, end_when_idle=False).run(0.1)
     numbers = {
         name: [request.id for block in bench.blocks[name] for request in block.requests] for name in two.channels
@@ -308,7 +308,7 @@ def test_m00_stops_until_start() -> None:
 def test_m01_stops_when_optional_stop_is_on(optional: bool) -> None:
     bench = MachineBench(
         "%P\nG01 X5 F3000\nM01\nG01 X10\nM30",
-        f"- {{at: 0, to: channel, do: optional_stop, on: {'on' if optional else 'off'}}}",
+        f"- {{at: 0, to: channel, do: optional_stop, enabled: {'on' if optional else 'off'}}}",
         end_when_idle=False,
     ).run(2.0)
     assert (C.STOPPED in bench.states("channel")) is optional
@@ -317,7 +317,9 @@ def test_m01_stops_when_optional_stop_is_on(optional: bool) -> None:
 
 def test_single_block_stops_after_each_block() -> None:
     bench = MachineBench(
-        "%P\nG01 X5 F3000\nM08\nG01 X10\nM30", "- {at: 0, to: channel, do: single_block, on: true}", end_when_idle=False
+        "%P\nG01 X5 F3000\nM08\nG01 X10\nM30",
+        "- {at: 0, to: channel, do: single_block, enabled: true}",
+        end_when_idle=False,
     )
     positions = []
     for _ in range(4):
@@ -330,7 +332,7 @@ def test_single_block_stops_after_each_block() -> None:
 
 def test_single_block_does_not_stop_behind_the_last_block() -> None:
     """Manual blocks have no M30: what comes after them is not waited for."""
-    bench = MachineBench(None, "- {at: 0, to: channel, do: single_block, on: true}", end_when_idle=False).run(0.02)
+    bench = MachineBench(None, "- {at: 0, to: channel, do: single_block, enabled: true}", end_when_idle=False).run(0.02)
     bench.give("channel", "mdi", text="G01 X5 F3000\nX6")
     bench.run(1.0)
     assert bench.last("channel").state[-1] == C.STOPPED and bench.position("x") == 5.0
@@ -342,7 +344,7 @@ def test_single_block_does_not_stop_behind_the_last_block() -> None:
 def test_single_block_off_runs_on_at_the_next_start() -> None:
     bench = MachineBench(
         "%P\nG01 X5 F3000\nG01 X10\nG01 X15\nM30",
-        "- {at: 0, to: channel, do: single_block, on: true}\n- {at: 1, to: channel, do: single_block, on: false}\n"
+        "- {at: 0, to: channel, do: single_block, enabled: true}\n- {at: 1, to: channel, do: single_block, enabled: false}\n"
         "- {at: 1, to: channel, do: start}",
     ).run()
     assert bench.position("x") == 15.0 and bench.states("channel").count(C.STOPPED) == 1

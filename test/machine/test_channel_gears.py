@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from channel_spindle_support import MANUAL, machine_of, moves, run, three, told, told_at
+from channel_spindle_support import MANUAL, MOS, MVS_SVS, machine_of, moves, requests, run, three, told, told_at
 from machine_support import MILL, MachineBench
 
 from cnc_ptp.machine.blocks import ChannelStateCode as C
@@ -108,7 +108,7 @@ def test_the_path_waits_until_the_plc_has_changed_the_gear() -> None:
     [
         ("{at: 2, to: channel, do: reset}", []),
         (
-            "{at: 2, to: x, do: power, on: off}",
+            "{at: 2, to: x, do: power, enabled: off}",
             [
                 "P-ERR-23010 axis x: the enable was removed during path motion; the axis stops on its own ramp "
                 "(ErrorStop)",
@@ -163,3 +163,65 @@ def test_a_speed_beyond_every_gear_is_refused_before_anything_moves() -> None:
         "M43 3501 to 4000 rpm, M44 3800 to 5500 rpm, M45 5400 to 7000 rpm"
     ]
     assert bench.position("x") == 0.0
+
+
+def told_to_the_plc(bench: MachineBench) -> list[tuple[str, int, str, bool]]:
+    return [(r.kind, r.number, r.spindle, r.acknowledge_needed) for r in requests(bench) if r.number in range(40, 46)]
+
+
+def test_m40_to_m45_go_to_the_plc_as_their_synchronisation_says() -> None:
+    """p.37: `OK, M41 → PLC` only where the gear changes, programmed or found; the path waits for the answer too."""
+    machine = gear_machine(automatic=True)
+    channel = machine.channels["channel"]
+    functions = {**channel.m_functions, 41: MVS_SVS, 42: MOS}
+    machine = replace(machine, channels={"channel": replace(channel, m_functions=functions)})
+    bench = run("S650 M03\nS750\nS950\nM40 S500\nG01 X1 F3000\nM05", machine)
+    assert bench.errors() == [] and stages(bench) == [2, 3, 1]
+    assert told_to_the_plc(bench) == [("M", 41, "s", True), ("M", 42, "s", False), ("M", 40, "s", False)]
+
+
+def test_a_gear_that_the_plc_does_not_acknowledge_holds_the_path() -> None:
+    machine = gear_machine(automatic=True)
+    channel = machine.channels["channel"]
+    functions = {**channel.m_functions, 41: MVS_SVS}
+    machine = replace(machine, channels={"channel": replace(channel, m_functions=functions)})
+    scenario = """
+    - {at: 0, to: plc, do: auto_acknowledge, enabled: off}
+    - {at: 1.5, to: s, do: gear_changed}
+    - {at: 3.0, to: plc, do: acknowledge, id: 1}
+    """
+    bench = MachineBench("%P\nS650 M03\nG01 X1 F3000\nM30", scenario, machine=machine, end_when_idle=False).run(5.0)
+    in_gear = bench.column("s", "gear").index(2)
+    assert 1500 <= in_gear < 1600 and told_at(bench, "start") >= 3000
+    assert moves(bench)[0][0] > 3000 and bench.errors() == []
+
+
+def test_the_gear_follows_the_speed_of_a_positioning_too() -> None:
+    """Automatic selection: 950 rpm lie in M42 alone; as programmed any gear will do that reaches them."""
+    assert stages(run("M19 S950 S.POS=90", gear_machine(automatic=True))) == [3]
+    assert stages(run("M19 S950 S.POS=90", gear_machine(automatic=False))) == []
+    assert stages(run("S600 M3\nM19 S.POS=90", gear_machine(automatic=True))) == [2]
+
+
+def test_a_positioning_above_the_active_gear_is_found_when_the_program_is_read() -> None:
+    unit = geared()
+    slow = replace(unit, gears={**unit.gears, 1: replace(unit.gears[1], max_speed=500.0 * 6.0)})
+    machine = machine_of(*three(ranges=RANGES), units={"s": slow}, gear_change=True)
+    bench = MachineBench("%P\nG01 X1 F3000\nM19 S501 S.POS=0\nM30", machine=machine, end_when_idle=False).run(0.2)
+    assert bench.refusals() == [
+        "P-ERR-22010 test.nc line 3 column 5 'M19 S501 S.POS=0': spindle S: 501 rpm is above the maximum 500 rpm of gear 1 "
+        "(P-AXIS-00212)"
+    ]
+    assert set(bench.column("x", "set_position")) == {0.0}
+
+
+def test_a_tool_without_a_record_is_told() -> None:
+    bench = run("D1\nD7 T3\nD0\nG01 X1 F3000", MILL)
+    assert [(event.error_id, event.text, event.line) for event in bench.events if event.error_id == 22027] == [
+        (
+            22027,
+            "channel channel: D7 in line 3 has no record wz[7] in the machine file, nothing of the tool counts. "
+            "Known: D1, D2",
+            3,
+        )
+    ]

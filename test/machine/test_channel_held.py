@@ -93,9 +93,9 @@ def test_a_path_that_override_0_holds() -> None:
     """Once each time; a feed hold takes its place without a word, and what it leaves behind is told anew."""
     scenario = """
 - {at: 0.3, to: channel, do: set_override, percent: 0}
-- {at: 1, to: channel, do: feed_hold, on: on}
+- {at: 1, to: channel, do: feed_hold, enabled: on}
 - {at: 1.5, to: channel, do: set_override, percent: 100}
-- {at: 2, to: channel, do: feed_hold, on: off}
+- {at: 2, to: channel, do: feed_hold, enabled: off}
 - {at: 2.3, to: channel, do: set_override, percent: 0}
 - {at: 3, to: channel, do: set_override, percent: 100}
 """
@@ -109,8 +109,8 @@ def test_a_path_that_override_0_holds() -> None:
 
 def test_a_feed_hold_a_dwell_and_an_override_between_programs_are_no_news() -> None:
     scenario = """
-- {at: 0.1, to: channel, do: feed_hold, on: on}
-- {at: 0.5, to: channel, do: feed_hold, on: off}
+- {at: 0.1, to: channel, do: feed_hold, enabled: on}
+- {at: 0.5, to: channel, do: feed_hold, enabled: off}
 - {at: 1.2, to: channel, do: set_override, percent: 0}
 - {at: 1.4, to: channel, do: set_override, percent: 100}
 """

@@ -86,14 +86,14 @@ def test_default_coupling_pairs() -> None:
 def test_the_speed_has_to_suit_the_slaves() -> None:
     bench = MachineBench(f"%P\n{ENABLE}M3 S12500\nM30", machine=linked(), end_when_idle=False).run(0.1)
     assert bench.refusals() == [
-        "P-ERR-22010 test.nc line 4 column 1 'M3 S12500': spindle S: 12500 rpm is above the maximum 12000 rpm "
+        "P-ERR-22010 test.nc line 4 column 4 'M3 S12500': spindle S: 12500 rpm is above the maximum 12000 rpm "
         "(P-AXIS-00212)"
     ]
     weak = replace(SLOW, gears={1: replace(SLOW.gears[1], max_speed=6000.0)})
     machine = machine_of(*three(), units={"t": weak})
     bench = MachineBench(f"%P\n{ENABLE}M3 S1500\nM30", machine=machine, end_when_idle=False).run(0.1)
     assert bench.refusals() == [
-        "P-ERR-22010 test.nc line 4 column 1 'M3 S1500': spindle S2: 1500 rpm is above the maximum 1000 rpm "
+        "P-ERR-22010 test.nc line 4 column 4 'M3 S1500': spindle S2: 1500 rpm is above the maximum 1000 rpm "
         "(P-AXIS-00212)"
     ]
 
@@ -114,7 +114,7 @@ def test_an_aborted_program_ends_its_couplings_and_stops_all(how: str) -> None:
 def test_an_aborted_program_lets_nothing_wait_for_the_gear_change_of_a_slave(source: str) -> None:
     """The PLC changes the gear of t, which it has begun itself, when nobody drives s any more."""
     scenario = f"""
-- {{at: 0.0, to: plc, do: auto_acknowledge, on: off}}
+- {{at: 0.0, to: plc, do: auto_acknowledge, enabled: off}}
 - {{at: 0.01, to: t, do: select_gear, stage: 2{source}}}
 - {{at: 1.0, to: channel, do: reset}}
 - {{at: 1.5, to: t, do: gear_changed}}
@@ -159,3 +159,27 @@ def test_a_coupling_that_the_plc_does_not_grant_is_an_error() -> None:
         "the path stops on its ramp and the program is aborted"
     ]
     assert bench.last("t").master == "s" and bench.last("s").master == ""
+
+
+@pytest.mark.parametrize(
+    ("ratio", "speed"), [("2, 1", 600.0), ("1, 4", 75.0), ("-1, 2", -150.0), ("1.5, -0.5", -900.0)]
+)
+def test_a_slave_turns_by_the_ratio_of_its_coupling(ratio: str, speed: float) -> None:
+    """#SET AX LINK [g, s=m, num, den]: the path waits for the speed that the slave itself has to reach."""
+    define = f"#SET AX LINK[1, S2=S, {ratio}, S3=S]\n#ENABLE AX LINK[1]\n"
+    bench = run(define + "M3 S300\nG01 X1 F3000\nG04 0.1\nM5", machine_of(*three()))
+    assert bench.errors() == []
+    begin = moves(bench)[0][0]
+    assert [bench.column(unit, "set_speed_rpm")[begin + 20] for unit in "stu"] == pytest.approx([300.0, speed, 300.0])
+    couple = next(arguments for command, arguments in told(bench, "t") if command == "couple")
+    assert couple["factor_num"] / couple["factor_den"] == speed / 300.0
+
+
+def test_a_slave_is_positioned_by_the_ratio_of_its_coupling() -> None:
+    bench = run(
+        "#SET AX LINK[1, S2=S, 3, 2]\n#ENABLE AX LINK[1]\nM19 S100 S.POS=90\nG01 X1 F3000", machine_of(*three())
+    )
+    assert bench.errors() == []
+    begin = moves(bench)[0][0]
+    for unit, position in (("s", 90.0), ("t", 135.0)):
+        assert bench.column(unit, "actual_position_deg")[begin] % 360.0 == pytest.approx(position, abs=0.05)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, permutations
 
 import pytest
 from machine_support import (
@@ -355,3 +355,20 @@ def test_the_feed_is_that_of_x_y_z_and_other_axes_travel_along() -> None:
     assert max(v for v, n in zip(velocity, line, strict=True) if n == 2) == pytest.approx(50.0)
     assert max(z) == pytest.approx(50.0 * 20.0 / 50.0)
     assert min(z) == pytest.approx(-50.0)  # alone it has the feed
+
+
+@pytest.mark.parametrize("order", list(permutations("CXYZ")), ids="".join)
+def test_the_feed_is_that_of_x_y_z_in_every_order_of_the_axes(order: tuple[str, ...]) -> None:
+    """Line, helix and a turn of C alone: the Cartesian velocity is F, wherever the axes stand in the channel."""
+    nodes = {"X": "x", "Y": "y", "Z": "z", "C": "c"}
+    channel = replace(MILL.channels["channel"], axes=tuple(ChannelAxis(name, nodes[name]) for name in order))
+    axes = {**MILL.axes, "c": replace(MILL.axes["x"], name="c", max_velocity=1000.0)}
+    program = "%P\nG01 X10 Z10 F900\nG17 G02 X20 Y0 Z15 I5 C40\nG01 C0\nM30"
+    bench = MachineBench(program, machine=replace(MILL, axes=axes, channels={"channel": channel})).run()
+    assert bench.errors() == []
+    speeds = {name: bench.column(node, "set_velocity") for name, node in nodes.items()}
+    line = bench.column("channel", "line")
+    for number, path in ((2, "XYZ"), (3, "XYZ"), (4, "C")):
+        rows = zip(line, *(speeds[name] for name in path), strict=True)
+        fastest = max(math.hypot(*row[1:]) for row in rows if row[0] == number)
+        assert fastest == pytest.approx(15.0, rel=1e-9), (order, number)

@@ -26,9 +26,9 @@ N110 S[M5 M9] S2[M4 REV100]
 N120 G74 S1
 N130 M30"""
 SCENARIO = """
-- {at: 0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0, to: plc, do: auto_acknowledge, enabled: off}
 - {at: 0.7, to: s, do: gear_changed}
-- {at: 0.9, to: plc, do: auto_acknowledge, on: on}
+- {at: 0.9, to: plc, do: auto_acknowledge, enabled: on}
 - {at: 1.0, to: s, do: set_override, percent: 80}
 - {at: 0.2, to: second, do: mdi, text: "S3[M3 REV1000] G01 Y1 F3000"}
 - {at: 1.5, to: second, do: mdi, text: "S[M3 REV100] G01 Y2 F3000"}

@@ -46,6 +46,12 @@ def rests_from(bench: MachineBench, unit: str, cycle: int) -> bool:
 # what was refused or withdrawn
 
 
+@pytest.fixture
+def unchecked_positions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs pass the check with positions that spindles refuse: a refusal in the midst of a run."""
+    monkeypatch.setattr("cnc_ptp.nc.spindles.LARGEST_POSITION", float("inf"))
+
+
 @pytest.mark.parametrize(
     ("words", "refusal"),
     [
@@ -61,6 +67,7 @@ def rests_from(bench: MachineBench, unit: str, cycle: int) -> bool:
         ),
     ],
 )
+@pytest.mark.usefixtures("unchecked_positions")
 @pytest.mark.parametrize("after", ["\nG04 1", ""])
 def test_a_refused_positioning_stops_the_rotation_of_before(words: str, refusal: str, after: str) -> None:
     """Also when it is the last function of the program."""
@@ -148,7 +155,7 @@ def test_a_gear_change_of_the_plc_does_not_take_the_rotation_from_the_channel(en
     scenario = (
         MANUAL
         + """
-- {at: 0, to: s, do: stop_at_program_end, on: on}
+- {at: 0, to: s, do: stop_at_program_end, enabled: on}
 - {at: 1, to: s, do: select_gear, stage: 2, source: plc}
 - {at: 2.5, to: s, do: gear_changed}
 """
@@ -188,7 +195,7 @@ def test_a_scenario_says_whether_the_rotation_goes_on_after_its_gear_change(resu
 @pytest.mark.parametrize(
     ("program", "before"),
     [
-        ("G01 X50 F600 M3 S300", "{at: 0, to: s, do: power, on: off}\n- {at: 3, to: s, do: power, on: on}"),
+        ("G01 X50 F600 M3 S300", "{at: 0, to: s, do: power, enabled: off}\n- {at: 3, to: s, do: power, enabled: on}"),
         ("M3 S300\nG01 X50 F600", "{at: 0.01, to: channel, do: reset}"),
         ("M3 S300\nG01 X5 F600", "{at: 2, to: s, do: stop}"),
     ],
@@ -229,7 +236,7 @@ def test_the_stop_at_the_end_of_a_program_homes_as_m5_does() -> None:
     """The control limit was exceeded; the reference comes back (2.7)."""
     unit = replace(two_gears(), gears={1: replace(two_gears().gears[1], control_limit=60.0 * RPM)})
     machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": unit})
-    scenario = "- {at: 0, to: s, do: stop_at_program_end, on: on}"
+    scenario = "- {at: 0, to: s, do: stop_at_program_end, enabled: on}"
     bench = MachineBench("%P\nM3 S500\nG04 2\nM30", scenario, machine=machine, end_when_idle=False).run(12.0)
     assert S.HOMING in bench.column("s", "state") and bench.last("s").referenced[-1] and stands(bench, "s")
 
@@ -281,6 +288,7 @@ def test_a_decoupled_slave_belongs_to_who_has_coupled_it() -> None:
     assert stands(bench, "s", "t") and bench.errors() == []
 
 
+@pytest.mark.usefixtures("unchecked_positions")
 def test_an_abort_stops_a_slave_whose_master_another_channel_turns() -> None:
     bench = two(f"{LINK}G04 2\nM19 S.POS300000\nG04 2", "G04 0.5\nM3 S600\nG04 4")
     assert "24006" in bench.errors()[0]
@@ -322,7 +330,7 @@ def test_a_coupling_of_people_is_none_of_the_program(again: str, at: float, end:
 @pytest.mark.parametrize("own", [False, True])
 def test_stop_at_program_end_stops_the_slaves_too(own: bool) -> None:
     """The couplings have ended before; a coupling that the program has ended itself is none any more."""
-    scenario = "- {at: 0, to: s, do: stop_at_program_end, on: on}"
+    scenario = "- {at: 0, to: s, do: stop_at_program_end, enabled: on}"
     end = "#DISABLE AX LINK[1]\nG04 0.1" if own else ""
     bench = MachineBench(
         f"%P\n{LINK}M3 S600\nG04 1\n{end}\nM30", scenario, machine=machine_of(*three(MOS)[:2]), end_when_idle=False

@@ -118,8 +118,8 @@ def test_a_channel_stops_at_reset_only_what_it_has_set_turning() -> None:
 def test_a_third_spindle_is_unknown_in_the_second_channel() -> None:
     bench = both("M3 S100", "S3[M3 REV500]")
     assert bench.refusals() == [
-        "P-ERR-20180 mdi line 1 column 1 'S3[M3 REV500]': spindle S3 is not in the machine; "
-        "spindles of this channel: S, S2"
+        "P-ERR-20180 mdi line 1 column 1 'S3[M3 REV500]': spindle S3 does not belong to this channel; "
+        "its spindles are: S, S2"
     ]
 
 
@@ -244,7 +244,7 @@ def test_spindle_stop_at_program_end() -> None:
     """2.4.3: the flag of the HLI is one of each spindle."""
     bench = MachineBench(
         "%P\nM3 S500 S2[M3 REV600]\nG01 X1 F3000\nM30",
-        "- {at: 0, to: s, do: stop_at_program_end, on: on}",
+        "- {at: 0, to: s, do: stop_at_program_end, enabled: on}",
         machine=machine_of(*three()),
         end_when_idle=False,
     ).run(3.0)
@@ -255,7 +255,7 @@ def test_spindle_stop_at_program_end() -> None:
 
 def test_the_flag_does_not_stop_what_another_channel_turns() -> None:
     bench = MachineBench(
-        None, "- {at: 0, to: s, do: stop_at_program_end, on: on}", machine=two_channels(), end_when_idle=False
+        None, "- {at: 0, to: s, do: stop_at_program_end, enabled: on}", machine=two_channels(), end_when_idle=False
     ).run(0.02)
     bench.give("channel", "mdi", text="M3 S500")
     bench.run(1.0)

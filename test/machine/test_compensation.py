@@ -223,6 +223,66 @@ def test_overrides_during_a_compensation(
     assert_no_steps(bench, acceleration=A * 1.21 + 1000.0, jerk=J * 1.21 + 2000.0 * A / vp, corners=4 + crossings)
 
 
+@pytest.mark.parametrize(
+    "toggles", [[(1000, 0.0), (3000, 100.0)], [(k * 50, 0.0 if k % 2 else 100.0) for k in range(60)]]
+)
+@pytest.mark.parametrize("difference", [500.0, -500.0])
+@pytest.mark.parametrize(("rise", "fall"), [(500.0, 500.0), (800.0, 200.0)])
+def test_below_vp_the_sum_of_the_accelerations_is_that_of_motion_and_compensation(
+    rise: float, fall: float, difference: float, toggles: list[tuple[int, float]]
+) -> None:
+    """VP 200 < v 1000: A = 40,000 takes v from VP to 0 in 10 ms, AK = 500 takes VK = 400 out in 0.8 s."""
+    bench = axis_bench(count=50)
+    bench.accepted("move_absolute", target=6000.0, velocity=1000.0, acceleration=4e4, deceleration=4e4, jerk=4e6)
+    bench.run(500)
+    values = {"length": 600.0, "process_velocity": 200.0, "velocity_increase": 400.0}
+    bench.accepted("compensation_start", difference=difference, acceleration=rise, deceleration=fall, **values)
+    for after, percent in toggles:
+        bench.run(max(0, 500 + after - bench.cycle))
+        bench.accepted("set_override", percent=percent)
+    bench.accepted("set_override", percent=100.0)
+    settle(bench, 20_000)
+    a, v, p = (column(bench, f"set_{name}") for name in ("acceleration", "velocity", "position"))
+    most = 40_000.0 + max(rise, fall)
+    assert np.abs(a).max() <= most * (1.0 + 1e-9)
+    assert np.abs(np.diff(v)).max() <= most * CYCLE_TIME * (1.0 + 1e-9)
+    assert np.abs(np.diff(p) - 0.5 * CYCLE_TIME * (v[1:] + v[:-1])).max() <= 0.25 * most * CYCLE_TIME**2
+    assert 0.0 < np.sign(difference) * (p[-1] - 6000.0) < 500.0
+    assert bench.state == 1 and not has_bit(bench, COMPENSATING | HAS_JOB)[-1]
+
+
+def test_a_compensation_that_outlasts_its_basic_motion_ends_on_its_own_ramp() -> None:
+    """3 s of it are planned, the motion ends after 1 s: what is added then comes down with AK-, and the job waits."""
+    bench = axis_bench(count=10)
+    bench.accepted("move_absolute", target=1000.0, velocity=1000.0, acceleration=4e4, deceleration=4e4, jerk=4e6)
+    bench.run(500)
+    values = {"length": 600.0, "process_velocity": 200.0, "velocity_increase": 400.0}
+    bench.accepted("compensation_start", difference=300.0, acceleration=500.0, deceleration=500.0, **values)
+    bench.run(2000)
+    arrived = 1035  # 1000 mm at 1000 mm/s, and half of both ramps
+    v = column(bench, "set_velocity")
+    tail = v[arrived + 1 :][: int(v[arrived + 1] / 500.0 / CYCLE_TIME)]
+    assert v[arrived + 1] > 50.0 and np.diff(tail) == pytest.approx(-500.0 * CYCLE_TIME)
+    states, bits = bench.column("state"), has_bit(bench, HAS_JOB)
+    standing = states.index(1, 1)
+    assert v[standing] == 0.0 and v[standing - 2] > 0.0 and bits[standing - 1] and not bits[standing]
+    assert np.abs(column(bench, "set_acceleration")).max() <= 40_500.0 * (1.0 + 1e-9)
+
+
+def test_an_emergency_stop_of_a_compensation_that_outlasts_its_motion() -> None:
+    """It takes 0.1 s from 100 mm/s and more, where AK- would take 10 times that."""
+    bench = axis_bench(count=10)
+    bench.accepted("move_absolute", target=1000.0, velocity=1000.0, acceleration=4e4, deceleration=4e4, jerk=4e6)
+    bench.run(500)
+    values = {"length": 600.0, "process_velocity": 200.0, "velocity_increase": 400.0}
+    bench.accepted("compensation_start", difference=300.0, acceleration=500.0, deceleration=50.0, **values)
+    bench.run(550)
+    assert bench.column("set_velocity")[-1] > 5.0
+    assert bench.accepted("emergency_stop", deceleration=5e4, jerk=5e6) == ""
+    bench.run(50)
+    assert bench.state == 1 and bench.column("set_velocity")[-1] == 0.0
+
+
 def test_override_0_freezes_the_compensation() -> None:
     bench = moving_axis()
     compensate(bench)

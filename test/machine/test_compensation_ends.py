@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from machine_support import CYCLE_TIME, UnitBench
-from scipy.integrate import simpson
 from superposition_support import (
     COMPENSATING,
     HAS_JOB,
@@ -18,7 +17,6 @@ from superposition_support import (
     has_bit,
     moving_axis,
     settle,
-    start_ramp,
 )
 
 RISE, FALL = 500.0, 1000.0
@@ -151,16 +149,14 @@ def test_a_stop_acts_in_its_own_cycle(command: str) -> None:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("command", ["stop", "halt"])
 def test_a_stop_takes_the_compensation_down_with_it(command: str, phase: str, sign: float) -> None:
-    """Way beside the basic motion: ∫ (w - last·t)·v(t)/2000 dt with v(t) of the stop ramp, the mirrored start."""
+    """It comes down with its last rate, no faster; the basic motion takes longer. Way: w²/(2·last rate)."""
     cycles = PHASES[phase]
     bench = compensating_axis(cycles, sign=sign)
     bench.accepted(command)
     settle(bench)
     way, w = additional(cycles * CYCLE_TIME, sign)
     last = rates(sign)[1]
-    t = np.linspace(0.0, 0.5, 5001)
-    v = 2000.0 - start_ramp(2000.0, t)
-    way += simpson(np.maximum(0.0, w - last * t) * v / 2000.0, x=t)
+    way += 0.5 * w * w / last
     basic = 2000.0 * (1.0 + cycles * CYCLE_TIME - 0.25) + 500.0
     assert bench.column("set_position")[-1] == pytest.approx(basic + sign * way, abs=1e-5)
     assert bench.state == 1 and not has_bit(bench, COMPENSATING | HAS_JOB)[-1]
@@ -172,7 +168,7 @@ def fault(bench: UnitBench) -> None:
 
 
 def power_off(bench: UnitBench) -> None:
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
 
 
 def emergency_stop(bench: UnitBench) -> None:
@@ -274,4 +270,4 @@ def test_the_natural_brake_phase_goes_on_under_a_stop(sign: float) -> None:
     assert bench.state == 1
     assert 0.0 < sign * (bench.column("set_position")[-1] - 5000.0) < 100.0
     assert way < bench.column("set_position")[-1]
-    assert_no_steps(bench, **SMOOTH, corners=4)
+    assert_no_steps(bench, **SMOOTH, corners=6)  # two where min(1, v/VP) falls faster than the rates

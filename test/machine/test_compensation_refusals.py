@@ -127,7 +127,7 @@ def test_the_velocity_must_stay_below_the_maximum() -> None:
 
 
 def test_the_velocity_backwards_too() -> None:
-    """w = 8000 - √(64e6 - 36e6) = 2708.5 mm/s is needed for 9000 mm in 4 s; at 1000 mm/s back at 1708.5 mm/s."""
+    """w = 8000 - √(64e6 - 36e6) = 2708.5 mm/s is needed for 9000 mm in 4 s: what is left when the basic motion stops."""
     values = {
         "length": 4000.0,
         "difference": -9000.0,
@@ -136,12 +136,12 @@ def test_the_velocity_backwards_too() -> None:
         "acceleration": 4000.0,
         "deceleration": 4000.0,
     }
-    bench, twin = twins(velocity=1000.0, target=50_000.0, max_velocity=1700.0)
+    bench, twin = twins(velocity=1000.0, target=50_000.0, max_velocity=2700.0)
     assert refusal(bench, **values) == (
-        "23004 the axis would get up to 1708.5 mm/s, above the maximum 1700.0 mm/s (P-AXIS-00212)"
+        "23004 the axis would get up to 2708.5 mm/s, above the maximum 2700.0 mm/s (P-AXIS-00212)"
     )
     assert_untouched(bench, twin)
-    wide = moving_axis(velocity=1000.0, target=50_000.0, max_velocity=1708.6)
+    wide = moving_axis(velocity=1000.0, target=50_000.0, max_velocity=2708.6)
     wide.accepted("compensation_start", **values)
     settle(wide, 60_000)
     assert min(wide.column("set_velocity")) == pytest.approx(-1708.497, abs=1e-3)

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from machine_support import MILL, PTP, ROOT, MachineBench
 
+from cnc_ptp.commands.replay import is_refused_coupling
 from cnc_ptp.machine.blocks import Command, CommandRecord
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
@@ -19,18 +20,18 @@ BRACKET = (ROOT / "examples" / "bracket.nc").read_text(encoding="utf-8")
 RICH = """
 - {at: 0.05, to: channel, do: set_override, percent: 80}
 - {at: 0.5, to: x, do: set_override, percent: 50}
-- {at: 1.0, to: channel, do: feed_hold, on: on}
-- {at: 1.4, to: channel, do: feed_hold, on: off}
+- {at: 1.0, to: channel, do: feed_hold, enabled: on}
+- {at: 1.4, to: channel, do: feed_hold, enabled: off}
 - {at: 1.5, to: x, do: move_absolute, target: 5}
 - {at: 1.6, to: s, do: set_override, percent: 70}
 - {at: 2.0, to: channel, do: set_override, percent: 133.3333333333}
 - {at: 2.2, to: s, do: set_override, percent: 120}
-- {at: 3.0, to: plc, do: auto_acknowledge, on: off}
-- {at: 5.0, to: plc, do: auto_acknowledge, on: on}
+- {at: 3.0, to: plc, do: auto_acknowledge, enabled: off}
+- {at: 5.0, to: plc, do: auto_acknowledge, enabled: on}
 - {at: 6.0, to: channel, do: start}
-- {at: 9.0, to: y, do: power, on: off}
+- {at: 9.0, to: y, do: power, enabled: off}
 - {at: 9.02, to: channel, do: reset}
-- {at: 9.5, to: y, do: power, on: on}
+- {at: 9.5, to: y, do: power, enabled: on}
 - {at: 9.6, to: y, do: reset}
 - {at: 9.6, to: channel, do: reset}
 - {at: 10.0, to: z, do: move_absolute, target: 80, velocity: 100}
@@ -39,13 +40,13 @@ RICH = """
 - {at: 10.6, to: z, do: set_override, percent: 100}
 - {at: 10.7, to: z, do: stop}
 - {at: 12.0, to: channel, do: mdi, text: "G90 G01 X20 Y20 F5000"}
-- {at: 12.2, to: channel, do: single_block, on: on}
+- {at: 12.2, to: channel, do: single_block, enabled: on}
 - {at: 13.0, to: channel, do: start}
 - {at: 13.5, to: channel, do: start}
 - {at: 14.0, to: channel, do: reset}
 - {at: 15.0, to: s, do: start, direction: ccw, speed_rpm: 300}
-- {at: 15.5, to: plc, do: set_life_sign, on: off}
-- {at: 16.0, to: plc, do: set_life_sign, on: on}
+- {at: 15.5, to: plc, do: set_life_sign, enabled: off}
+- {at: 16.0, to: plc, do: set_life_sign, enabled: on}
 - {at: 16.5, to: x, do: reset}
 - {at: 16.5, to: y, do: reset}
 - {at: 16.5, to: s, do: reset}
@@ -66,7 +67,8 @@ def replay(machine: MachineParameters, records: list[CommandRecord], blocks: int
     by_cycle: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
     for record in records:
         arguments = json.loads(record.arguments_json)
-        by_cycle[record.cycle][record.target].append(Command(record.target, record.command, arguments))
+        if not is_refused_coupling(record, machine):
+            by_cycle[record.cycle][record.target].append(Command(record.target, record.command, arguments))
     texts: dict[str, list[str]] = defaultdict(list)
     for number in range(blocks):
         for name, output in offline.replay_tick(by_cycle.get(number * machine.block_cycles, {})).items():

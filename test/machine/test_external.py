@@ -394,3 +394,13 @@ def test_late_setpoints_count_from_when_they_come() -> None:
     bench.run(5)
     assert bench.column("set_position")[10:] == pytest.approx([0.3, 0.4, 0.5, 0.6, 0.7])
     assert bench.events == []
+
+
+@pytest.mark.parametrize("position", [0.0, 99_000.0, -99_000.0])
+def test_setpoints_at_the_largest_velocity_are_taken_far_from_zero_too(position: float) -> None:
+    """At 1 mm/s a cycle is 0.001 mm: at 99,000 mm the last place of a position is 1e-11 mm, 1e-8 of that."""
+    bench = external_axis(max_velocity=1.0, reference_velocity=1.0, start_position=position)
+    way = [position + 0.001 * k for k in range(500)]
+    rows = [[bench.cycle + k, p, 1.0, 0.0, 1] for k, p in enumerate(way)]
+    feed(bench, [*rows, [bench.cycle + 500, way[-1], 0.0, 0.0, 0]], 600)
+    assert bench.events == [] and bench.column("set_position")[-1] == way[-1]

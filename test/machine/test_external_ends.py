@@ -38,7 +38,7 @@ def constant(velocity: float, *, first_cycle: int, count: int, start: float = 0.
     [
         ("stop", {}, S.STANDSTILL),
         ("halt", {}, S.STANDSTILL),
-        ("power", {"on": False}, S.DISABLED),
+        ("power", {"enabled": False}, S.DISABLED),
         ("upstream_lost", {"source": "plc"}, S.ERROR_STOP),
         ("emergency_stop", {"deceleration": 20_000.0, "jerk": 400_000.0}, S.STANDSTILL),
         ("external_disable", {}, S.STANDSTILL),
@@ -89,10 +89,10 @@ def test_reset_after_a_fault_leaves_them_disabled() -> None:
 
 def test_power_off_at_rest_disables_them() -> None:
     bench = external_axis()
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(5)
     assert bench.state == S.DISABLED and not has_bit(bench, EXTERNAL)[10:].any()
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(5)
     assert bench.state == S.STANDSTILL
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from typing import Any
 
 import numpy as np
@@ -66,10 +67,13 @@ def test_enable_while_stopping() -> None:
 
 def test_enable_on_the_path_of_a_channel() -> None:
     bench = MachineBench("%P\nG01 X100 F6000\nM30", end_when_idle=False).run(0.2)
-    for mode in ("absolute", "relative"):
-        assert bench.refused("x", "external_enable", mode=mode) == (
-            "P-ERR-23030 axis x: external_enable refused: the channel path moves the axis; nothing was changed"
-        )
+    refused = "P-ERR-23026 axis x: external_enable refused: {} beside the path of a channel {}; nothing was changed"
+    assert bench.refused("x", "external_enable", mode="absolute") == (
+        refused.format("absolute setpoints", "are not permitted; use relative")
+    )
+    assert bench.refused("x", "external_enable", mode="relative", target=12.5) == (
+        refused.format("a target (12.5)", "is not permitted; leave it out")
+    )
 
 
 def test_only_relative_beside_a_ptp_motion() -> None:
@@ -291,11 +295,31 @@ def test_the_sum_above_the_maximum(sign: float) -> None:
     feed(bench, generator(sign * 300.0, first_cycle=1000, velocity=1000.0, a=40_000.0), 200)
     (text,) = bench.event_texts()
     assert text == (
-        "P-ERR-23036 axis x: the superposed motions add up to 2240 mm/s, above the maximum 2210.0 mm/s "
+        "P-ERR-23036 axis x: the superposed motions would add up to 2240 mm/s, above the maximum 2210.0 mm/s "
         "(P-AXIS-00212); the axis stops on its own ramp (ErrorStop)"
     )
     assert_stops_on_its_ramp(bench, 1007)
-    assert np.abs(column(bench, "set_velocity")).max() == pytest.approx(2240.0)
+    assert np.abs(column(bench, "set_velocity")).max() == pytest.approx(2200.0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_maximum_is_never_exceeded_before_the_fault(seed: int) -> None:
+    """Whatever the generator adds and wherever the axis is on its ramps: |v| stays, the fault takes its one ramp."""
+    choice = random.Random(seed)
+    sign, added = choice.choice([1.0, -1.0]), choice.uniform(2000.0, 40_000.0)
+    highest = choice.uniform(2010.0, 2800.0)
+    bench = moving_axis(target=sign * 20_000.0, max_velocity=highest, cycles=10 * choice.randint(30, 90))
+    begin = bench.cycle
+    bench.accepted("external_enable", mode="relative")
+    feed(bench, generator(sign * 800.0, first_cycle=begin, velocity=1000.0, a=added), 900)
+    settle(bench)
+    assert [text[:11] for text in bench.event_texts()] == ["P-ERR-23036"]
+    v = column(bench, "set_velocity")
+    assert np.abs(v).max() <= highest * (1.0 + 1e-9)
+    assert (np.abs(np.diff(v)) <= (A + added) * 0.001 * (1.0 + 1e-9)).all()
+    p = column(bench, "set_position")
+    way = np.diff(p) - 0.0005 * (v[1:] + v[:-1])
+    assert (np.abs(way) <= 0.25 * (A + added) * 1e-6 + 1e-9).all()
 
 
 def test_silence_at_rest_is_no_fault() -> None:

@@ -67,13 +67,13 @@ def test_spindles_are_stopped_before_the_end() -> None:
 
 
 def test_run_failed_is_an_error_that_is_there_at_the_end() -> None:
-    fault = "- {at: 0, to: x, do: power, on: off}"
+    fault = "- {at: 0, to: x, do: power, enabled: off}"
     program = "%P\nG01 X50 F3000\nM30"
     late = MachineBench(program, fault.replace("at: 0", "at: 0.3")).run()
     assert late.failed and late.last("plc").run_done
     mended = MachineBench(
         program,
-        "- {at: 0.3, to: x, do: power, on: off}\n- {at: 1, to: x, do: reset}\n- {at: 1, to: channel, do: reset}",
+        "- {at: 0.3, to: x, do: power, enabled: off}\n- {at: 1, to: x, do: reset}\n- {at: 1, to: channel, do: reset}",
     ).run()
     assert not mended.failed and mended.errors()
 
@@ -97,13 +97,13 @@ def test_a_run_of_fixed_duration() -> None:
     ("program", "scenario", "reason"),
     [
         ("%P\nG01 X5 F3000\nM00\nM30", "", "in line 3 for start"),
-        ("%P\nG01 X50 F3000\nM30", "- {at: 0.3, to: channel, do: feed_hold, on: on}",
-         "in line 2 for an override above 0 or the end of the feed hold"),
-        ("%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, on: off}",
+        ("%P\nG01 X50 F3000\nM30", "- {at: 0.3, to: channel, do: feed_hold, enabled: on}",
+         "in line 2 for an override above 0, the end of the feed hold or a feed release"),
+        ("%P\nM08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}",
          "in line 2 for the acknowledgement of request 1"),
         ("%P\nM03 S500\nG01 X5 F3000\nM30", "- {at: 0, to: s, do: set_override, percent: 0}",
          "in line 2 for the speed of spindle s"),
-        ("%P\nM07 M08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, on: off}",
+        ("%P\nM07 M08\nG01 X5 F3000\nM30", "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}",
          "in line 2 for the acknowledgement of request 1 and the acknowledgement of request 2"),
     ],
 )  # fmt: skip
@@ -191,7 +191,7 @@ def test_stop_all_also_stops_what_began_to_move_in_the_same_block() -> None:
 
 
 def test_without_life_sign_everything_stops_after_the_watchdog_time() -> None:
-    bench = moving_everything(0.5, "- {at: 0.5, to: plc, do: set_life_sign, on: off}")
+    bench = moving_everything(0.5, "- {at: 0.5, to: plc, do: set_life_sign, enabled: off}")
     bench.run(1.5)
     lost = [(r.cycle, r.target, r.arguments_json) for r in bench.records if r.command == "upstream_lost"]
     assert lost == [(690, name, '{"source": "plc"}') for name in ("channel", "s", "x", "y", "z")]
@@ -204,9 +204,9 @@ def test_without_life_sign_everything_stops_after_the_watchdog_time() -> None:
 
 def test_the_life_sign_may_come_back() -> None:
     scenario = (
-        "- {at: 0, to: plc, do: set_life_sign, on: off}\n- {at: 0.5, to: plc, do: set_life_sign, on: on}\n"
+        "- {at: 0, to: plc, do: set_life_sign, enabled: off}\n- {at: 0.5, to: plc, do: set_life_sign, enabled: on}\n"
         "- {at: 0.6, to: x, do: reset}\n- {at: 0.6, to: x, do: move_absolute, target: 5}\n"
-        "- {at: 1.6, to: plc, do: set_life_sign, on: off}"
+        "- {at: 1.6, to: plc, do: set_life_sign, enabled: off}"
     )
     bench = MachineBench(None, scenario, end_when_idle=False).run(2.5)
     assert [r.cycle for r in bench.records if r.target == "x" and r.command == "upstream_lost"] == [200, 1790]
@@ -214,7 +214,9 @@ def test_the_life_sign_may_come_back() -> None:
 
 
 def test_a_short_pause_of_the_life_sign_is_none() -> None:
-    scenario = "- {at: 0.1, to: plc, do: set_life_sign, on: off}\n- {at: 0.29, to: plc, do: set_life_sign, on: on}"
+    scenario = (
+        "- {at: 0.1, to: plc, do: set_life_sign, enabled: off}\n- {at: 0.29, to: plc, do: set_life_sign, enabled: on}"
+    )
     bench = MachineBench(None, scenario, end_when_idle=False).run(0.6)
     assert bench.errors() == []
 
@@ -241,7 +243,7 @@ def test_abort_in_a_stay_run_ends_it() -> None:
 
 
 def test_stop_all_leaves_the_error_of_a_channel_for_the_end_of_the_run() -> None:
-    bench = MachineBench("%P\nG01 X100 F3000\nM30", "- {at: 0.5, to: y, do: power, on: off}").run(1.0)
+    bench = MachineBench("%P\nG01 X100 F3000\nM30", "- {at: 0.5, to: y, do: power, enabled: off}").run(1.0)
     bench.give("plc", "stop_all")
     bench.run()
     assert bench.failed and bench.last("channel").error_id[-1] == 22012

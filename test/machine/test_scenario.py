@@ -46,8 +46,8 @@ def test_entries_in_the_order_of_time_then_of_the_file() -> None:
     ("word", "value"), [("on", True), ("off", False), ("true", True), ("False", False), ("TRUE", True)]
 )
 def test_switches_as_people_write_them(word: str, value: bool) -> None:
-    assert parse(f"- {{at: 0, to: x, do: power, on: {word}}}")[0].command.arguments == {"on": value}
-    assert parse(f"- {{at: 0, to: x, do: power, 'on': {word}}}")[0].command.arguments == {"on": value}
+    assert parse(f"- {{at: 0, to: x, do: power, enabled: {word}}}")[0].command.arguments == {"enabled": value}
+    assert parse(f"- {{at: 0, to: x, do: power, 'on': {word}}}")[0].command.arguments == {"enabled": value}
 
 
 @pytest.mark.parametrize(
@@ -105,11 +105,11 @@ FAULTS = [
         "set_life_sign, stop_all",
     ),
     (
-        "- {at: 0, to: x, do: power, on: yes}",
-        "axis x: power refused: on = 'yes' is not a switch; nothing was changed",
+        "- {at: 0, to: x, do: power, enabled: yes}",
+        "axis x: power refused: enabled = 'yes' is not a switch; nothing was changed",
     ),
-    ("- {at: 0, to: x, do: power, on: 1}", "axis x: power refused: on = 1 is not a switch; nothing was changed"),
-    ("- {at: 0, to: x, do: power, on: [on]}", "axis x: power refused: on = ['on'] is not a switch; nothing was "
+    ("- {at: 0, to: x, do: power, enabled: 1}", "axis x: power refused: enabled = 1 is not a switch; nothing was changed"),
+    ("- {at: 0, to: x, do: power, enabled: [on]}", "axis x: power refused: enabled = ['on'] is not a switch; nothing was "
         "changed"),
     (
         "- {at: 0, to: x, do: move_absolute, target: 5mm}",
@@ -132,6 +132,38 @@ FAULTS = [
      "changed"),
     ("- {at: 0, to: plc, do: acknowledge, id: one}", "plc plc: acknowledge refused: id = 'one' is not an integer; "
      "nothing was changed"),
+    (
+        "- {at: 0, to: x, do: couple, master: q, factor: 1}",
+        "axis x: couple refused: there is no axis 'q'. Known: y, z; nothing was changed",
+    ),
+    (
+        "- {at: 0, to: x, do: couple_gantry, master: s, difference_limit: 1}",
+        "axis x: couple_gantry refused: there is no axis 's'. Known: y, z; nothing was changed",
+    ),
+    (
+        "- {at: 0, to: s, do: couple, master: x}",
+        "spindle s: couple refused: there is no spindle 'x'. Known: none; nothing was changed",
+    ),
+    (
+        "- {at: 0, to: x, do: couple_cam, master: y, table: [[0, 0], [1, 1], [2, 0]], file: cam.csv}",
+        "axis x: couple_cam refused: 'table' and 'file' are both given; nothing was changed. Give one",
+    ),
+    (
+        "- {at: 0, to: x, do: change_cam, table: [[0, 0], [1, 1], [2, 0]], file: cam.csv}",
+        "axis x: change_cam refused: 'table' and 'file' are both given; nothing was changed. Give one",
+    ),
+    (
+        "- {at: 0, to: x, do: external_setpoints, setpoints: [[0, 0, 0, 0, 1]], file: set.csv}",
+        "axis x: external_setpoints refused: 'setpoints' and 'file' are both given; nothing was changed. Give one",
+    ),
+    (
+        "- {at: 0, to: x, do: couple, master: y, factor: 1, master_stands: true}",
+        "axis x: couple refused: argument 'master_stands' is filled in by the PLC; nothing was changed",
+    ),
+    (
+        "- {at: 0, to: x, do: couple, master: y, ratio: 1}",
+        "axis x: couple refused: unknown argument 'ratio'; nothing was changed. Known: factor, master",
+    ),
     ("- {at: 0, at: 1, to: x, do: stop}", "'at' stands twice in the entry"),
     ("- {at: !!int abc, to: x, do: stop}", "a value cannot be read: invalid literal for int() with base 10: 'abc'"),
     ("- {at: 0, to: x, do: stop, [1]: 2}", "a value cannot be read: found unhashable key"),
@@ -301,3 +333,27 @@ def test_the_example_scenario_runs_on_the_example_program() -> None:
     program = (ROOT / "examples" / "bracket.nc").read_text(encoding="utf-8")
     bench = MachineBench(program, scenario).run()
     assert bench.refusals() == [] and bench.errors() == [] and not bench.failed
+
+
+@pytest.mark.parametrize("word", ["on", "off"])
+def test_the_former_name_of_enabled_is_still_read(word: str) -> None:
+    """Scenarios and recordings from before the field was called `enabled` go on to work."""
+    (entry,) = parse(f"- {{at: 0, to: x, do: power, on: {word}}}")
+    assert entry.command.arguments == {"enabled": word == "on"}
+
+
+def test_both_names_at_once_are_refused() -> None:
+    with pytest.raises(CncError) as refusal:
+        parse("- {at: 0, to: x, do: power, on: on, enabled: off}")
+    assert "power refused: unknown argument 'on'; nothing was changed. Known: enabled" in str(refusal.value)
+
+
+@pytest.mark.parametrize("text", ["", "# nothing yet\n", "[]"])
+def test_a_scenario_without_entries_is_told_before_the_run(text: str, tmp_path: Path) -> None:
+    path, program = tmp_path / "s.yaml", tmp_path / "p.nc"
+    path.write_text(text)
+    program.write_text("%P\nM30")
+    for with_program in (None, str(program)):
+        with pytest.raises(ScenarioError) as caught:
+            read_job(MILL, program=with_program, scenario=str(path))
+        assert str(caught.value) == f"P-ERR-25101 scenario {path} has no entries; nothing was started"

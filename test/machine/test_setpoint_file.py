@@ -155,7 +155,7 @@ MOVE = "- {at: 0.05, to: x, do: external_enable, mode: absolute}\n- {at: 0.25, t
 def test_the_path_is_relative_to_the_scenario(tmp_path: Path) -> None:
     rows = generator(300.0, first_cycle=0)
     entries = read_job(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
-    assert entries[1].command.arguments == {"file": "a.csv", "setpoints": rows}
+    assert entries[1].command.arguments == {"setpoints": rows}
 
 
 def test_faults_of_a_file_stand_with_the_line_of_the_scenario(tmp_path: Path) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from machine_support import PTP, machine
-from slave_support import COMPENSATING, COMPENSATION, DYNAMICS, SlaveBench, assert_linear
+from machine_support import PTP, machine, position_after, seven_phases
+from slave_support import COMPENSATING, COMPENSATION, DYNAMICS, A, J, SlaveBench, assert_linear
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 
@@ -164,7 +164,13 @@ def test_override_0_of_the_master_freezes_it() -> None:
     bench.settle()
     gap = compensated(bench, "y", "x", 1.0)
     peak = (2.5 - np.sqrt(2.5**2 - 2 * 500.0 * 0.003)) / 0.003
-    assert gap == pytest.approx(500.0 - 0.5 * peak, abs=1e-6), "on the two ramps of 0.5 s the mean of v/VP was 0.5"
+    t = np.linspace(0.0, 0.8, 8001)
+    phases = seven_phases(1e6, 2000.0, A, A, J)
+    wanted = peak * np.array([position_after(phases, x)[1] for x in t]) / 2000.0
+    speed = 500.0 * t + np.minimum.accumulate(wanted - 500.0 * t)  # AK+ = 500 lets it rise no faster
+    lost = 0.25 * peak + np.trapezoid(peak - speed, t)
+    assert speed[-1] == pytest.approx(peak) and lost > 0.5 * peak, "0.5 s down with v, whose mean is half, up later"
+    assert gap == pytest.approx(500.0 - lost, abs=1e-3)
     assert not bench.bits("y", COMPENSATING)[-1]
 
 
@@ -279,3 +285,21 @@ def test_a_compensation_that_leads_out_of_the_soft_limits_ends_with_an_error(fac
     assert bench.errors()[0].endswith(
         f"mm is beyond the {sign} soft limit {factor * 5200.0} mm ({name}); the axis stops on its own ramp (ErrorStop)"
     )
+
+
+def test_a_slave_whose_master_becomes_faster_never_gets_above_its_maximum() -> None:
+    """1500 mm/s and 300 of the compensation; the master goes on to 2100: 23036 at 2200, which is not exceeded."""
+    bench = SlaveBench(machine=machine(PTP, y={"max_velocity": 2200.0}))
+    bench.do("y", "couple", master="x", factor=1.0)
+    bench.do("x", "move_absolute", target=20_000.0, velocity=1500.0)
+    bench.run(1.0)
+    values = {"length": 6000.0, "difference": 900.0, "process_velocity": 1500.0, "velocity_increase": 300.0}
+    bench.do("y", "compensation_start", acceleration=2000.0, deceleration=2000.0, **values)
+    bench.run(0.5)
+    bench.do("x", "new_velocity_and_target", velocity=2100.0, target=20_000.0, activation_position=0.0)
+    bench.settle()
+    text = bench.errors()[0]
+    assert text.startswith("P-ERR-23036 axis y: the superposed motions would add up to 220")
+    v = bench.values("y", "set_velocity")
+    assert 2190.0 < np.abs(v).max() <= 2200.0
+    assert (np.abs(np.diff(v)) <= 7000.0 * 0.001 * (1.0 + 1e-9)).all()

@@ -365,7 +365,7 @@ def test_master_and_slave_change_places_in_one_block() -> None:
 
 def test_a_disabled_axis_is_no_slave_but_may_be_a_master() -> None:
     bench = SlaveBench()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     assert bench.denied("y", "couple", master="x", factor=1.0) == (
         "P-ERR-23044 axis y: couple refused: the axis is in Disabled, it must be in Standstill; nothing was changed"
     )

@@ -369,11 +369,11 @@ def test_a_pseudo_master_at_its_soft_limit_stops_with_an_error() -> None:
 def test_power_off_and_on_of_a_pseudo_master() -> None:
     bench = moving()
     bench.do("y", "decouple")
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     assert bench.state("y") == S.STOPPING
     bench.run(1.0)
     assert bench.state("y") == S.DISABLED
-    bench.do("y", "power", on=True)
+    bench.do("y", "power", enabled=True)
     bench.do("y", "move_absolute", target=0.0)
     bench.settle()
     assert bench.position("y") == 0.0 and bench.errors() == []

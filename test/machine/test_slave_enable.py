@@ -44,11 +44,11 @@ def test_a_standing_master_that_comes_back_from_elsewhere_does_not_take_its_slav
     bench = SlaveBench()
     bench.send_all([couple("y", 2.0), couple("z", -1.0, "y"), start(100.0)])
     bench.settle()
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     drive = bench.units["x"]._loop.drive
     drive._true_position = 350.0
     bench.run(0.05)
-    bench.do("x", "power", on=True)
+    bench.do("x", "power", enabled=True)
     begin = bench.cycle
     bench.run(0.05)
     assert bench.position("x") == pytest.approx(350.0)
@@ -63,12 +63,12 @@ def test_power_off_and_on_of_a_standing_and_of_a_moving_master() -> None:
     bench = SlaveBench()
     bench.send_all([couple("y", 0.5), start()])
     bench.run(0.5)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.settle()
     assert (bench.state("x"), bench.state("y")) == (S.DISABLED, S.SYNCHRONIZED_MOTION)
     bench.run(0.1)
     begin = bench.cycle
-    bench.do("x", "power", on=True)
+    bench.do("x", "power", enabled=True)
     bench.send_all([start(0.0)])
     bench.settle()
     assert_linear(bench, "x", "y", 0.5, end=begin)
@@ -79,7 +79,7 @@ def test_power_off_and_on_of_a_standing_and_of_a_moving_master() -> None:
 def test_power_off_of_a_slave_is_an_error_of_the_group_even_at_standstill() -> None:
     bench = SlaveBench()
     bench.do("y", "couple", master="x", factor=0.5)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.1)
     assert bench.errors() == [
         "P-ERR-23010 axis y: the enable was removed during synchronous motion; the axis stops on its own ramp (ErrorStop)",
@@ -87,7 +87,7 @@ def test_power_off_of_a_slave_is_an_error_of_the_group_even_at_standstill() -> N
     ]
     for axis in "xy":
         bench.do(axis, "reset")
-    bench.do("y", "power", on=True)
+    bench.do("y", "power", enabled=True)
     bench.do("y", "couple", master="x", factor=1.0)
     bench.send_all([start(50.0)])
     bench.settle()

@@ -62,7 +62,7 @@ def spread(axis: str, source: str = "y", error: int = 23010) -> str:
 def test_instantaneous_all_of_the_group_stop_on_their_ramps(block_cycles: int) -> None:
     bench = group(axes_named("z", "c", "y", "x", block_cycles=block_cycles))
     failed = bench.cycle
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.settle()
     assert bench.errors() == [REMOVED, *(spread(axis) for axis in bench.machine.axes if axis in "xz")]
     assert error_cycle(bench, "y") == failed
@@ -80,7 +80,7 @@ def test_the_faulty_axis_does_not_follow_its_master_any_more() -> None:
     """y stops on its own ramp at once, not on the relation to x; z follows y until it hears of the error."""
     bench = group()
     failed = bench.cycle
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.settle()
     ramp = 1000.0 / A + A / J
     standing = int(np.argmax(bench.values("y", "set_velocity")[failed:] == 0.0))
@@ -104,9 +104,9 @@ def test_an_error_during_a_compensation_makes_no_step() -> None:
     bench = group()
     bench.do("y", "compensation_start", **{**COMPENSATION, "process_velocity": 1000.0})
     bench.run(0.5)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.run(0.02)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.settle()
     v, p = bench.values("y", "set_velocity"), bench.values("y")
     assert np.abs(np.diff(v)).max() <= 0.001 * (A + 1000.0)
@@ -120,7 +120,7 @@ def test_an_error_during_a_compensation_makes_no_step() -> None:
 def test_delayed_only_the_faulty_axis_stops_until_the_delay_is_over() -> None:
     bench = late_group()
     failed = bench.cycle
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.2)
     assert states(bench) == [S.DISCRETE_MOTION, S.ERROR_STOP, S.SYNCHRONIZED_MOTION]
     assert bench.last("x").set_velocity[-1] == 2000.0
@@ -139,7 +139,7 @@ def test_delayed_only_the_faulty_axis_stops_until_the_delay_is_over() -> None:
 def test_delayed_the_slave_of_the_faulty_axis_is_decoupled_in_time() -> None:
     """It is of no group with an error any more: it goes on, x does not."""
     bench = late_group()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.05)
     bench.do("z", "decouple", target=-3000.0)
     bench.settle()
@@ -150,7 +150,7 @@ def test_delayed_the_slave_of_the_faulty_axis_is_decoupled_in_time() -> None:
 def test_delayed_the_faulty_axis_is_decoupled_in_time() -> None:
     """Two groups: x without error goes on, y and its slave z stop."""
     bench = late_group()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.05)
     assert bench.do("y", "decouple") == ""
     bench.settle()
@@ -162,7 +162,7 @@ def test_delayed_the_faulty_axis_is_decoupled_in_time() -> None:
 def test_delayed_the_master_is_stopped_in_time() -> None:
     """The user's own reaction: x stops on the ramp of its start; the error reaches it all the same."""
     bench = late_group()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     assert bench.do("x", "stop") == ""
     assert bench.state("x") == S.STOPPING
     bench.settle()
@@ -172,7 +172,7 @@ def test_delayed_the_master_is_stopped_in_time() -> None:
 
 def test_delayed_a_reset_in_time_ends_the_matter() -> None:
     bench = late_group(moving=False)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.1)
     bench.do("y", "reset")
     bench.run(0.5)
@@ -183,7 +183,7 @@ def test_delayed_a_reset_in_time_ends_the_matter() -> None:
 
 def test_delayed_who_joins_the_group_in_time_hears_of_it() -> None:
     bench = late_group(moving=False)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.do("c", "couple", master="x", factor=1.0)
     bench.run(0.5)
     assert states(bench, "xyzc") == [S.ERROR_STOP] * 4
@@ -191,10 +191,10 @@ def test_delayed_who_joins_the_group_in_time_hears_of_it() -> None:
 
 def test_delayed_a_second_error_has_a_delay_of_its_own() -> None:
     bench = late_group()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.2)
     second = bench.cycle
-    bench.do("z", "power", on=False)
+    bench.do("z", "power", enabled=False)
     bench.settle()
     assert bench.errors() == [REMOVED, REMOVED.replace("axis y", "axis z"), spread("x")]
     assert error_cycle(bench, "x") < second + 130
@@ -205,7 +205,7 @@ def test_delayed_a_second_error_has_a_delay_of_its_own() -> None:
 def test_the_mode_of_the_axis_with_the_error_counts(faulty: str) -> None:
     bench = group(moving=False, **{faulty: LATE})
     other = "y" if faulty != "y" else "z"
-    bench.do(other, "power", on=False)
+    bench.do(other, "power", enabled=False)
     bench.run(0.05)
     assert states(bench) == [S.ERROR_STOP] * 3
 
@@ -222,7 +222,7 @@ def test_an_axis_without_a_group_has_nothing_to_delay() -> None:
 
 def test_reset_of_a_slave_ends_its_coupling() -> None:
     bench = group()
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     assert bench.denied("y", "reset") == (
         "P-ERR-23008 axis y: reset refused: the axis still moves on its error ramp; wait for standstill; nothing was changed"
     )
@@ -231,7 +231,7 @@ def test_reset_of_a_slave_ends_its_coupling() -> None:
         assert bench.do(axis, "reset") == ""
         assert not bench.bits(axis, PROTECTED)[-1] and bench.last(axis).master == ""
     assert states(bench) == [S.STANDSTILL, S.DISABLED, S.STANDSTILL]
-    bench.do("y", "power", on=True)
+    bench.do("y", "power", enabled=True)
     bench.send_all([("y", "couple", {"master": "x", "factor": 1.0}), ("x", "move_relative", {"distance": 100.0})])
     begin = bench.cycle - 10
     bench.settle()
@@ -243,7 +243,7 @@ def test_reset_of_a_slave_ends_its_coupling() -> None:
 def test_resets_in_any_order_do_not_bring_the_error_back() -> None:
     for order in ("xyz", "zyx", "yxz"):
         bench = group(moving=False)
-        bench.do("y", "power", on=False)
+        bench.do("y", "power", enabled=False)
         bench.run(0.05)
         for axis in order:
             bench.do(axis, "reset")
@@ -254,7 +254,7 @@ def test_resets_in_any_order_do_not_bring_the_error_back() -> None:
 
 def test_what_an_axis_in_error_refuses_and_takes() -> None:
     bench = group(moving=False)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.05)
     assert bench.denied("y", "couple", master="x", factor=1.0) == (
         "P-ERR-23044 axis y: couple refused: the axis is in ErrorStop, it must be in Standstill; nothing was changed"
@@ -271,8 +271,8 @@ def test_what_an_axis_in_error_refuses_and_takes() -> None:
 
 def test_an_axis_that_is_off_is_not_told() -> None:
     bench = group(moving=False)
-    bench.do("x", "power", on=False)
-    bench.do("y", "power", on=False)
+    bench.do("x", "power", enabled=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.1)
     assert states(bench) == [S.DISABLED, S.ERROR_STOP, S.ERROR_STOP]
 

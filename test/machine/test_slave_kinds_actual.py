@@ -11,6 +11,7 @@ from slave_support import DELAYED, DYNAMICS, ERROR, SlaveBench
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.machine.axis_unit import AxisUnit
+from cnc_ptp.machine.plc_unit import at_rest
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.parameters import MachineParameters
 
@@ -60,7 +61,7 @@ def test_followers_follow_a_master_that_is_pushed_by_hand() -> None:
     bench.do("y", "couple", master="x", factor=-0.5)
     bench.do("z", "couple", master="y", factor=2.0)
     bench.run(0.05)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.run(0.05)
     assert bench.last("x").couples_actual
     push(bench, drive, 200.0, 0.3)
@@ -72,7 +73,7 @@ def test_followers_follow_a_master_that_is_pushed_by_hand() -> None:
     assert y == pytest.approx(-0.5 * bench.values("x", "actual_position"), abs=1e-9)
     assert z == pytest.approx(2.0 * y, abs=1e-9)
     assert bench.values("y", "set_velocity").min() == pytest.approx(-100.0)
-    bench.do("x", "power", on=True)
+    bench.do("x", "power", enabled=True)
     bench.run(0.05)
     bench.do("x", "move_absolute", target=140.0, **DYNAMICS)
     bench.settle()
@@ -86,7 +87,7 @@ def test_followers_follow_a_master_that_is_pushed_by_hand() -> None:
 def test_followers_stand_where_the_parameter_is_off() -> None:
     bench, drive = pushed_bench(with_actual(couple_to_actual=False))
     bench.do("y", "couple", master="x", factor=1.0)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     push(bench, drive, 200.0, 0.3)
     assert not bench.last("x").couples_actual
     assert bench.values("y").tolist() == [0.0] * bench.cycle
@@ -100,10 +101,10 @@ def test_switching_over_and_back_makes_no_step_in_spite_of_a_following_error() -
     bench.run(0.2)
     assert bench.values("x", "following_error")[-1] == pytest.approx(-0.4)
     drive.push = 0.0
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     at_rest = bench.values("y")[-1]
     bench.run(0.1)
-    bench.do("x", "power", on=True)
+    bench.do("x", "power", enabled=True)
     bench.run(0.1)
     assert largest_step(bench, "y") == pytest.approx(0.0, abs=0.001)
     assert bench.values("y")[-1] == pytest.approx(at_rest)
@@ -117,7 +118,7 @@ def test_velocity_window_and_filter_time() -> None:
     """The velocity that followers get: 0 inside the window, else through 1/(1 + s·Tf), 63 % after Tf = 50 ms."""
     bench, drive = pushed_bench(with_actual(velocity_window=5.0, velocity_filter_time=0.05))
     bench.do("y", "couple", master="x", factor=1.0)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.run(0.05)
     push(bench, drive, 4.9, 0.1)
     assert not bench.values("y", "set_velocity").any()
@@ -131,13 +132,45 @@ def test_velocity_window_and_filter_time() -> None:
     assert velocity[-1] == pytest.approx(100.0, abs=0.01)
 
 
+@pytest.mark.parametrize("window", [0.0, 0.5, 1.0, 20.0])
+@pytest.mark.parametrize("filter_time", [0.0, 0.01, 0.2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_slave_comes_to_rest_with_a_master_at_rest(window: float, filter_time: float, sign: float) -> None:
+    """From the window on in a straight line that begins as steep as the filter ends: window·T/(T + Tf) a cycle."""
+    bench, drive = pushed_bench(with_actual(velocity_window=window, velocity_filter_time=filter_time))
+    bench.do("y", "couple", master="x", factor=-0.5)
+    bench.do("x", "power", enabled=False)
+    push(bench, drive, sign * 150.0, 0.3)
+    stopped = bench.cycle
+    push(bench, drive, 0.0, 0.05 + 30.0 * filter_time)
+    v = -2.0 * sign * bench.values("y", "set_velocity")[stopped:]
+    steepest = window * CYCLE_TIME / (CYCLE_TIME + filter_time)
+    assert (np.diff(v) <= 0.0).all() and v[-1] == 0.0
+    inside = v[v <= window]
+    assert (np.abs(np.diff(inside)) <= steepest * (1.0 + 1e-9)).all()
+    assert np.count_nonzero(inside) <= (1.0 + filter_time / CYCLE_TIME if window else 30.0 * filter_time / CYCLE_TIME)
+    actual = bench.values("x", "actual_position")
+    assert bench.values("y") == pytest.approx(-0.5 * actual, abs=1e-9)
+    assert not bench.bits("y", 1 << 12)[-1]
+
+
+def test_a_run_ends_with_a_slave_that_was_pushed() -> None:
+    """The slave is at rest, and so the run may end: nothing of the filter is left."""
+    bench, drive = pushed_bench(with_actual(velocity_filter_time=0.05))
+    bench.do("y", "couple", master="x", factor=1.0)
+    bench.do("x", "power", enabled=False)
+    push(bench, drive, 100.0, 0.2)
+    push(bench, drive, 0.0, 1.0)
+    assert at_rest(bench.last("y")) and bench.position("y") == pytest.approx(20.0)
+
+
 def test_cam_and_cyclic_slaves_follow_by_hand_too() -> None:
     bench, drive = pushed_bench(with_actual())
     table = [[0.0, 0.0], [50.0, 30.0], [100.0, 10.0]]
     bench.do("y", "couple_cam", master="x", table=table, cyclic=False)
     bench.do("z", "couple_cyclic", master="x", acc_bound=1000.0)
     bench.do("z", "set_cyclic_factor", factor=0.5)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.run(0.02)
     push(bench, drive, 100.0, 0.5)
     bench.run(0.1)
@@ -159,7 +192,7 @@ def faulty_bench(*, couple_to_actual: bool) -> SlaveBench:
     bench.do("x", "couple", master="y", factor=1.0)
     bench.do("z", "move_absolute", target=10_000.0, **DYNAMICS)
     bench.run(0.8)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(0.9)
     return bench
 
@@ -232,7 +265,7 @@ def test_gantry_fault_stops_both() -> None:
 def test_gantry_master_that_loses_its_enable_stops_with_its_slave() -> None:
     bench = gantry(5.0)
     bench.run(0.3)
-    bench.do("x", "power", on=False)
+    bench.do("x", "power", enabled=False)
     bench.settle()
     assert bench.errors() == []
     assert bench.values("y")[-1] - bench.values("x")[-1] == pytest.approx(5.0, abs=1e-9)

@@ -127,8 +127,8 @@ def test_flying_saw_is_synchronous_and_can_be_taken_off(sign: float, factor: flo
     ("moves", "changes", "reason"),
     [
         (True, {"master_position": 1300.0}, "the run-up takes 0.75 s, the master is there in 0.2 s"),
-        (True, {"slave_position": 400.0}, "the run-up takes 500, the synchronous position is 400 away"),
-        (True, {"velocity": 1500.0}, "it would have to run at 2000, its velocity is limited to 1500"),
+        (True, {"slave_position": 400.0}, "the run-up takes 500 mm, the synchronous position is 400 mm away"),
+        (True, {"velocity": 1500.0}, "it would have to run at 2000 mm/s, its velocity is limited to 1500 mm/s"),
         (False, {}, "the master stands; a flying saw needs a moving master"),
     ],
 )

@@ -53,8 +53,8 @@ commands = st.one_of(
             ("halt", {}),
             ("reset", {}),
             ("compensation_stop", {}),
-            ("power", {"on": False}),
-            ("power", {"on": True}),
+            ("power", {"enabled": False}),
+            ("power", {"enabled": True}),
         ]
     ),
 )  # fmt: skip
@@ -77,7 +77,7 @@ def played(sequence: list[Step], *, delayed: bool = False) -> SlaveBench:
     bench.settle()
     for axis in NAMES:
         bench.send(axis, "decouple")
-        bench.send(axis, "power", on=True)
+        bench.send(axis, "power", enabled=True)
         bench.send(axis, "reset")
         bench.send(axis, "stop")
     bench.run(0.1)
@@ -150,7 +150,7 @@ def test_replay_of_a_rich_run() -> None:
         ("z", "decouple", {"velocity": 77.7}),
         ("z", "set_override", {"percent": 33.3}),
         ("x", "set_override", {"percent": 12.5}),
-        ("y", "power", {"on": False}),
+        ("y", "power", {"enabled": False}),
     ):
         bench.send(axis, command, **arguments)
         bench.run(0.3)

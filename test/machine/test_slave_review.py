@@ -26,7 +26,7 @@ def test_a_refused_decoupling_opens_no_way_to_a_circle() -> None:
 - {at: 0.1, to: y, do: decouple, target: 1.0e9}
 - {at: 0.1, to: x, do: couple, master: y, factor: 1}
 """)
-    assert [text[:11] for text in bench.refusals()] == ["P-ERR-23046", "P-ERR-12000"]
+    assert [text[:11] for text in bench.refusals()] == ["P-ERR-12000", "P-ERR-23046"]
     assert bench.last("y").master == "x" and bench.last("x").master == ""
 
 
@@ -35,7 +35,7 @@ def test_a_refused_decoupling_opens_no_way_to_a_circle() -> None:
     [
         "{at: 0.25, to: y, do: decouple}",
         "{at: 0.25, to: y, do: decouple, target: 1000}",
-        "{at: 0.25, to: y, do: power, on: off}",
+        "{at: 0.25, to: y, do: power, enabled: off}",
     ],
 )
 @pytest.mark.parametrize("factor", [8.0, -4.0])
@@ -105,13 +105,13 @@ def test_enabling_and_starting_a_pushed_master_does_not_throw_its_slave() -> Non
     """x is moved without enable; when it counts from there again and starts in the same block, y goes on smoothly."""
     bench = MachineBench(scenario='- {at: 0, to: "y", do: couple, master: x, factor: 1}', machine=PTP)
     bench.run(0.1)
-    bench.give("x", "power", on=False)
+    bench.give("x", "power", enabled=False)
     bench.run(0.1)
     drive = bench.units["x"]._loop.drive  # type: ignore[attr-defined]
     drive._true_position += 60.0
     drive.step(0.0)
     bench.run(0.1)
-    bench.give("x", "power", on=True)
+    bench.give("x", "power", enabled=True)
     bench.give("x", "move_relative", distance=10.0, velocity=100.0)
     bench.run(1.0)
     positions = bench.column("y", "set_position")
@@ -120,7 +120,7 @@ def test_enabling_and_starting_a_pushed_master_does_not_throw_its_slave() -> Non
 
 
 def axis_block(first_cycle: int) -> AxisBlock:
-    return AxisBlock(first_cycle, 10, *([0.0] * 10 for _ in range(14)), *([0] * 10 for _ in range(3)))
+    return AxisBlock(first_cycle, 10, *([0.0] * 10 for _ in range(15)), *([0] * 10 for _ in range(3)))
 
 
 def test_the_gate_keeps_blocks_of_a_master_that_come_before_they_are_needed() -> None:

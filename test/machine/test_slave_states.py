@@ -39,13 +39,13 @@ def compensating_slave(bench: SlaveBench) -> None:
 
 def slave_in_error(bench: SlaveBench) -> None:
     moving_slave(bench)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
     bench.run(1.0)
 
 
 def slave_on_its_ramp(bench: SlaveBench) -> None:
     moving_slave(bench)
-    bench.do("y", "power", on=False)
+    bench.do("y", "power", enabled=False)
 
 
 def pseudo_master(bench: SlaveBench) -> None:
@@ -132,7 +132,7 @@ def refused(number: int, commands: tuple[str, ...], states: tuple[str, ...], rea
 
 
 REFUSALS: Texts = {
-    **refused(23040, MOVES, SLAVES, "the axis is a slave of x; decouple it"),
+    **refused(23040, (*MOVES, "jog"), SLAVES, "the axis is a slave of x; decouple it"),
     **refused(
         23005,
         MOVES,
@@ -140,9 +140,14 @@ REFUSALS: Texts = {
         "the axis is in {state}, it must be in Standstill",
     ),
     **refused(
+        23005,
+        ("jog",),
+        (*IN_ERROR, *PSEUDO, "moving_master"),
+        "the axis is in {state}, it must be in Standstill or jogging",
+    ),
+    **refused(
         23040, ("stop", "halt", "emergency_stop"), SLAVES, "the axis is a slave of x; stop x or decouple the axis"
     ),
-    **refused(23017, ("emergency_stop",), ("stopping_pseudo_master",), "the axis is in its brake phase"),
     **refused(
         23014,
         REDIRECTIONS,
@@ -197,7 +202,7 @@ def to(state: S, commands: tuple[str, ...], situations: tuple[str, ...]) -> dict
 AFTER: dict[tuple[str, str], S] = {
     **to(S.DISCRETE_MOTION, MOVES, ("master",)),
     **to(S.DISCRETE_MOTION, REDIRECTIONS, ("pseudo_master", "held_pseudo_master")),
-    **to(S.CONTINUOUS_MOTION, ENABLES, ("master",)),
+    **to(S.CONTINUOUS_MOTION, (*ENABLES, "jog"), ("master",)),
     **to(S.SYNCHRONIZED_MOTION, ("couple", "couple to c"), ("master",)),
     **to(S.STANDSTILL, DECOUPLES, ("slave", "held_slave")),
     **to(S.CONTINUOUS_MOTION, ("decouple", "decouple velocity"), ("moving_slave", "compensating_slave")),
@@ -271,7 +276,7 @@ def test_every_command_in_every_state_ends_in_rest(state: str) -> None:
             bench.send(axis, "stop")
             bench.send(axis, "decouple")
             bench.send(axis, "reset")
-            bench.send(axis, "power", on=True)
+            bench.send(axis, "power", enabled=True)
             bench.send(axis, "set_override", percent=100.0)
         bench.run(0.1)
         for axis in "xyzc":

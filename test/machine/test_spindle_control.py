@@ -132,7 +132,7 @@ def test_an_open_loop_has_no_following_error_to_watch(changes: dict[str, Any]) -
 
 def test_without_power_nothing_is_watched() -> None:
     bench, drive = watched(4, stuck=False)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(300)
     push(drive, 30.0)
     bench.run(100)
@@ -258,12 +258,12 @@ def test_the_block_size_changes_no_bit(name: str) -> None:
         bench = spindle_bench(count=count, **SPINDLES[name])
         for command, arguments in (
             ("start", {"direction": "cw", "speed_rpm": 300.0}),
-            ("set_feedforward", {"on": True, "weight_percent": 90.0}),
+            ("set_feedforward", {"enabled": True, "weight_percent": 90.0}),
             ("set_speed", {"speed_rpm": 650.0}),
             ("orient", {"position_deg": 200.0}),
-            ("set_feedforward", {"on": False}),
-            ("power", {"on": False}),
-            ("power", {"on": True}),
+            ("set_feedforward", {"enabled": False}),
+            ("power", {"enabled": False}),
+            ("power", {"enabled": True}),
             ("start", {"direction": "ccw", "speed_rpm": 4000.0}),
             ("reset", {}),
         ):

@@ -67,7 +67,7 @@ def test_a_stop_of_the_master_counts_in_the_gear_change_of_a_slave_too() -> None
     each = machine()
     two = {**each.spindles, "t": replace(two_gears(), name="t", number=11)}
     scenario = """
-- {at: 0.0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0.0, to: plc, do: auto_acknowledge, enabled: off}
 - {at: 0.0, to: t, do: select_gear, stage: 2}
 - {at: 0.1, to: t, do: couple, master: s}
 - {at: 0.2, to: s, do: start, direction: cw, speed_rpm: 1000.0}
@@ -83,11 +83,11 @@ def test_slaves_stop_when_their_master_loses_its_power_in_a_gear_change() -> Non
     each = machine()
     two = {**each.spindles, "s": replace(two_gears(), number=10)}
     scenario = """
-- {at: 0.0, to: plc, do: auto_acknowledge, on: off}
+- {at: 0.0, to: plc, do: auto_acknowledge, enabled: off}
 - {at: 0.0, to: t, do: couple, master: s}
 - {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 500.0}
 - {at: 0.5, to: s, do: select_gear, stage: 2}
-- {at: 1.0, to: s, do: power, on: off}
+- {at: 1.0, to: s, do: power, enabled: off}
 - {at: 1.5, to: s, do: gear_changed}
 """
     run = MachineBench(scenario=scenario, machine=replace(each, spindles=two), end_when_idle=False).run(2.0)
@@ -189,7 +189,7 @@ def test_a_slave_in_its_gear_change_follows_afterwards() -> None:
     gears = two_gears(change_position=20.0)
     machine_of_two = replace(machine(), spindles={**machine().spindles, "t": replace(gears, name="t", number=11)})
     scenario = """
-- {at: 0.0, to: plc, do: auto_acknowledge, on: false}
+- {at: 0.0, to: plc, do: auto_acknowledge, enabled: false}
 - {at: 0.0, to: t, do: select_gear, stage: 2}
 - {at: 0.0, to: t, do: couple, master: s}
 - {at: 0.3, to: s, do: start, direction: cw, speed_rpm: 1000.0}
@@ -210,7 +210,7 @@ def slave_in_gear_change(scenario: str, *, resume: str = "", slowest: float = 72
     `resume` is what t does before, `slowest` the maximum of the new gear in °/s.
     """
     begin = f"""
-- {{at: 0.0, to: plc, do: auto_acknowledge, on: off}}
+- {{at: 0.0, to: plc, do: auto_acknowledge, enabled: off}}
 {resume}
 - {{at: 0.2, to: t, do: couple, master: s}}
 - {{at: 0.2, to: t, do: select_gear, stage: 2}}
@@ -246,7 +246,7 @@ def test_a_slave_does_not_start_after_its_master_was_switched_off(
 ) -> None:
     """Whether the master is still in error when the gear is changed, or has been reset, without power or with it."""
     commands = "".join(f"- {{at: 0.9, to: s, do: {command}}}\n" for command in then)
-    run = slave_in_gear_change(f"{START}- {{at: {off_at}, to: s, do: power, on: off}}\n{commands}", resume=resume)
+    run = slave_in_gear_change(f"{START}- {{at: {off_at}, to: s, do: power, enabled: off}}\n{commands}", resume=resume)
     assert [error.split(" ")[0] for error in run.errors()] == ["P-ERR-24011"]
     assert run.last("t").gear[-1] == 2 and run.last("t").state[-1] == S.STANDSTILL
     assert set(run.column("t", "set_speed_rpm")[600:]) == {0.0}
@@ -258,9 +258,9 @@ def test_a_slave_does_not_start_after_its_master_was_reset_from_an_error(resume:
     scenario = f"""
 - {{at: 0.0, to: s, do: set_override, percent: 0}}
 {START}
-- {{at: 0.6, to: s, do: power, on: off}}
+- {{at: 0.6, to: s, do: power, enabled: off}}
 - {{at: 0.6, to: s, do: reset}}
-- {{at: 0.6, to: s, do: power, on: on}}
+- {{at: 0.6, to: s, do: power, enabled: on}}
 """
     run = slave_in_gear_change(scenario, resume=resume)
     assert run.refusals() == [] and [error.split(" ")[0] for error in run.errors()] == ["P-ERR-24011"]
@@ -270,7 +270,7 @@ def test_a_slave_does_not_start_after_its_master_was_reset_from_an_error(resume:
 
 def test_a_positioning_of_a_master_without_power_does_not_come_later() -> None:
     """The master has come to its position and was switched off at rest, without an error."""
-    scenario = "- {at: 0.3, to: s, do: orient, position_deg: 90.0}\n- {at: 0.9, to: s, do: power, on: off}"
+    scenario = "- {at: 0.3, to: s, do: orient, position_deg: 90.0}\n- {at: 0.9, to: s, do: power, enabled: off}"
     run = slave_in_gear_change(scenario)
     assert run.errors() == [] and run.last("s").set_position_deg[-1] % 360.0 == pytest.approx(90.0)
     assert run.last("s").state[-1] == S.DISABLED and set(run.column("t", "set_speed_rpm")) == {0.0}

@@ -107,7 +107,7 @@ def test_a_rotation_that_is_too_fast_for_the_new_gear_does_not_go_on() -> None:
     each.accepted("select_gear", stage=2)
     each.run(1700)
     assert each.accepted("gear_changed") == (
-        "spindle s: speed 9000 rpm of before is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); the spindle stays at rest"
+        "P-WARN-24029 spindle s: speed 9000 rpm of before is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); the spindle stays at rest"
     )
     each.run(100)
     assert each.state == S.STANDSTILL and each.column("gear")[-1] == 2
@@ -220,24 +220,24 @@ def test_a_plc_that_never_acknowledges() -> None:
 
 def test_the_enable_can_be_removed_while_the_plc_changes() -> None:
     each = in_change()
-    each.accepted("power", on=False)
+    each.accepted("power", enabled=False)
     each.run(10)
     assert (each.state, each.last.gear_request) == (S.DISABLED, 2)
     assert each.refused("start", direction="cw", speed_rpm=600.0) == (
         "P-ERR-24003 spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed"
     )
     assert at_rest_in_the_new_gear(each) and each.state == S.DISABLED
-    each.accepted("power", on=True)
+    each.accepted("power", enabled=True)
     each.run(100)
     assert each.state == S.STANDSTILL and set(each.column("set_speed_rpm")[700:]) == {0.0}
 
 
 def test_an_enable_while_the_plc_changes_counts_afterwards() -> None:
     each = in_change()
-    each.accepted("power", on=False)
-    each.accepted("power", on=True)
-    each.accepted("power", on=False)
-    assert each.accepted("power", on=True) == "spindle s: power on counts when the PLC has changed the gear"
+    each.accepted("power", enabled=False)
+    each.accepted("power", enabled=True)
+    each.accepted("power", enabled=False)
+    assert each.accepted("power", enabled=True) == "spindle s: power on counts when the PLC has changed the gear"
     each.run(10)
     assert each.state == S.DISABLED
     assert at_rest_in_the_new_gear(each) and each.state == S.STANDSTILL
@@ -245,7 +245,7 @@ def test_an_enable_while_the_plc_changes_counts_afterwards() -> None:
 
 def test_a_gear_change_without_power_can_be_given_up() -> None:
     each = in_change()
-    each.accepted("power", on=False)
+    each.accepted("power", enabled=False)
     each.run(10)
     each.accepted("reset")
     each.run(10)
@@ -256,7 +256,7 @@ def test_a_gear_change_without_power_can_be_given_up() -> None:
 def test_a_plc_that_never_acknowledges_without_power_moves_nothing() -> None:
     """The drive was turned by hand meanwhile: the spindle stays where it is."""
     each = in_change(gear_change_time=1.0)
-    each.accepted("power", on=False)
+    each.accepted("power", enabled=False)
     each.run(10)
     each.unit.spindle.loop.control.count_from(70.0)
     each.run(1500)
@@ -290,7 +290,7 @@ def test_the_plc_acknowledges_by_itself_a_block_later() -> None:
 
 def test_a_plc_that_is_asked_to_wait_does_not_acknowledge() -> None:
     scenario = """
-- {at: 0.0, to: plc, do: auto_acknowledge, on: false}
+- {at: 0.0, to: plc, do: auto_acknowledge, enabled: false}
 - {at: 0.1, to: s, do: select_gear, stage: 2}
 - {at: 2.0, to: s, do: gear_changed}
 """
@@ -301,7 +301,9 @@ def test_a_plc_that_is_asked_to_wait_does_not_acknowledge() -> None:
 def test_a_run_that_waits_for_the_gear_for_ever_is_aborted() -> None:
     machine = machine_with_two_gears()
     spindle = replace(machine.spindles["s"], gear_change_time=0.0)
-    scenario = "- {at: 0.0, to: plc, do: auto_acknowledge, on: false}\n- {at: 0.1, to: s, do: select_gear, stage: 2}"
+    scenario = (
+        "- {at: 0.0, to: plc, do: auto_acknowledge, enabled: false}\n- {at: 0.1, to: s, do: select_gear, stage: 2}"
+    )
     run = MachineBench(scenario=scenario, machine=replace(machine, spindles={"s": spindle})).run()
     assert run.errors()[0] == (
         "P-ERR-22014 plc plc: spindle s waits for the PLC to change to gear 2, but the scenario is through; everything is "

@@ -23,7 +23,7 @@ def test_limits_of_the_manuals_example() -> None:
     """Page 50: 60 to 3000 °/s (10 to 500 rpm), 3000 °/s²."""
     bench = with_limits(max_speed_rpm=500.0, min_speed_rpm=10.0, max_acceleration=3000)
     warning = bench.accepted("start", direction="cw", speed_rpm=800.0)
-    assert warning == "spindle s: speed 800.0 rpm is above the maximum of the tool, 500 rpm is used"
+    assert warning == "P-WARN-24029 spindle s: speed 800.0 rpm is above the maximum of the tool, 500 rpm is used"
     bench.run(1200)
     column = bench.columns()
     assert column["set_speed_rpm"][-1] == 500.0 and column["speed_reached"][-1]
@@ -38,7 +38,7 @@ def test_limits_of_the_manuals_example() -> None:
 def test_the_minimum_counts_in_endless_rotation_only() -> None:
     bench = with_limits(min_speed_rpm=200.0)
     warning = bench.accepted("start", direction="ccw", speed_rpm=50.0)
-    assert warning == "spindle s: speed 50.0 rpm is below the minimum of the tool, 200 rpm is used"
+    assert warning == "P-WARN-24029 spindle s: speed 50.0 rpm is below the minimum of the tool, 200 rpm is used"
     bench.run(100)
     assert bench.column("set_speed_rpm")[-1] == -200.0
     bench.accepted("stop")
@@ -74,9 +74,11 @@ def test_a_zero_pulse_that_does_not_come_at_the_speed_of_the_tool() -> None:
 def test_a_positioning_that_the_tool_makes_slower_says_so() -> None:
     bench = with_limits(max_speed_rpm=40.0)
     above = "is above the maximum of the tool, 40 rpm is used"
-    assert bench.accepted("orient", position_deg=90.0, speed_rpm=80.0) == f"spindle s: speed 80 rpm {above}"
+    assert (
+        bench.accepted("orient", position_deg=90.0, speed_rpm=80.0) == f"P-WARN-24029 spindle s: speed 80 rpm {above}"
+    )
     bench.run(500)
-    assert bench.accepted("orient", position_deg=0.0) == f"spindle s: speed 600 rpm {above}"
+    assert bench.accepted("orient", position_deg=0.0) == f"P-WARN-24029 spindle s: speed 600 rpm {above}"
     bench.run(500)
     assert max(map(abs, bench.column("set_speed_rpm"))) == pytest.approx(40.0) and bench.column("in_position")[-1]
     assert bench.accepted("orient", position_deg=0.0, speed_rpm=40.0) == ""

@@ -96,7 +96,7 @@ def test_an_override_that_does_not_change_gives_no_more_time() -> None:
     bench.accepted("start", direction="cw", speed_rpm=1000.0)
     for _ in range(10):
         bench.accepted("set_override", percent=100.0)
-        bench.accepted("suppress_override", on=False)
+        bench.accepted("suppress_override", enabled=False)
         bench.run(100)
     assert bench.events[0].cycle == math.ceil((1000.0 * RPM / UP + 0.25) * 1000.0 - 1e-6)
 
@@ -105,9 +105,9 @@ def test_an_override_that_does_not_change_gives_no_more_time() -> None:
     ("commands", "failed"),
     [
         ([("start", {"direction": "cw", "speed_rpm": 1000.0})], True),
-        ([("start", {"direction": "cw", "speed_rpm": 300.0}), ("power", {"on": False})], False),
+        ([("start", {"direction": "cw", "speed_rpm": 300.0}), ("power", {"enabled": False})], False),
         ([("start", {"direction": "ccw", "speed_rpm": 300.0})], True),
-        ([("orient", {"position_deg": 10.0}), ("power", {"on": False})], True),
+        ([("orient", {"position_deg": 10.0}), ("power", {"enabled": False})], True),
     ],
     ids=["speed not reached", "no job in work", "refused with an error", "positioning"],
 )
@@ -172,12 +172,12 @@ def test_hli_bits() -> None:
     bench = spindle_bench()
     bench.run(10)
     assert bench.column("status_bits")[-1] == SpindleBit.POSITION_CONTROL
-    bench.accepted("stop_at_program_end", on=True)
+    bench.accepted("stop_at_program_end", enabled=True)
     bench.accepted("start", direction="cw", speed_rpm=100.0)
     bench.run(10)
     wanted = SpindleBit.POSITION_CONTROL | SpindleBit.MONITORING_ACTIVE | SpindleBit.STOP_AT_PROGRAM_END
     assert bench.column("status_bits")[-1] == wanted
-    bench.accepted("stop_at_program_end", on=False)
+    bench.accepted("stop_at_program_end", enabled=False)
     bench.run(10)
     assert bench.column("status_bits")[-1] == SpindleBit.POSITION_CONTROL | SpindleBit.MONITORING_ACTIVE
 
@@ -217,7 +217,7 @@ def test_settled_blocks_give_the_same_numbers_as_others() -> None:
             ("orient", {"position_deg": 12.0}),
             ("upstream_lost", {"source": "plc"}),
             ("reset", {}),
-            ("power", {"on": False}),
+            ("power", {"enabled": False}),
         ):
             bench.accepted(command, **arguments)
             for _ in range(60):

@@ -127,7 +127,7 @@ def test_without_a_position_there_is_no_m19_and_no_homing(feedback: str) -> None
     assert set(bench.column("referenced")) == {False}
 
 
-def test_with_a_position_m19_stops_first_and_positions_in_the_open_loop() -> None:
+def test_with_a_position_m19_closes_the_loop() -> None:
     bench = open_loop("POSITION", 60 / 0.036)
     bench.accepted("start", direction="cw", speed_rpm=1000.0)
     bench.run(500)

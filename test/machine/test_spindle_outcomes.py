@@ -47,10 +47,7 @@ def test_one_that_comes_to_its_end(command: str, arguments: dict[str, Any]) -> N
     [
         ("stop", {}),
         ("reset", {}),
-        ("start", {"direction": "cw", "speed_rpm": 500.0}),
-        ("orient", {"position_deg": 0.0}),
-        ("home", {}),
-        ("power", {"on": False}),
+        ("power", {"enabled": False}),
         ("upstream_lost", {"source": "clock"}),
     ],
 )
@@ -61,6 +58,29 @@ def test_one_that_is_overtaken(command: str, arguments: dict[str, Any], other: s
     bench.run(30)
     bench.accepted(other, **with_words)
     assert outcomes(bench, number, 150) == [False]
+
+
+@pytest.mark.parametrize(
+    ("other", "with_words"), [("start", {"direction": "cw", "speed_rpm": 500.0}), ("orient", {"position_deg": 0.0})]
+)
+def test_a_rotation_and_another_positioning_overtake_a_positioning(other: str, with_words: dict[str, Any]) -> None:
+    bench = spindle_bench()
+    number = given(bench, *ORIENT)
+    bench.run(30)
+    bench.accepted(other, **with_words)
+    assert outcomes(bench, number, 150) == [False]
+
+
+@pytest.mark.parametrize("first", [ORIENT, HOME])
+def test_a_homing_waits_for_what_is_in_work_and_nothing_but_a_stop_overtakes_it(
+    first: tuple[str, dict[str, Any]],
+) -> None:
+    bench = spindle_bench()
+    numbers = [given(bench, *first)]
+    bench.run(30)
+    numbers += [given(bench, *HOME), given(bench, "start", {"direction": "cw", "speed_rpm": 500.0})]
+    assert outcomes(bench, numbers[1], 400) == [None, True] and bench.unit.outcome(numbers[0]) is False
+    assert bench.column("speed_reached")[-1] and bench.unit.outcome(numbers[2]) is False
 
 
 def test_what_does_not_act_overtakes_nothing() -> None:

@@ -214,7 +214,7 @@ def test_a_rotation_that_goes_on_after_the_plc_has_changed_the_gear_is_stopped_b
 
 def test_a_stop_of_a_spindle_without_power_is_done_at_once() -> None:
     bench = spindle_bench()
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(10)
     bench.accepted("stop", source="plc")
     bench.run(20)
@@ -237,7 +237,9 @@ def test_what_came_during_a_gear_change_has_its_turn_in_the_order_of_arrival() -
     assert bench.column("speed_reached")[-1]
 
 
-@pytest.mark.parametrize(("command", "arguments", "by"), [("stop", {}, "stop"), ("power", {"on": False}, "power off")])
+@pytest.mark.parametrize(
+    ("command", "arguments", "by"), [("stop", {}, "stop"), ("power", {"enabled": False}, "power off")]
+)
 def test_who_has_commanded_a_gear_change_hears_that_it_was_overtaken(
     command: str, arguments: dict[str, Any], by: str
 ) -> None:

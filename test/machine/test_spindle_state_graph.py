@@ -189,7 +189,7 @@ def test_the_drive_notices_nothing_of_the_control_limit(weight: str, direction: 
     for limit in (math.inf, LIMIT):
         ideal = {"encoder_increment": 0.0, "drive_time_constant": 0.0}
         bench = spindle_bench(control_limit=limit, **ideal, feedforward=feedforward(VEL))
-        bench.accepted("set_feedforward", on=weight != "off", weight_percent=FEEDFORWARD[weight])
+        bench.accepted("set_feedforward", enabled=weight != "off", weight_percent=FEEDFORWARD[weight])
         turn(bench, 2000.0, 600, direction)
         bench.accepted("set_speed", speed_rpm=500.0)
         bench.run(600)
@@ -222,7 +222,7 @@ def test_a_positioning_stays_below_the_control_limit(limit: float, direction: st
     bench = spindle_bench(control_limit=limit, homing_speed=100.0)
     shown = f"{limit / RPM:g} rpm"
     assert bench.accepted("orient", position_deg=90.0, speed_rpm=300.0, direction=direction) == (
-        f"spindle s: speed 300 rpm is above the control limit {shown} (P-AXIS-00220), {shown} is used"
+        f"P-WARN-24029 spindle s: speed 300 rpm is above the control limit {shown} (P-AXIS-00220), {shown} is used"
     )
     bench.run(1500)
     assert max(map(abs, bench.column("set_speed_rpm"))) == pytest.approx(limit / RPM)
@@ -233,7 +233,7 @@ def test_a_positioning_stays_below_the_control_limit(limit: float, direction: st
 def test_a_rapid_traverse_above_the_control_limit_and_an_override_above_100() -> None:
     bench = spindle_bench(control_limit=600.0, homing_speed=100.0, positioning_speed=900.0, max_override_percent=200.0)
     shown = "speed 150 rpm is above the control limit 100 rpm (P-AXIS-00220), 100 rpm is used"
-    assert bench.accepted("orient", position_deg=90.0) == f"spindle s: {shown}"
+    assert bench.accepted("orient", position_deg=90.0) == f"P-WARN-24029 spindle s: {shown}"
     bench.accepted("set_override", percent=200.0)
     bench.run(600)
     assert bench.accepted("orient", position_deg=0.0, speed_rpm=90.0) == ""
@@ -245,7 +245,7 @@ def test_a_rapid_traverse_above_the_control_limit_and_an_override_above_100() ->
 def test_the_change_position_is_approached_below_the_control_limit() -> None:
     bench = bench_of(two_gears(change_position=90.0, control_limit=400.0, homing_speed=100.0, positioning_speed=1800.0))
     text = "speed 300 rpm is above the control limit 66.6667 rpm (P-AXIS-00220), 66.6667 rpm is used"
-    assert bench.accepted("select_gear", stage=2) == f"spindle s: {text}"
+    assert bench.accepted("select_gear", stage=2) == f"P-WARN-24029 spindle s: {text}"
     bench.run(800)
     assert bench.last.gear_request == 2 and bench.last.referenced[-1]
     assert bench.unit.spindle.loop.encoder == pytest.approx(90.0, abs=0.06)
@@ -410,10 +410,10 @@ def test_with_00266_of_0_it_is_switched_back_at_standstill() -> None:
 
 def test_power() -> None:
     bench = spindle_bench(powered_at_start=False)
-    bench.accepted("power", on=True)
-    assert bench.accepted("power", on=True) == "spindle s: power is on already"
+    bench.accepted("power", enabled=True)
+    assert bench.accepted("power", enabled=True) == "spindle s: power is on already"
     turn(bench, 500.0)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(200)
     assert bench.event_texts() == [
         "P-ERR-24011 spindle s: the enable was removed in motion; the spindle stops on its ramp (ErrorStop)"
@@ -421,9 +421,9 @@ def test_power() -> None:
     bench.accepted("reset")
     bench.run(10)
     assert states(bench) == [S.CONTINUOUS_MOTION, S.ERROR_STOP, S.DISABLED]
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(50)
-    bench.accepted("power", on=False)
+    bench.accepted("power", enabled=False)
     bench.run(10)
     assert states(bench)[-2:] == [S.STANDSTILL, S.DISABLED] and len(bench.events) == 1
 
@@ -433,6 +433,6 @@ def test_power_takes_the_place_where_the_spindle_was_turned_by_hand() -> None:
     bench.run(10)
     bench.unit.spindle.loop.control.drive._true_position = 45.0
     bench.run(10)
-    bench.accepted("power", on=True)
+    bench.accepted("power", enabled=True)
     bench.run(10)
     assert bench.column("set_position_deg")[-1] == pytest.approx(45.0) == bench.column("actual_position_deg")[-1]

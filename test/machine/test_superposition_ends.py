@@ -17,7 +17,7 @@ MOST = 10_000.0
 SILENCE = 20
 """Cycles for which the acceleration of a last setpoint counts at most."""
 STRONG = {"deceleration": 20_000.0, "jerk": 500_000.0}
-STOPS: dict[str, dict[str, Any]] = {"stop": {}, "halt": {}, "reset": {}, "power": {"on": False}}
+STOPS: dict[str, dict[str, Any]] = {"stop": {}, "halt": {}, "reset": {}, "power": {"enabled": False}}
 FAULTS: dict[str, dict[str, Any]] = {"upstream_lost": {"source": "plc"}, "emergency_stop": STRONG}
 
 slow = settings(

@@ -64,6 +64,43 @@ def test_reduced_velocity_comes_from_the_smaller_ramp_and_the_ramps_use_their_ow
     assert cruise[2] == reduced
 
 
+def way_of_ramps(v: float, limits: Limits) -> float:
+    """The way of both ramps, each V/2·(V/A + A/J), or V·√(V/J) where A is not reached."""
+    _, up, down, jerk = limits
+    return sum(0.5 * v * (v / a + a / jerk) if v * jerk >= a * a else v * math.sqrt(v / jerk) for a in (up, down))
+
+
+def top(distance: float, limits: Limits) -> float:
+    return max(row[2] for row in plan_rest_to_rest(0.0, distance, limits).rows)
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        Limits(904.0, 5000.0, 3000.0, 50_000.0),  # 848 for the smaller A on both sides
+        Limits(904.0, 3000.0, 5000.0, 50_000.0),
+        Limits(2000.0, 5000.0, 10_000.0, 50_000.0),
+        Limits(10.0, 100.0, 5000.0, 1e6),
+        Limits(1500.0, 6000.0, 6000.0, 100_000.0),
+    ],
+)
+def test_the_reached_velocity_does_not_jump_where_the_way_becomes_too_short(limits):
+    needed = way_of_ramps(limits.velocity, limits)
+    both = min(limits.acceleration, limits.deceleration)
+    for short in (0.0, 1e-15, 1e-12, 1e-6):
+        assert top(needed * (1.0 - short), limits) == pytest.approx(limits.velocity, rel=2.0 * short + 1e-13)
+    distances = np.linspace(1e-3, 1.1, 2000) * needed
+    reached = np.array([top(distance, limits) for distance in distances])
+    steps = np.diff(reached)
+    assert (steps >= -1e-12 * limits.velocity).all()
+    assert steps[distances[1:] > 0.1 * needed].max() < 0.01 * limits.velocity
+    lower = np.array([reachable_velocity(distance, both, limits.jerk) for distance in distances])
+    assert (reached >= np.minimum(lower, limits.velocity) * (1.0 - 1e-12)).all()
+    assert reached[:600] == pytest.approx(lower[:600])
+    batch = plan_rest_to_rest_batch(0.0, distances, *limits)
+    assert batch.rows[2].max(axis=0) == pytest.approx(reached, rel=1e-14)
+
+
 @pytest.mark.parametrize(
     ("distance", "velocity"),
     [

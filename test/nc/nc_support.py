@@ -6,7 +6,7 @@ from typing import Any
 from cnc_ptp.nc.canonical import CanonicalBlock, format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import Spindle, SpindleTable
+from cnc_ptp.nc.program import Pair, Spindle, SpindleTable
 
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
@@ -37,13 +37,20 @@ def three_spindles(**main: Any) -> SpindleTable:
     return SpindleTable((first, Spindle("S2", "S2", 11), Spindle("S3", "S3", 30)), "S", gear_change)
 
 
+def limited_spindles() -> SpindleTable:
+    """S up to 4000 rpm; S2 in the second of two gears, up to 2000 rpm."""
+    second = Spindle("S2", "S2", 11, limits=(500.0, 2000.0), gear=2)
+    return SpindleTable((Spindle("S", "S1", 6, limits=(4000.0,)), second), "S")
+
+
 TABLES = {
     "three": three_spindles(),
     "gears": three_spindles(ranges=GEARS[:5]),
     "automatic": three_spindles(ranges=GEARS, automatic=True),
     "plc": three_spindles(plc_control=True)._replace(gear_change=True),
-    "linked": three_spindles()._replace(default_link=(("S2", "S"),)),
-    "wrongly_linked": three_spindles()._replace(default_link=(("S", "S2"),)),
+    "limited": limited_spindles(),
+    "linked": three_spindles()._replace(default_link=(Pair("S2", "S"),)),
+    "wrongly_linked": three_spindles()._replace(default_link=(Pair("S", "S2"),)),
 }
 """What a program may name in its comment in place of spindles."""
 

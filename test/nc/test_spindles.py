@@ -14,7 +14,7 @@ from cnc_ptp.nc.canonical import GearChange, SpindleFunction
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Spindle, SpindleTable
+from cnc_ptp.nc.program import ModalState, Pair, Spindle, SpindleTable
 
 
 @pytest.mark.parametrize("position", ["S.POS180", "S.POS 180", "S.POS=180", "S. POS = 180.0", "s.pos=+180"])
@@ -142,7 +142,7 @@ def test_rotation_without_a_speed_does_not_machine(rest: str) -> None:
 
 
 def test_a_slave_gets_its_speed_with_its_master() -> None:
-    table = three_spindles()._replace(default_link=(("S2", "S"),))
+    table = three_spindles()._replace(default_link=(Pair("S2", "S"),))
     assert lines("#ENABLE AX LINK\nM3\nS500\n#DISABLE AX LINK\nS2[M4]\nG1 X1 F60\nM30", spindles=table)[1:] == [
         "S[M3 REV0] | S2[M3 REV0]",
         "S[REV500] | S2[REV500]",

@@ -24,7 +24,7 @@ def texts(x: str) -> list[str]:
 
 
 def notices(x: str) -> list[str]:
-    return [warning.split(": ", 1)[1] for warning in load(x).warnings]
+    return [str(notice).split(": ", 1)[1] for notice in load(x).warnings]
 
 
 SERCOS = "kenngr: {antr_typ: 2}"
@@ -132,15 +132,15 @@ PROBLEMS = {
         "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: object S-0-0036 is in the telegram twice"
     ),
     f'{SERCOS}, antr: {{telegram: {{feedback: [S-0-0051]}}, sercos: {{at: {{"0": {{ident_nr: 51}}}}}}}}': (
-        "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object S-0-0051 is in the telegram twice"
+        "P-ERR-25020 machine list, P-MACH-00026 antr.sercos.at[0].ident_nr of /x: object S-0-0051 is in the telegram twice"
     ),
     "antr: {telegram: {commands: [S-0-0036, 60FF]}}": (
         "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: objects S-0-0036 and 60FF both carry the "
         "velocity"
     ),
     'kenngr: {antr_typ: 2}, antr: {sercos: {at: {"0": {ident_nr: 37}}}}': (
-        "P-ERR-25020 machine list, P-MACH-00021 antr.telegram.feedback of /x: object S-0-0037 cannot be exchanged with "
-        "drive type 2 (P-AXIS-00020), known are S-0-0051, S-0-0040, S-0-0084"
+        "P-ERR-25020 machine list, P-MACH-00026 antr.sercos.at[0].ident_nr of /x: object S-0-0037 is one of the command "
+        "telegram (antr.sercos.mdt, antr.telegram.commands), known here are S-0-0051, S-0-0040, S-0-0084"
     ),
 }
 
@@ -203,28 +203,27 @@ def test_presets_of_drive_types(kind: int, interface: str, commands: set[str], f
 
 NOTICES = {
     "vorsteuer: {velocity_delay_time: 6000}": (
-        "P-AXIS-00389 vorsteuer.velocity_delay_time of /x: P-ERR-70349: delay 6000 µs is not below 6 interpolator "
+        "P-AXIS-00389 vorsteuer.velocity_delay_time of /x: delay 6000 µs is not below 6 interpolator "
         "cycles (6000 µs), 0 is used"
     ),
     "vorsteuer: {acceleration_delay_time: 7000}": (
-        "P-AXIS-00390 vorsteuer.acceleration_delay_time of /x: P-ERR-70348: delay 7000 µs is not below 6 interpolator "
+        "P-AXIS-00390 vorsteuer.acceleration_delay_time of /x: delay 7000 µs is not below 6 interpolator "
         "cycles (6000 µs), 0 is used"
     ),
     "antr: {torque_scale_denom: 0}": (
-        "P-AXIS-00326 antr.torque_scale_denom of /x: P-ERR-110465: value 0 is no denominator, no additive torque is put "
-        "out"
+        "P-AXIS-00326 antr.torque_scale_denom of /x: value 0 is no denominator, no additive torque is put out"
     ),
     "antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: ADD_ACC}": (
-        "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
+        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is no reference of the torque scaling, no "
         "additive torque is put out"
     ),
     "antr: {acc_reference_value: 0}, lr_param: {frict_comp: 1}, "
     "frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: 5}}}": (
-        "P-AXIS-00392 antr.acc_reference_value of /x: P-ERR-110465: value 0 is no reference of the torque scaling, no "
+        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is no reference of the torque scaling, no "
         "additive torque is put out"
     ),
     "vorsteuer: {jerk_fact_denom: 0}": (
-        "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: P-ERR-110473: value 0 is no denominator, 100 is used"
+        "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: value 0 is no denominator, 100 is used"
     ),
     "vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}": (
         "P-AXIS-00228 vorsteuer.vs_v_faktor of /x: weight 1.2 of the feedforward is above 1, the axis leads its setpoint"
@@ -334,7 +333,7 @@ def test_torque_words_that_are_long_enough() -> None:
 
 def spindle_notices(s: str) -> list[str]:
     text = f"/machine: {{ros__parameters: {{spindles: [s]}}}}\n/s: {{ros__parameters: {{{s}}}}}\n"
-    return [warning.split(": ", 1)[1] for warning in load_machine(text, "m.yaml").warnings]
+    return [str(notice).split(": ", 1)[1] for notice in load_machine(text, "m.yaml").warnings]
 
 
 def test_all_gears_of_a_spindle_are_looked_at() -> None:
@@ -437,3 +436,69 @@ def test_each_cycle_of_delay_lowers_the_limit() -> None:
     # pure dead time of n cycles in front of an integrator: Kv T = 2 sin(π / (4 n + 2))
     plant = load("simulation: {bus_delay_cycles: 3}").axes["x"].control.plant
     assert stability_limit(plant, 0.001) == pytest.approx(2000.0 * math.sin(math.pi / 14.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "error_id", "values"),
+    [
+        (
+            "vorsteuer: {velocity_delay_time: 6000}",
+            70349,
+            (("P-AXIS-00389", 6000.0, "µs"), ("limit", 6000.0, "µs")),
+        ),
+        (
+            "vorsteuer: {acceleration_delay_time: 7000}",
+            70348,
+            (("P-AXIS-00390", 7000.0, "µs"), ("limit", 6000.0, "µs")),
+        ),
+        ("antr: {torque_scale_denom: 0}", 110465, (("P-AXIS-00326", 0.0, ""),)),
+        ("vorsteuer: {jerk_fact_denom: 0}", 110473, (("P-AXIS-00338", 0.0, ""),)),
+        ("vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}", 26120, (("P-AXIS-00228", 6.0, ""),)),
+    ],
+)
+def test_notices_have_the_number_of_the_vendor_and_their_values(
+    text: str, error_id: int, values: tuple[tuple[str, float, str], ...]
+) -> None:
+    (notice,) = load(text).warnings
+    assert (notice.error_id, notice.values) == (error_id, values)
+
+
+def test_a_misprinted_name_of_the_manual_leads_to_the_right_one() -> None:
+    with pytest.raises(ParameterError) as refusal:
+        load("vorsteuer: {jerk_fact_nom: 1}")
+    assert "did you mean vorsteuer.jerk_fact_num (P-AXIS-00337)?" in str(refusal.value)
+
+
+def test_an_object_in_the_wrong_telegram_is_told_where_it_stands() -> None:
+    """The list line of the manual, antr.sercos.at[0].ident_nr 37 beside mdt[0].nc_ref S_0_0037, below other lists."""
+    text = (
+        'kenngr: {antr_typ: 2}\n    antr:\n      telegram: {feedback: [S-0-0051]}\n      sercos:\n        mdt: {"0": {ident_len: 4, nc_ref: S_0_0037}}\n'
+        '        at:\n          "0":\n            ident_nr: 37'
+    )
+    machine = f"/machine: {{ros__parameters: {{axes: [x]}}}}\n/x:\n  ros__parameters:\n    {text}\n"
+    with pytest.raises(ParameterError) as refusal:
+        load_machine(machine, "m.yaml")
+    (problem,) = refusal.value.problems
+    assert (problem.error_id, str(problem.place)) == (25020, "m.yaml:11:23")
+    assert problem.text.startswith(
+        "machine list, P-MACH-00026 antr.sercos.at[0].ident_nr of /x: object S-0-0037 is one of"
+    )
+
+
+@pytest.mark.parametrize(
+    ("x", "told"),
+    [
+        ("getriebe: {'0': {gear_fact_num: 3}}", True),
+        ("getriebe: {'0': {gear_fact_denom: 2}}", True),
+        ("getriebe: {'0': {gear_fact_num: 2, gear_fact_denom: 2}}", False),
+        ("getriebe: {'0': {gear_fact_num: 3}}, antr: {feed_const_num: 50000}", False),
+    ],
+)
+def test_a_gear_ratio_without_feed_constant_is_told(x: str, told: bool) -> None:
+    text = (
+        "without effect, there is no feed constant (P-AXIS-00362 and P-AXIS-00363 are 1); the resolution is "
+        "P-AXIS-00234/00233"
+    )
+    found = [notice for notice in notices(x) if "gear_fact" in notice]
+    name = "P-AXIS-00511 getriebe[0].gear_fact_num" if "num: 3" in x else "P-AXIS-00512 getriebe[0].gear_fact_denom"
+    assert found == ([f"{name} of /x: {text}"] if told else [])

@@ -45,6 +45,7 @@ UNITS = {
         "cycles",
         "bit",
         "bytes",
+        "Hz",
         "kg·m² (kg)",
         "Nm (N)",
         "1/s",

@@ -292,6 +292,16 @@ CASES = {
         "P-ERR-25009 m.yaml:2:40: axis list, P-AXIS-00177 kenngr.swe_neg of /x: value 5 is not below 5 (0.1 µm) of "
         "P-AXIS-00178 kenngr.swe_pos in line 2" + END,
     ),
+    "soft limit of a conveyor": (
+        axis("{kenngr: {achs_mode: 0x4, swe_pos: 1000000}}"),
+        "P-ERR-25009 m.yaml:2:58: axis list, P-AXIS-00178 kenngr.swe_pos of /x: value 1000000 would not limit the axis, "
+        "P-AXIS-00015 kenngr.achs_mode 0x4 makes it an endless modulo axis; leave out one of the two" + END,
+    ),
+    "negative soft limit of a conveyor": (
+        axis("{kenngr: {achs_mode: 0x1400, swe_neg: -77}}"),
+        "P-ERR-25009 m.yaml:2:61: axis list, P-AXIS-00177 kenngr.swe_neg of /x: value -77 would not limit the axis, "
+        "P-AXIS-00015 kenngr.achs_mode 0x1400 makes it an endless modulo axis; leave out one of the two" + END,
+    ),
     "soft limit against default": (
         axis("{kenngr.swe_pos: -100000000}"),
         "P-ERR-25009 m.yaml:2:40: axis list, P-AXIS-00178 kenngr.swe_pos of /x: value -100000000 is not above "

@@ -10,7 +10,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.declarations import catalogue
-from cnc_ptp.parameters.reference import describe, reference_markdown
+from cnc_ptp.parameters.reference import entry_text, find, reference_markdown
 
 ROOT = Path(__file__).parents[2]
 KV = """\
@@ -22,6 +22,10 @@ P-AXIS-00099  getriebe[i].kv
   unit     0.01/s
   default  1000
   source   spindle p.74"""
+
+
+def describe(wanted: str) -> str:
+    return "\n\n".join(map(entry_text, find(wanted)))
 
 
 def test_document_is_up_to_date() -> None:
@@ -89,7 +93,7 @@ def test_drive_types_are_as_the_control_document_has_them() -> None:
     assert text in " ".join(describe("P-AXIS-00020").split())
     for kind in catalogue().by_id["P-AXIS-00020"].choices:
         machine = f"/machine: {{ros__parameters: {{axes: [x]}}}}\n/x: {{ros__parameters: {{kenngr.antr_typ: {kind}}}}}"
-        assert not [line for line in load_machine(machine, "m.yaml").warnings if "P-AXIS-00020" in line]
+        assert not [line for line in load_machine(machine, "m.yaml").warnings if "P-AXIS-00020" in str(line)]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ def problems(parameters: str) -> list[str]:
 
 
 def warnings(parameters: str) -> tuple[str, ...]:
-    return load_machine(f"{HEAD}{parameters}}}}}", "m.yaml").warnings
+    return tuple(map(str, load_machine(f"{HEAD}{parameters}}}}}", "m.yaml").warnings))
 
 
 CASES = {
@@ -175,8 +175,8 @@ def test_a_rapid_traverse_above_the_control_limit() -> None:
         (
             "kenngr: {antr_typ: 6, achs_mode: 0x104}",
             [
-                "P-AXIS-00015 kenngr.achs_mode of /s: 0x100 (no automatic homing) should not be set for the analogue drive type 6",
-                "P-AXIS-00156 kenngr.ref_ohne_nocken of /s: should be 1 for a spindle with the analogue drive type 6; it is "
+                "P-AXIS-00015 kenngr.achs_mode of /s: 0x100 (no automatic homing) should not be set for drive type 6 (+-10 V terminal), which the NC homes",
+                "P-AXIS-00156 kenngr.ref_ohne_nocken of /s: should be 1 for a spindle with drive type 6 (+-10 V terminal); it is "
                 "homed without a cam",
             ],
         ),

@@ -183,6 +183,38 @@ def test_rotary_axis_with_and_without_modulo() -> None:
     assert (endless.soft_limit_negative, endless.soft_limit_positive) == (-math.inf, math.inf)
 
 
+def test_linear_axis_with_modulo() -> None:
+    """A conveyor: 0x4 counts for it too, its range is in 0.1 µm; it has no soft limits."""
+    view = axis("kenngr.achs_mode: 0x4, getriebe.0: {modulou: -1000000, moduloo: 2500000}")
+    assert (view.rotary, view.modulo, view.modulo_low, view.modulo_high) == (False, True, -100.0, 250.0)
+    assert (view.soft_limit_negative, view.soft_limit_positive) == (-math.inf, math.inf)
+    assert not axis("getriebe.0: {moduloo: 2500000}").modulo
+
+
+@pytest.mark.parametrize(
+    ("parameters", "texts"),
+    [
+        ("kenngr.achs_mode: 0x4", ["not given, the modulo range of the axis ends at 360 mm"]),
+        (
+            "kenngr.achs_mode: 0x400, getriebe.0.modulou: -5000",
+            ["not given, the modulo range of the axis ends at 360 mm"],
+        ),
+        ("kenngr.achs_mode: 0x400, getriebe.0.moduloo: 5000000", []),
+        ("kenngr.achs_mode: 0x1", []),
+        ("kenngr: {achs_mode: 0x4, achs_typ: ACHSTYP_ROTATOR}", []),
+    ],
+)
+def test_notice_of_a_conveyor_without_a_range(parameters: str, texts: list[str]) -> None:
+    warnings = load(f"/x: {{ros__parameters: {{{parameters}}}}}", axes=["x"]).warnings
+    assert [notice.text for notice in warnings if "P-AXIS-00126" in notice.parameter] == texts
+
+
+@pytest.mark.parametrize("mode", ["0x1", "0x404"])
+def test_a_turntable_may_have_soft_limits_without_effect(mode: str) -> None:
+    """Only a linear axis is told: of a turntable everybody knows that it is endless."""
+    axis(f"kenngr: {{achs_typ: ACHSTYP_ROTATOR, achs_mode: {mode}, swe_neg: -10, swe_pos: 10}}")
+
+
 def test_logical_numbers_that_the_file_leaves_out() -> None:
     section = "/y: {ros__parameters: {kopf.achs_nr: 1}}"
     machine = load(section, axes=["x", "y"], spindles=["s"])
@@ -243,7 +275,7 @@ def test_a_spindle_serves_several_channels() -> None:
 
 def test_warnings() -> None:
     text = "kenngr.swe_toleranz: 1, getriebe.0: {slep_ueberw_typ: 4, slep_max: 200000}"
-    assert load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"]).warnings == (
+    assert tuple(map(str, load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"]).warnings)) == (
         "m.yaml:2:45: P-AXIS-00179 kenngr.swe_toleranz of /x: accepted, but without effect in this version",
         "m.yaml:2:91: P-AXIS-00168 getriebe[0].slep_max of /x: "
         "limit 20 mm is not above vb_max / kv, the 20 mm that P-AXIS-00212 brings",
@@ -253,16 +285,18 @@ def test_warnings() -> None:
 def test_units_of_which_the_file_says_nothing_but_their_names() -> None:
     text = "/machine:\n  ros__parameters:\n    channels: [ch]\n    axes: [x, q]\n    spindles: [s]\n/x:\n/ch: {}\n"
     behind = "has no section in the file, it has the default of every parameter"
-    assert load_machine(text, "m.yaml").warnings == (
+    assert tuple(map(str, load_machine(text, "m.yaml").warnings)) == (
         f"m.yaml:4:11: P-MACH-00005 axes of /machine: axis /q {behind}",
         f"m.yaml:5:15: P-MACH-00006 spindles of /machine: spindle /s {behind}",
     )
-    assert load(channels=["ch"]).warnings == (f"m.yaml:1:40: P-MACH-00004 channels of /machine: channel /ch {behind}",)
+    assert tuple(map(str, load(channels=["ch"]).warnings)) == (
+        f"m.yaml:1:40: P-MACH-00004 channels of /machine: channel /ch {behind}",
+    )
 
 
 def test_preferred_direction_is_for_spindles() -> None:
     text = "/c: {ros__parameters: {kenngr: {achs_typ: ACHSTYP_ROTATOR, vorz_richtung: 1}}}"
-    assert load(text, axes=["c"]).warnings == (
+    assert tuple(map(str, load(text, axes=["c"]).warnings)) == (
         "m.yaml:2:75: P-AXIS-00224 kenngr.vorz_richtung of /c: accepted, but without effect in this version",
     )
     assert load(text.replace("/c", "/s").replace("ROTATOR", "SPINDEL"), spindles=["s"]).warnings == ()
@@ -285,3 +319,28 @@ def test_an_error_can_go_to_another_process() -> None:
         load("/x: {ros__parameters: {getriebe.0.kv: 0}}", axes=["x"])
     copy = pickle.loads(pickle.dumps(caught.value))
     assert (str(copy), copy.problems) == (str(caught.value), caught.value.problems)
+
+
+@pytest.mark.parametrize(
+    ("mode", "number", "modulo"),
+    [
+        ("ACHSMODE_LINEAR", 0x1, False),
+        ("ACHSMODE_MODULO", 0x4, True),
+        ("ACHSMODE_MODULO_LINEAR | ACHSMODE_ROT_TABLE", 0x1400, True),
+        ("0x400", 0x400, True),
+        ("0x80 | ACHSMODE_MODULO", 0x84, True),
+    ],
+)
+def test_constants_of_the_axis_mode(mode: str, number: int, modulo: bool) -> None:
+    machine = load(f"/x: {{ros__parameters: {{kenngr: {{achs_mode: {mode}}}}}}}", axes=["x"])
+    assert machine.sets["x"].number("P-AXIS-00015") == number
+    assert machine.axes["x"].modulo is modulo
+
+
+def test_an_unknown_constant_of_the_axis_mode() -> None:
+    with pytest.raises(ParameterError) as refusal:
+        load("/x: {ros__parameters: {kenngr: {achs_mode: ACHSMODE_MODULO | ACHSMODE_SPIN}}}", axes=["x"])
+    assert (
+        "value 'ACHSMODE_MODULO | ACHSMODE_SPIN' has 'ACHSMODE_SPIN', which is none of ACHSMODE_LINEAR, ACHSMODE_MODULO"
+        in str(refusal.value)
+    )

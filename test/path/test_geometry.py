@@ -31,7 +31,7 @@ def test_the_feed_belongs_to_the_leading_axes_and_others_travel_along():
     assert line.evaluate(2.5, 10.0, 0.0, 0.0)[3] == (45.0, 180.0, 0.0, 0.0)
     turning = Line((0.0, 0.0, 0.0, 0.0), (0.0, 1e-12, 0.0, 90.0))
     assert turning.length == 90.0
-    flat = Line((0.0, 0.0), (0.0, 7.0), path_axes=1)
+    flat = Line((0.0, 0.0), (0.0, 7.0), path_axes=(0,))
     assert flat.length == 7.0
 
 

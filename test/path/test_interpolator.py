@@ -11,6 +11,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_rest_to_rest
 from cnc_ptp.path import Line, PathInterpolator
+from cnc_ptp.path.planner import STEPS
 
 T = 0.001
 LIMITS = Limits(100.0, 2000.0, 3000.0, 50000.0)
@@ -346,3 +347,51 @@ def test_refusals():
     assert refused(lambda: interpolator.dwell(1.0)) == (
         "P-ERR-22110 a dwell was started 9.99999 mm before the end of the running path element; the running one goes on"
     )
+
+
+def test_steps_take_the_closed_form_time_across_elements():
+    """With steps of the acceleration: D/V + V/2·(1/A+ + 1/A-) each, one directly after the other."""
+    interpolator = PathInterpolator()
+    rows, lengths = [], (10.0, 7.0, 0.2)
+    for length in lengths:
+        interpolator.start(line_of(length), LIMITS, planner=STEPS)
+        rows += run_alone(interpolator)
+    half = 0.5 * (1.0 / 2000.0 + 1.0 / 3000.0)
+    expected = sum(d / 100.0 + 100.0 * half for d in lengths[:2]) + math.sqrt(4.0 * lengths[2] * half)
+    assert (len(rows) + 1) * T - interpolator.remaining_time == pytest.approx(expected, abs=1e-12)
+    assert {row[3] for row in rows} == {0.0}
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_steps_under_random_overrides_holds_and_stops(seed):
+    """Every row follows from the one before it with an acceleration within the limits; it stops on the deceleration."""
+    draw = random.Random(seed)
+    interpolator = PathInterpolator()
+    length = draw.choice([0.5, 5.0, 50.0])
+    interpolator.start(line_of(length), LIMITS, feed=draw.choice([20.0, 100.0]), planner=STEPS)
+    stop_at = draw.choice([None, draw.randrange(40)])
+
+    def at_block(block):
+        if block == stop_at:
+            interpolator.stop()
+        elif draw.random() < 0.3 and block < 60:
+            interpolator.set_velocity_factor(draw.choice([0.0, 0.3, 1.0, 1.7]))
+        elif block >= 60 and stop_at is None:
+            interpolator.set_velocity_factor(1.0)
+
+    rows = run_alone(interpolator, at_block)
+    s = v = 0.0
+    for row in rows:
+        assert -1e-9 <= row[1] <= LIMITS.velocity * (1.0 + 1e-9)
+        assert row[2] in (0.0, LIMITS.acceleration, -LIMITS.deceleration) and row[3] == 0.0
+        assert -LIMITS.deceleration * T * (1.0 + 1e-9) <= row[1] - v <= LIMITS.acceleration * T * (1.0 + 1e-9)
+        assert (
+            abs(row[0] - s - T * (row[1] + v) / 2.0) <= (LIMITS.acceleration + LIMITS.deceleration) * T * T / 8.0 + 1e-9
+        )
+        s, v = row[:2]
+    if interpolator.done:
+        assert v <= LIMITS.deceleration * T * (1.0 + 1e-9) and interpolator.step(1, T) == [
+            (length, 0.0, 0.0, 0.0, True)
+        ]
+    else:
+        assert interpolator.stopped and interpolator.state[1:] == (0.0, 0.0, 0.0)

@@ -41,11 +41,11 @@ class Blocks:
         return [self.random.random() < 0.5 for _ in range(count)]
 
     def axis(self, first: int, count: int = 10) -> AxisBlock:
-        columns = [self.floats(count) for _ in range(14)]
+        columns = [self.floats(count) for _ in range(15)]
         return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (8, 32, 32)))
 
     def spindle(self, first: int, count: int = 10) -> SpindleBlock:
-        columns = [self.floats(count) for _ in range(10)]
+        columns = [self.floats(count) for _ in range(11)]
         output = [value - 2**31 for value in self.integers(count, 32)]
         modes = [self.integers(count, 8) for _ in range(2)]
         flags = [self.booleans(count) for _ in range(5)]
@@ -156,6 +156,7 @@ def _axis(first: int, number: int) -> AxisBlock:
         zero,
         zero,
         zero,
+        zero,
         [100.0 if first < 700 else 75.0] * 10,
         [1 if first < 10 else 5] * 10,
         [256] * 10,
@@ -179,6 +180,7 @@ def _spindle(first: int) -> SpindleBlock:
         zero,
         zero,
         [100.0] * 10,
+        zero,
         [0] * 10,
         [2] * 10,
         [1] * 10,

@@ -84,16 +84,24 @@ def test_many_states_at_once_are_read_by_the_library(type_name):
 
 
 @settings(max_examples=50)
-@given(count=st.integers(0, 12), first=st.integers(0, 2**63), values=st.lists(st.floats(), min_size=14, max_size=14))
+@given(count=st.integers(0, 12), first=st.integers(0, 2**63), values=st.lists(st.floats(), min_size=15, max_size=15))
 def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
     schema = load_schema("cnc_ptp/msg/AxisBlock")
     names = [field.name for field in schema.fields[3:] if field.length is not None]
-    of_the_block = {"master": "y", "target_velocity": 5.0, "couples_actual": True}
+    of_the_block = {
+        "master": "y",
+        "target_velocity": 5.0,
+        "modulo_begin": -180.0,
+        "modulo_length": 360.0,
+        "torque_digits": 250.0,
+    }
+    of_the_block["couples_actual"] = True
     block = {"header": Header(), "first_cycle": first, "count": count, **of_the_block}
     block |= {name: [value] * count for name, value in zip(names, [*values, 3, 4, 5], strict=True)}
     row = Layout(schema, block | dict.fromkeys(names, [0] * count)).empty(1)
     row["first_cycle"] = first
-    row["target_velocity"], row["couples_actual"] = 5.0, True
+    for name in ("target_velocity", "modulo_begin", "modulo_length", "torque_digits", "couples_actual"):
+        row[name] = of_the_block[name]
     for name in names if count else ():
         row[name] = block[name]
     assert row.tobytes() == encode(schema, block)

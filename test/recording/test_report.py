@@ -44,8 +44,8 @@ def test_summary(recorded):
         "blocks": 200,
         "lost_blocks": 0,
         "units": {},
-        "lateness_p50_us": None,
-        "lateness_p99_us": None,
+        "lateness_p50_ms": None,
+        "lateness_p99_ms": None,
         "errors": 1,
         "warnings": 1,
         "commands": 3,
@@ -60,14 +60,14 @@ def test_summary(recorded):
 
 def test_lateness_and_lost_blocks_come_from_the_nodes(recorded):
     recorded.diagnostics = [
-        Diagnostic(1, "x", {"lateness_p50_us": "90", "lateness_p99_us": "300", "lost_blocks": "0"}),
-        Diagnostic(2, "y", {"lateness_p50_us": "110", "lateness_p99_us": "none", "lost_blocks": "3"}),
-        Diagnostic(3, "x", {"lateness_p50_us": "95", "lateness_p99_us": "290", "lost_blocks": "1"}),
+        Diagnostic(1, "x", {"lateness p50 [ms]": "0.9", "lateness p99 [ms]": "3.0", "lost blocks": "0"}),
+        Diagnostic(2, "y", {"lateness p50 [ms]": "1.1", "lateness p99 [ms]": "none", "lost blocks": "3"}),
+        Diagnostic(3, "x", {"lateness p50 [ms]": "0.9", "lateness p99 [ms]": "2.9", "lost blocks": "1"}),
     ]
     figures = summary(recorded)
-    assert (figures["lateness_p50_us"], figures["lateness_p99_us"], figures["lost_blocks"]) == (110.0, 290.0, 4)
+    assert (figures["lateness_p50_ms"], figures["lateness_p99_ms"], figures["lost_blocks"]) == (1.1, 2.9, 4)
     page = report_page(recorded)
-    assert "110 / 290 µs" in page
+    assert "1.1 / 2.9 ms" in page
     assert "<h2>Nodes</h2>" in page
 
 
@@ -94,8 +94,8 @@ def test_every_quantity_has_a_plot_and_all_zoom_together(recorded):
     figure = time_figure(recorded, {"z": "deg"})
     titles = [annotation.text for annotation in figure.layout.annotations]
     assert titles[:5] == [
-        "States and events",
-        "channel: feed in mm/min, programmed and path velocity",
+        "States, events and commands",
+        "channel: feed in mm/min",
         "Override in %",
         "channel: program line",
         "s: speed in rpm",
@@ -229,7 +229,7 @@ def test_tables_mark_errors_and_refusals(recorded):
     assert '<tr class="error"><td class="number">1.200</td><td class="number">1200</td>' in page
     assert '<tr class="warning">' in page
     assert '<tr class="refused"><td class="number">0.900</td>' in page
-    assert '<td class="text">target 9999.0</td>' in page
+    assert '<td class="text">target = 9999</td>' in page
     assert '<td class="text">P-ERR-23010 x: target 9999.0 mm; refused</td>' in page
 
 
@@ -250,7 +250,7 @@ def test_programs_are_shown_once_with_line_numbers(recorded):
         CommandRecord(0, "channel", "load", arguments.replace("part", "other"), False, 1, "busy"),
     ]
     page = report_page(recorded)
-    assert '<td class="text">program part.nc, text (2 lines)</td>' in page
+    assert '<td class="text">program = part.nc, text = (2 lines)</td>' in page
     assert "<summary>NC program part.nc</summary><pre>    1  N10 G1 X&lt;1\n    2  M30</pre>" in page
     assert "<summary>NC program other.nc</summary>" not in page
 

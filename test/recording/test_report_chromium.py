@@ -1,26 +1,78 @@
 """The report opened in a real browser without a network: the plots are drawn and no script fails."""
 
+import json
+import math
 import re
 import shutil
 import subprocess
+from urllib.parse import unquote
 
 import pytest
 from recording_support import smooth_run
 
 from cnc_ptp.recording.reader import read_recording
-from cnc_ptp.recording.report import write_report
+from cnc_ptp.recording.report import plots_page, write_report
+from cnc_ptp.recording.rows import time_rows
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 EVIL = "</script><script>document.title='taken over'</script><img src=x onerror=\"document.title='taken over'\">"
 pytestmark = pytest.mark.skipif(BROWSER is None, reason="no Chromium in PATH (apt-get install chromium)")
 
 
-@pytest.fixture(scope="module")
-def opened(tmp_path_factory):
+PROBE = """
+<script>
+(async function () {
+  const plot = document.getElementById("time"), found = {};
+  while (plot.dataset.cycles !== "all") await new Promise((next) => setTimeout(next, 50));
+  const of = (title, name) => {
+    const place = plot.layout.annotations.findIndex((note) => note.text === title);
+    const axis = "y" + (place + 1);
+    const trace = plot.data.find((one) => one.yaxis === axis && one.name === name);
+    return { x: Array.from(trace.x), y: Array.from(trace.y), range: plot.layout["yaxis" + (place + 1)].range };
+  };
+  const mouse = (kind, time, target) => {
+    const layout = plot._fullLayout, box = plot.getBoundingClientRect();
+    const x = box.left + layout._size.l + layout.xaxis.d2p(time), y = box.top + layout.yaxis2._offset + 20;
+    const where = target || plot;
+    where.dispatchEvent(new MouseEvent(kind, { clientX: x, clientY: y, bubbles: true, detail: 1 }));
+  };
+  const until = async (done) => {
+    for (let i = 0; i < 100 && !done(); i++) await new Promise((next) => setTimeout(next, 50));
+  };
+  const scale = () => plot.layout.yaxis2.range.join();
+  let before = scale();
+  found.whole = of("X: position in mm", "actual");
+  await Plotly.relayout(plot, { "xaxis.range[0]": 0.25, "xaxis.range[1]": 0.3 });
+  await until(() => scale() !== before);
+  found.zoomed = of("X: position in mm", "actual");
+  found.speed = of("s: speed in rpm", "set");
+  found.marks = plot.data.find((one) => one.meta === "commands").text;
+  const drag = plot.querySelector(".nsewdrag");
+  mouse("mousedown", 0.26, drag);
+  mouse("mouseup", 0.26, document);
+  mouse("mousemove", 0.2802);
+  await until(() => plot.querySelector(".cursor-time"));
+  found.time = plot.querySelector(".cursor-time").textContent;
+  found.values = Array.from(plot.querySelectorAll(".cursor-values")).map((box) => box.innerText);
+  found.lines = plot.querySelectorAll(".cursor-line").length;
+  window.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
+  found.without = plot.querySelectorAll(".cursor-line").length;
+  before = scale();
+  await Plotly.relayout(plot, { "xaxis.range[0]": 0, "xaxis.range[1]": 2 });
+  await until(() => scale() !== before);
+  found.again = of("X: position in mm", "actual");
+  found.words = plot.data.find((one) => one.meta === "commands").text;
+  const result = document.createElement("pre");
+  result.id = "probe";
+  result.textContent = encodeURIComponent(JSON.stringify(found));
+  document.body.appendChild(result);
+})();
+</script>
+"""
+
+
+def open_page(page):
     """The document after its scripts have run, and what the browser said on its console."""
-    folder = tmp_path_factory.mktemp("browser")
-    smooth_run(folder / "run.mcap", 2.0, text=EVIL)
-    write_report(read_recording(folder / "run.mcap"), folder / "run.html", program="bracket.nc")
     command = [
         BROWSER,
         "--headless",
@@ -29,15 +81,23 @@ def opened(tmp_path_factory):
         "--disable-background-networking",
         "--enable-unsafe-swiftshader",
         "--host-resolver-rules=MAP * ~NOTFOUND",
-        f"--user-data-dir={folder / 'profile'}",
+        f"--user-data-dir={page.parent / 'profile'}",
         "--enable-logging=stderr",
         "--virtual-time-budget=20000",
         "--window-size=1400,1000",
         "--dump-dom",
-        (folder / "run.html").as_uri(),
+        page.as_uri(),
     ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=True)
     return done.stdout, [line for line in done.stderr.splitlines() if ":CONSOLE" in line]
+
+
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("browser")
+    smooth_run(folder / "run.mcap", 2.0, text=EVIL)
+    write_report(read_recording(folder / "run.mcap"), folder / "run.html", program="bracket.nc")
+    return open_page(folder / "run.html")
 
 
 def test_no_script_fails(opened):
@@ -64,3 +124,66 @@ def test_nothing_offers_to_send_data_away(opened):
     document, _ = opened
     assert 'data-title="Download plot' in document
     assert not re.search(r'data-title="[^"]*(Share|Edit|cloud|Cloud)', document)
+
+
+@pytest.fixture(scope="module")
+def probe(tmp_path_factory):
+    """What the plots held before, while and after the page was zoomed to 0.25 ... 0.3 s."""
+    folder = tmp_path_factory.mktemp("probe")
+    smooth_run(folder / "run.mcap", 2.0)
+    recorded = read_recording(folder / "run.mcap")
+    page = plots_page(recorded, list(time_rows(recorded, {}, {})), title="run")
+    (folder / "run.html").write_text(page.replace("</body></html>", PROBE + "</body></html>"), encoding="utf-8")
+    document, console = open_page(folder / "run.html")
+    found = re.search(r'<pre id="probe">([^<]*)</pre>', document)
+    assert found, console
+    return json.loads(unquote(found[1]))
+
+
+@pytest.fixture(scope="module")
+def position():
+    """Actual position of x in mm by cycle, from the formula of the run."""
+    speed = 2.0 * math.pi
+    return lambda cycle: 40.0 * math.cos(speed * 0.001 * cycle) + 40.0 * speed * math.sin(speed * 0.001 * cycle) / 16.7
+
+
+def test_zoomed_plots_show_every_cycle(probe, position):
+    cycles = [round(time * 1000) for time in probe["zoomed"]["x"]]
+    assert set(range(250, 301)) <= set(cycles) <= set(range(248, 303))
+    assert len(cycles) == len(set(cycles))
+    for cycle, value in zip(cycles, probe["zoomed"]["y"], strict=True):
+        assert value == pytest.approx(position(cycle), abs=1e-4)
+
+
+def test_scales_follow_the_zoom(probe, position):
+    low, high = probe["zoomed"]["range"]
+    values = [position(cycle) for cycle in range(249, 302)]
+    values += [40.0 * math.cos(2.0 * math.pi * 0.001 * cycle) for cycle in range(249, 302)]  # the set position
+    span = max(values) - min(values)
+    assert min(values) - 0.3 * span < low < min(values)
+    assert max(values) < high < max(values) + 0.3 * span
+    low, high = probe["again"]["range"]
+    assert low < -40.0 and high > 40.0
+    assert max(probe["again"]["y"]) == pytest.approx(max(map(position, range(2000))), abs=1e-4)
+
+
+def test_cursor_and_reference(probe, position):
+    assert probe["time"] == "0.28 s   Δt +0.02 s"
+    assert (probe["lines"], probe["without"]) == (2, 1)
+    [speed] = [text for text in probe["values"] if text.startswith("set 560")]
+    assert speed.splitlines() == ["set 560  Δy +40", "actual 548.8  Δy +39.2"]
+    now, before = position(280), position(260)
+    [found] = [
+        match
+        for text in probe["values"]
+        if (match := re.search(r"actual (\S+)  Δy (\S+)", text))
+        and float(match[1].replace("−", "-")) == pytest.approx(now, abs=1e-3)
+    ]
+    assert float(found[2].replace("−", "-")) == pytest.approx(now - before, abs=1e-3)
+
+
+def test_words_of_commands_have_room(probe):
+    assert probe["words"][0] == ""  # the next one comes 10 ms later
+    assert probe["words"][1].startswith("channel start")
+    assert probe["words"][2].startswith("x move absolute target = 9999")
+    assert probe["marks"] == ["", "", ""]  # none in the part that is shown

@@ -66,7 +66,7 @@ def test_statistics_index_and_crcs_are_those_of_the_library(path, blocks):
         assert reader.get_header().profile == "ros2"
     statistics = summary.statistics
     assert statistics.message_count == 120 * 6 + 1200 * 4 + 2 == sum(statistics.channel_message_counts.values())
-    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (5, 1, 1)
+    assert (statistics.chunk_count, statistics.attachment_count, statistics.metadata_count) == (5, 1, 2)
     assert (statistics.channel_count, statistics.schema_count) == (12, 10)
     assert (statistics.message_start_time, statistics.message_end_time) == (0, 1_199_000_000)
     ranges = [(chunk.message_start_time, chunk.message_end_time) for chunk in summary.chunk_indexes]
@@ -248,8 +248,8 @@ def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, 
         recording.axis_block("x", blocks.axis(20))
     assert str(error.value) == (
         "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected "
-        "174 items for "
-        "packing (got 175); it was not recorded"
+        "187 items for "
+        "packing (got 188); it was not recorded"
     )
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == [*range(10), *range(20, 30)]
 

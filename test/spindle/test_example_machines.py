@@ -220,8 +220,8 @@ def test_third_spindle_is_unknown_to_the_second_channel() -> None:
     assert bench.give("channel2", "load", program="channel2_unknown.nc", text=text).accepted
     message = bench.refused("channel2", "start")
     assert message == (
-        "P-ERR-20180 channel2_unknown.nc line 2 column 5 'N10 S3[M03 REV100]': spindle S3 is not in the machine; "
-        "spindles of this channel: S, S1"
+        "P-ERR-20180 channel2_unknown.nc line 2 column 5 'N10 S3[M03 REV100]': spindle S3 does not belong to this channel; "
+        "its spindles are: S, S1"
     )
 
 
@@ -412,9 +412,9 @@ def test_tool_limits_speed_and_acceleration() -> None:
     assert speeds[slow + 1100] == pytest.approx(10.0)
     warnings = [record.message for record in bench.records if record.message]
     assert warnings == [
-        "spindle s1: speed 1000.0 rpm is above the maximum of the tool, 500 rpm is used",
-        "spindle s1: speed 5.0 rpm is below the minimum of the tool, 10 rpm is used",
-        "spindle s1: speed 1000.0 rpm is above the maximum of the tool, 500 rpm is used",
+        "P-WARN-24029 spindle s1: speed 1000.0 rpm is above the maximum of the tool, 500 rpm is used",
+        "P-WARN-24029 spindle s1: speed 5.0 rpm is below the minimum of the tool, 10 rpm is used",
+        "P-WARN-24029 spindle s1: speed 1000.0 rpm is above the maximum of the tool, 500 rpm is used",
     ]
 
 

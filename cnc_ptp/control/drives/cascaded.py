@@ -32,22 +32,27 @@ class CascadedDrive:
     A cycle is one exact step of the linear part under held inputs (parameters/plant_model.py); the Stribeck part counts
     with the mean of its values at begin and end. Where it changes much in a step, where the velocity passes zero, where
     the axis breaks away or the torque limit begins or ends, the cycle is halved, again and again down to 1/64.
-    `torque` is that at the end of the cycle. Source: TF5200 feedforward, figure 2; friction, figure 1.
+    `torque` is the mean over the cycle, as FirstOrderDrive has it: within a cycle the torque swings by the step of the
+    command, so its value at the end of one is none to go by. Source: TF5200 feedforward, figure 2; friction, figure 1.
     """
 
     __slots__ = (
         "_additive_velocity",
         "_bend",
         "_coulomb",
+        "_current_lag",
+        "_cycle_time",
         "_direction",
         "_dry",
         "_edge",
         "_encoder_at_load",
         "_encoder_increment",
         "_far",
+        "_filter_rate",
         "_filtered",
         "_gain",
         "_half_play",
+        "_impulse",
         "_integral",
         "_integral_rate",
         "_lagging",
@@ -79,6 +84,8 @@ class CascadedDrive:
         self._set_mechanics(plant)
         self.velocity = self.torque = 0.0
         self._setpoint = self._wanted = self._integral = self._motor = 0.0
+        self._impulse = 0.0
+        """Torque summed up over the cycle."""
         self._direction = 0.0 if self._dry else 1.0
         """+1, -1: the motor slides, 0: friction holds it."""
         self._motor_position = self.load_position = plant.start_position
@@ -88,8 +95,11 @@ class CascadedDrive:
 
     def _set_controller(self, plant: PlantParameters, gain: float, cycle_time: float) -> None:
         self._gain = gain
+        self._cycle_time = cycle_time
         self._filtered = plant.time_constant > 0.0
-        self._lagging = plant.current_time_constant > 0.0
+        self._filter_rate = 1.0 / plant.time_constant if self._filtered else 0.0
+        self._current_lag = plant.current_time_constant
+        self._lagging = self._current_lag > 0.0
         self._integral_rate = gain / plant.velocity_integral_time if plant.velocity_integral_time > 0.0 else 0.0
         self._limit = min(STRONGEST, plant.torque_limit / plant.torque_per_acceleration)
         self._edge = self._limit * (1.0 - 1e-9)
@@ -120,13 +130,15 @@ class CascadedDrive:
         self._wanted = wanted = command + additive_velocity
         self._setpoint = self._setpoint + additive_velocity if self._filtered else wanted
         self._integral += additive
+        self._impulse = 0.0
         if not (self._slide(0) if self._direction else self._stand(0)):
             self._halve(1)
         self._setpoint -= additive_velocity
         self._integral -= additive
         if not self._dry and -NEGLIGIBLE < self.velocity < NEGLIGIBLE:
             self._come_to_rest()
-        self.torque = self._motor * self._per_acceleration
+        mean = self._impulse / self._cycle_time
+        self.torque = max(-self._limit, min(self._limit, mean)) * self._per_acceleration
         if self._half_play:
             self._take_load()
             position = self.load_position if self._encoder_at_load else self._motor_position
@@ -176,7 +188,7 @@ class CascadedDrive:
             motor += mp * p + mr * r + mq * q + mn * n
             y += yn * n
             x += xn * n
-        crosses = False
+        crosses, dry_mean = False, direction * dry
         if v * direction < far or (v + y) * direction < far:
             change = self._friction_change(level, v, y, dry, n * duration)
             if change is None:
@@ -184,6 +196,7 @@ class CascadedDrive:
             motor += mf * change
             y += yf * change
             x += xf * change
+            dry_mean += change
             crosses = (v + y) * direction < 0.0
             if crosses and level < FINEST:
                 return False
@@ -199,6 +212,7 @@ class CascadedDrive:
         self._integral = new_integral
         self._setpoint = new_p + v + y
         self._motor = motor if self._lagging else asked
+        self._impulse += y + dry_mean * duration + self._viscous * (v * duration + x)
         if crosses:
             self._pass_zero(v, v + y, duration)
         else:
@@ -235,7 +249,7 @@ class CascadedDrive:
 
     def _stand(self, level: int) -> bool:
         """One step at rest; the axis breaks away at the end of a shortest step."""
-        _, decay, ip, ir, _, _, stand_lag = self._transitions[level]
+        duration, decay, ip, ir, _, _, stand_lag = self._transitions[level]
         edge, gain, static = self._edge, self._gain, self._static
         w, u, integral, motor = self._setpoint, self._wanted, self._integral, self._motor
         asked = gain * w + integral
@@ -261,10 +275,28 @@ class CascadedDrive:
         holds = -static <= motor <= static
         if level < FINEST and not holds:
             return False
+        self._impulse += self._impulse_at_rest(side, duration, (w, integral), (new_w, new_integral))
+        if self._lagging:
+            self._impulse -= self._current_lag * (motor - start)
         self._setpoint, self._integral, self._motor = new_w, new_integral, motor
         if not holds:
             self._direction = copysign(1.0, motor)
         return True
+
+    def _impulse_at_rest(
+        self, side: int, duration: float, begin: tuple[float, float], end: tuple[float, float]
+    ) -> float:
+        """What the velocity controller asks for, summed up over a step at rest; by its values and slopes at both ends.
+
+        `begin`, `end`: set velocity and integral. A current loop puts it out later: Ti m' = asked - m.
+        """
+        if side:
+            return side * self._limit * duration
+        values = [self._gain * w + integral for w, integral in (begin, end)]
+        slopes = [
+            self._gain * (self._wanted - w) * self._filter_rate + self._integral_rate * w for w, _ in (begin, end)
+        ]
+        return 0.5 * duration * sum(values) + duration * duration / 12.0 * (slopes[0] - slopes[1])
 
     def _integral_at_limit(self, level: int, side: int, p: float, new_p: float, free: float) -> float | None:
         """The integral after a step that begins at the torque limit `side` or, from 0, ends at one.

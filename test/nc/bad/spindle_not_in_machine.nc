@@ -1,3 +1,3 @@
-; P-ERR-20180 spindle_not_in_machine.nc line 2 column 5 'N10 S3[M03 REV1000]': spindle S3 is not in the machine; spindles of this channel: S, S2
+; P-ERR-20180 spindle_not_in_machine.nc line 2 column 5 'N10 S3[M03 REV1000]': spindle S3 does not belong to this channel; its spindles are: S, S2
 N10 S3[M03 REV1000]
 M30

@@ -19,4 +19,6 @@ N150 S2[G136=0] (Change weighting to 0%)
 N160 S1[G135] (Activate with default weighting 100% for S1)
 N170 S1[ g136 = 12.5 G137 ] S2[G0135] X40 S[REV500]
 N180 G136X1G135Y2
+N185 G136 X100.5
+N187 S[G136=136]
 N190 M30

@@ -5,15 +5,14 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 from matplotlib.ticker import MaxNLocator
 
-from figures.colours import EDGE, FAINT, GRID, INK, PAPER, SOFT
-from figures.scenario_head import FigureScenario
+from cnc_ptp.plots.colours import EDGE, FAINT, GRID, INK, PAPER, SOFT
 
 POINTS_PER_INCH = 72
 WIDTH, LEFT, RIGHT = 800.0, 66.0, 66.0
@@ -28,13 +27,23 @@ TITLE_OFFSET = 7.0
 """Of a plot's title above the plot."""
 
 
+class Titled(Protocol):
+    """What stands above the plots."""
+
+    @property
+    def title(self) -> str: ...
+
+    @property
+    def caption(self) -> str: ...
+
+
 class Sheet:
     """The card with title and caption; below them `room` points are left for plots, from `upper` on.
 
     Lengths are points from the upper left corner.
     """
 
-    def __init__(self, figure: FigureScenario, room: float) -> None:
+    def __init__(self, figure: Titled, room: float) -> None:
         caption = wrapped(figure.caption)
         self.upper = TITLE + CAPTION_LINE * len(caption)
         self.height = self.upper + room + BOTTOM

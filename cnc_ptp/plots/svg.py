@@ -10,7 +10,7 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from figures.colours import DARK
+from cnc_ptp.plots.colours import DARK
 
 FONTS = '"Helvetica Neue", Helvetica, Arial, "Liberation Sans", "DejaVu Sans", sans-serif'
 SETTINGS: dict[Any, Any] = {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import get_type_hints
 
 from cnc_ptp.machine.blocks import AxisBlock, SpindleBlock
-from figures.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
+from cnc_ptp.plots.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
 
 
 @dataclass(frozen=True, slots=True)

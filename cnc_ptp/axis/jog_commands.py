@@ -1,0 +1,82 @@
+"""Jogging: endless motion at a velocity, on a linear axis up to its soft limit (PLCopen MC_MoveVelocity)."""
+
+from __future__ import annotations
+
+from math import copysign
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.faults import COMPENSATION_RUNS, NOT_READY, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.axis.ptp import Job
+from cnc_ptp.axis.ptp_commands import refuse_other_source
+from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.axis.states import state_name
+
+JOG = "jog"
+
+
+class JogCommands:
+    """`jog`. Its job leads to the soft limit, so that the axis comes to rest there whatever override and speed are."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._axis = axis
+        self._job: Job | None = None
+
+    def do_jog(self, cycle: int, *, velocity: float) -> str | None:
+        """Moves at `velocity` (mm/s, deg/s; its sign is the direction) until another one comes; 0 ends the jog.
+
+        Refusals: 23003 – 23005, 23011, 23015, 23027, 23040, 120002, 120003. A velocity of 0 is never refused: it halts
+        a jog, and leaves all other motion alone.
+        """
+        if velocity == 0.0:
+            self._end(cycle)
+            return None
+        axis = self._axis
+        self._check_state()
+        limits, warning = axis.checks.rescaled_jerk(JOG, axis.checks.dynamics(JOG, {"velocity": abs(velocity)}))
+        end = self._end_of_range(velocity)
+        self._check_room(cycle, end, velocity)
+        if axis.ptp.brakes_to(cycle, end):
+            return f"axis {axis.name}: {JOG} changes nothing: the axis brakes to its soft limit {end} {axis.unit}"
+        axis.absorb(cycle)
+        axis.ptp.lead_on(cycle, end, limits)
+        self._job = axis.ptp.job
+        axis.target_window.watch()
+        axis.has_been_stopped = False
+        axis.state = S.CONTINUOUS_MOTION
+        return warning
+
+    def _end(self, cycle: int) -> None:
+        """A halt of the jog; it may be led on while it brakes."""
+        if self._jogs():
+            self._axis.stop(cycle, locks=False)
+            self._axis.state = S.DISCRETE_MOTION
+            self._axis.has_been_stopped = True
+
+    def _jogs(self) -> bool:
+        return self._axis.state == S.CONTINUOUS_MOTION and self._job is not None and self._axis.ptp.job is self._job
+
+    def _brakes(self) -> bool:
+        """A jog has ended, and the axis is still on its ramp."""
+        return self._axis.state == S.DISCRETE_MOTION and self._axis.ptp.halts(self._job)
+
+    def _check_state(self) -> None:
+        axis = self._axis
+        refuse_other_source(axis, JOG)
+        if axis.state != S.STANDSTILL and not self._jogs() and not self._brakes():
+            axis.refuse(JOG, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill or jogging")
+        if axis.compensation.active and axis.state != S.STANDSTILL:
+            axis.refuse(JOG, COMPENSATION_RUNS, "a position compensation is active")
+
+    def _end_of_range(self, velocity: float) -> float:
+        parameters = self._axis.parameters
+        return parameters.soft_limit_positive if velocity > 0.0 else parameters.soft_limit_negative
+
+    def _check_room(self, cycle: int, end: float, velocity: float) -> None:
+        """Raises 120002 and 120003 where the axis stands at its soft limit, or beyond it, and is to go on outwards."""
+        axis = self._axis
+        room = copysign(1.0, velocity) * (end - axis.setpoint(cycle)[0])
+        if room <= axis.parameters.encoder_increment and axis.state == S.STANDSTILL:
+            positive = velocity > 0.0
+            name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
+            reason = f"the axis is at its {name} soft limit {end} {axis.unit} ({parameter})"
+            axis.refuse(JOG, SOFT_LIMIT_POSITIVE if positive else SOFT_LIMIT_NEGATIVE, reason)

@@ -1,0 +1,75 @@
+"""What the shell completes: units of the running machine or of --machine, their commands and arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import click
+from click.shell_completion import CompletionItem
+
+from cnc_ptp.errors import CncError
+
+PATIENCE = 1.5
+"""Seconds that a running machine is looked for."""
+
+
+def complete_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    return matching(unit_kinds_of(context), incomplete)
+
+
+def complete_axis(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    axes = {unit: kind for unit, kind in unit_kinds_of(context).items() if kind == "axis"}
+    return matching(axes, incomplete)
+
+
+def complete_command(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Commands of the unit that have a service, with the names of their arguments."""
+    from cnc_ptp.nodes.machine_client import arguments_of, services_of
+
+    unit = context.params["unit"]
+    kind = unit_kinds_of(context).get(unit)
+    if kind is None:
+        return []
+    told = {command: " ".join(arguments_of(kind, unit, command)) for command in services_of(kind)}
+    return matching(told, incomplete)
+
+
+def complete_word(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Names of arguments that are not given yet, and their values where there is a choice."""
+    from cnc_ptp.nodes.machine_client import arguments_of
+
+    unit, command = context.params["unit"], context.params["command"]
+    kind = unit_kinds_of(context).get(unit)
+    try:
+        known = {} if kind is None else arguments_of(kind, unit, command)
+    except CncError:
+        return []
+    given = {word.partition("=")[0] for word in context.params.get("words") or ()}
+    words: dict[str, str] = {}
+    for name, argument in known.items():
+        values: Iterable[str] = ("on", "off") if argument.kind == "switch" else argument.choices
+        if incomplete.startswith(f"{name}="):
+            words |= {f"{name}={value}": "" for value in values}
+        elif name not in given:
+            words[f"{name}="] = argument.kind if argument.required else f"{argument.kind}, may be left out"
+    return matching(words, incomplete)
+
+
+def matching(words: Mapping[str, str], incomplete: str) -> list[CompletionItem]:
+    return [CompletionItem(word, help=text or None) for word, text in words.items() if word.startswith(incomplete)]
+
+
+def unit_kinds_of(context: click.Context) -> dict[str, str]:
+    """Unit -> kind; nothing where neither a machine file nor a running machine can be asked."""
+    try:
+        if context.params.get("machine"):
+            from cnc_ptp.machine.wiring import unit_kinds
+            from cnc_ptp.parameters import read_machine
+
+            return unit_kinds(read_machine(context.params["machine"]))
+        from cnc_ptp.nodes.machine_client import connected
+
+        with context.scope(cleanup=False), connected(patience=PATIENCE) as client:
+            return dict(client.kinds)
+    except CncError:
+        return {}

@@ -1,0 +1,65 @@
+"""`cnc_ptp do`: one command to a unit of a running machine."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Sequence
+
+from rich.console import Console
+
+from cnc_ptp.commands.command_words import read_arguments
+from cnc_ptp.commands.console import RUN_FAILED, print_error
+from cnc_ptp.commands.unit_table import line
+from cnc_ptp.errors import CncError
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.nodes.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
+
+
+def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
+    """Gives the command and prints the answer. Status 1 when it is refused, or fails while it is waited for."""
+    with connected() as client:
+        kind = client.require_unit(unit)
+        arguments = read_arguments(kind, unit, command, words, arguments_of(kind, unit, command))
+        waiting = Waiting(client, unit) if wait and kind != "plc" else None
+        try:
+            answer = client.ask(unit, command, arguments)
+        except CncError as error:
+            if error.error_id != NO_ANSWER:
+                raise
+            print_error(error)
+            return RUN_FAILED
+        if not answer.accepted:
+            print_error(CncError(answer.error_id, answer.message))
+            return RUN_FAILED
+        console = Console(highlight=False, soft_wrap=True)
+        console.print(f"{unit}: {command} accepted, acts at cycle {answer.cycle}", markup=False)
+        if answer.message:
+            console.print(f"warning: {answer.message}", style="yellow", markup=False)
+        return 0 if waiting is None else waiting.until_settled(answer.cycle)
+
+
+class Waiting:
+    """Waits until a unit has done what it was told."""
+
+    def __init__(self, client: MachineClient, unit: str) -> None:
+        self._client = client
+        self._unit = unit
+        self._blocks = client.look_at([unit])
+
+    def until_settled(self, cycle: int) -> int:
+        """Returns the exit status; Ctrl-C ends the waiting, not the motion."""
+        with EndRequest() as end:
+            while not end.given and not self._settled_after(cycle):
+                self._client.spin_for(0.02)
+            if end.given:
+                name = signal.Signals(end.number).name
+                print(f"{self._unit}: not waited for any more ({name}); it goes on")
+                return 128 + end.number
+        view = self._blocks.view(self._unit)
+        assert view is not None
+        print(line(view))
+        return RUN_FAILED if view.error_id else 0
+
+    def _settled_after(self, cycle: int) -> bool:
+        view = self._blocks.view(self._unit)
+        return view is not None and view.cycle > cycle and (view.settled or view.error_id != 0)

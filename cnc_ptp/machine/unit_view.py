@@ -1,0 +1,109 @@
+"""What people look at of a unit: state, position, speed and more out of its newest block."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.axis.states import AxisStateCode, state_name
+from cnc_ptp.machine.blocks import ChannelStateCode
+
+STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
+
+
+@dataclass(frozen=True, slots=True)
+class UnitView:
+    """One unit at the end of a block; None and empty where its kind has no such thing."""
+
+    name: str
+    kind: str
+    state: str
+    busy: bool
+    """It moves, turns, or runs a program."""
+    settled: bool
+    """It stands, turns with the commanded speed, or has no program under way."""
+    override: float
+    error_id: int
+    cycle: int
+    """After the last one of the block."""
+    stamp: float
+    """Of that cycle, s since 1970."""
+    position: float | None = None
+    unit: str = ""
+    """mm or deg."""
+    speed: float | None = None
+    speed_unit: str = ""
+    following_error: float | None = None
+    line: int = 0
+    blocks_done: int = 0
+    blocks_total: int = 0
+
+
+def view_of(name: str, kind: str, block: Any, *, rotary: bool = False) -> UnitView:
+    """`block`: AxisBlock, SpindleBlock or ChannelBlock, or its message; `rotary` for an axis in degrees."""
+    common: dict[str, Any] = {
+        "name": name,
+        "kind": kind,
+        "override": block.override_percent[-1],
+        "error_id": block.error_id[-1],
+        "cycle": block.first_cycle + block.count,
+        "stamp": _stamp(block),
+    }
+    return VIEWS[kind](block, common, "deg" if rotary else "mm")
+
+
+def _axis_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
+    state, speed = AxisStateCode(block.state[-1]), block.set_velocity[-1]
+    busy = speed != 0.0 or state not in STANDING
+    return UnitView(
+        **common,
+        state=state_name(state),
+        busy=busy,
+        settled=not busy,
+        position=block.actual_position[-1],
+        unit=unit,
+        speed=block.actual_velocity[-1],
+        speed_unit=f"{unit}/s",
+        following_error=block.following_error[-1],
+    )
+
+
+def _spindle_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
+    state, speed = AxisStateCode(block.state[-1]), block.set_speed_rpm[-1]
+    busy = speed != 0.0 or state not in STANDING
+    turns = state == AxisStateCode.CONTINUOUS_MOTION and block.speed_reached[-1]
+    return UnitView(
+        **common,
+        state=state_name(state),
+        busy=busy,
+        settled=not block.gear_change_active[-1] and (turns or not busy),
+        position=block.actual_position_deg[-1],
+        unit="deg",
+        speed=block.actual_speed_rpm[-1],
+        speed_unit="rpm",
+        following_error=block.following_error_deg[-1],
+    )
+
+
+def _channel_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
+    return UnitView(
+        **common,
+        state=ChannelStateCode(block.state[-1]).name.capitalize(),
+        busy=not block.done,
+        settled=block.done,
+        speed=block.path_velocity[-1] * 60.0,
+        speed_unit="mm/min",
+        line=block.line[-1],
+        blocks_done=block.blocks_done,
+        blocks_total=block.blocks_total,
+    )
+
+
+VIEWS = {"channel": _channel_view, "axis": _axis_view, "spindle": _spindle_view}
+"""By kind of unit, in the order in which people look at them."""
+
+
+def _stamp(block: Any) -> float:
+    """Of the message; 0 for a block that has none."""
+    header = getattr(block, "header", None)
+    return 0.0 if header is None else float(header.stamp.sec) + header.stamp.nanosec * 1e-9

@@ -1,0 +1,46 @@
+"""How the velocity along the path changes: with limited jerk, or with steps of the acceleration (P-CHAN-00071)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from cnc_ptp.motion import (
+    Limits,
+    Profile,
+    plan_rest_to_rest,
+    plan_to_position,
+    plan_to_velocity,
+    step_stop_way,
+    step_to_position,
+    step_to_velocity,
+    stop_way,
+)
+
+
+class Planner(NamedTuple):
+    """Profiles from a path length s, a velocity v and an acceleration a; mm and s."""
+
+    from_rest: Callable[[float, float, Limits], Profile]
+    """Start, target."""
+    to_position: Callable[[float, float, float, float, Limits], Profile]
+    """s, v, a, target."""
+    to_rest: Callable[[float, float, float, Limits], Profile]
+    """s, v, a."""
+    stop_way: Callable[[float, float, Limits], float]
+    """v, a."""
+
+
+JERK_LIMITED = Planner(
+    from_rest=plan_rest_to_rest,
+    to_position=plan_to_position,
+    to_rest=lambda s, v, a, limits: plan_to_velocity(s, v, a, 0.0, limits),
+    stop_way=lambda v, a, limits: stop_way(v, a, limits.deceleration, limits.jerk),
+)
+STEPS = Planner(
+    from_rest=lambda start, target, limits: step_to_position(start, 0.0, target, limits),
+    to_position=lambda s, v, a, target, limits: step_to_position(s, v, target, limits),
+    to_rest=lambda s, v, a, limits: step_to_velocity(s, v, 0.0, limits),
+    stop_way=lambda v, a, limits: step_stop_way(v, limits.deceleration),
+)
+"""The acceleration steps, so the one before does not count."""

@@ -1,0 +1,119 @@
+"""Commands in words: name = value, with units, for tables and marks."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from cnc_ptp.machine.blocks import CommandRecord
+
+WAY = (
+    "target",
+    "position",
+    "distance",
+    "length",
+    "difference",
+    "activation_position",
+    "slave_offset",
+    "target_position",
+)
+UNITS = {
+    **dict.fromkeys(WAY, "{way}"),
+    "velocity": "{way}/s",
+    "process_velocity": "{way}/s",
+    "velocity_increase": "{way}/s",
+    "acceleration": "{way}/s²",
+    "deceleration": "{way}/s²",
+    "acc_bound": "{way}/s²",
+    "jerk": "{way}/s³",
+    "percent": "%",
+    "weight_percent": "%",
+    "max_acceleration": "°/s²",
+}
+"""Units of arguments by name; those that end in the unit say it themselves."""
+SUFFIXES = {"_rpm": "rpm", "_deg": "°", "_percent": "%", "_ms": "ms", "_us": "µs", "_s": "s"}
+MAIN = {
+    "factor": "",
+    "target": "",
+    "distance": "",
+    "position": "",
+    "percent": " %",
+    "difference": "",
+    "weight_percent": " %",
+    "speed_rpm": " rpm",
+}
+"""The arguments that stand for a command in brief, and their units where these are not the axis'."""
+FEW = 6
+
+
+def command_words(command: CommandRecord, units: Mapping[str, str]) -> str:
+    """`move absolute target = 100 mm, velocity = 50 mm/s`; `units`: mm or deg by axis."""
+    arguments = argument_words(command.arguments_json, units.get(command.target, ""))
+    return " ".join(filter(None, [command.command.replace("_", " "), arguments]))
+
+
+def brief(command: CommandRecord) -> str:
+    """`move_absolute` with its target 1000.0 becomes 'move absolute 1000'; dynamics are left out."""
+    arguments = json_object(command.arguments_json) or {}
+    shown = [_value("enabled", arguments["enabled"], "")] if "enabled" in arguments else []
+    shown += [f"{arguments[name]:g}{unit}" for name, unit in MAIN.items() if _is_number(arguments.get(name))]
+    return " ".join([command.command.replace("_", " "), *shown]).replace("-", "−")
+
+
+def argument_words(arguments_json: str, way: str) -> str:
+    """Arguments as `name = value unit`; `way`: mm, deg or empty. What is no object of JSON stays as it is."""
+    values = json_object(arguments_json)
+    if values is None:
+        return arguments_json
+    return ", ".join(f"{_label(name)} = {_value(name, value, way)}" for name, value in values.items())
+
+
+def json_object(text: str) -> dict[str, Any] | None:
+    try:
+        values = json.loads(text)
+    except ValueError:
+        return None
+    return values if isinstance(values, dict) else None
+
+
+def shortened(text: str, letters: int) -> str:
+    return text if len(text) <= letters else text[: letters - 1] + "…"
+
+
+def _label(name: str) -> str:
+    """Without the unit, which stands behind the value."""
+    suffix = next((suffix for suffix in SUFFIXES if name.endswith(suffix)), "")
+    return name.removesuffix(suffix).replace("_", " ")
+
+
+def _value(name: str, value: Any, way: str) -> str:
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, int | float):
+        return f"{value:.10g} {_unit(name, way)}".strip()
+    if isinstance(value, dict):
+        return ", ".join(f"{_label(key)} {_value(key, inner, way)}" for key, inner in value.items()) or "none"
+    if isinstance(value, list):
+        return _list(value)
+    lines = str(value).splitlines()
+    return "none" if value is None else f"({len(lines)} lines)" if len(lines) > 1 else str(value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _list(values: list[Any]) -> str:
+    """Few plain values one after another; of more, and of rows, the number."""
+    if any(isinstance(value, list | dict) for value in values):
+        return f"({len(values)} rows)"
+    if len(values) > FEW:
+        return f"({len(values)} values)"
+    return " ".join(_value("", value, "") for value in values) or "none"
+
+
+def _unit(name: str, way: str) -> str:
+    if name in UNITS:
+        return UNITS[name].format(way=way) if way else UNITS[name] if "{" not in UNITS[name] else ""
+    return next((unit for suffix, unit in SUFFIXES.items() if name.endswith(suffix)), "")

@@ -1,0 +1,126 @@
+"""Fields of a recording by name: `x/set_velocity`, or `set_velocity` of all units that move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
+from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, USUAL, Line, Row, axis_label, standing, time_rows
+from cnc_ptp.recording.selection import NOT_RECORDED, nearest
+
+PREFIXES = {"set_": SET, "actual_": ACTUAL}
+SUFFIXES = {"_rpm": "rpm", "_deg_s2": "deg/s²", "_deg": "deg", "_percent": "%", "_modulo": "{way}"}
+MEASURES = {
+    "position": "{way}",
+    "velocity": "{way}/s",
+    "acceleration": "{way}/s²",
+    "jerk": "{way}/s³",
+    "following_error": "{way}",
+    "command_velocity": "{way}/s",
+    "feedforward_velocity": "{way}/s",
+    "additive_velocity": "{way}/s",
+    "additive_torque": "{torque}",
+    "torque": "{torque}",
+    "torque_digits": "digits of the drive",
+    "friction_current": "digits of the drive",
+    "path_velocity": "mm/s",
+    "programmed_feed": "mm/s",
+    "distance_to_go": "mm",
+}
+
+
+def usual_rows(recorded: Recorded, units: Mapping[str, str]) -> list[Row]:
+    """Of each axis that moves position, velocity, acceleration and following error, of each spindle the speed."""
+    spindles = recorded.of_type(SPINDLE_STATE)
+    return [
+        row
+        for row in time_rows(recorded, units, {})
+        if row.title in USUAL and (row.unit not in spindles or row.title == "speed")
+    ]
+
+
+def chosen_rows(
+    recorded: Recorded, words: Sequence[str], units: Mapping[str, str], torques: Mapping[str, str]
+) -> list[Row]:
+    """A row for each quantity, with the fields of all units that were named. Raises CncError 26011."""
+    rows = _rows_by_quantity(recorded, words, units, torques)
+    return [_of_one_unit(row) for row in rows]
+
+
+def _of_one_unit(row: Row) -> Row:
+    """Where all lines are of one unit, its name stands before the quantity and not at each line."""
+    units = {line.name.rpartition(" ")[0] if line.role else line.name for line in row.lines}
+    if len(units) > 1:
+        return row
+    lines = [replace(line, name=line.role or row.title) for line in row.lines]
+    return replace(row, unit=units.pop(), lines=lines, legend=len(lines) > 1)
+
+
+def _rows_by_quantity(
+    recorded: Recorded, words: Sequence[str], units: Mapping[str, str], torques: Mapping[str, str]
+) -> list[Row]:
+    rows: dict[tuple[str, str], Row] = {}
+    for word in words:
+        for unit, field in _fields(recorded, word):
+            title, role = quantity(field)
+            ways = {"way": "deg" if units.get(unit) == "deg" else "mm", "torque": torques.get(unit, "Nm or N")}
+            measure = measure_of(field, title).format(**ways)
+            row = rows.setdefault((title, measure), Row("", title.replace("_", " "), measure, legend=True))
+            name = " ".join(filter(None, [axis_label(unit), role]))
+            row.lines.append(Line(name, recorded.states[f"/{unit}/state"], field, role))
+    return list(rows.values())
+
+
+def quantity(field: str) -> tuple[str, str]:
+    """`set_speed_rpm` is `speed`, a set value."""
+    role = next((role for prefix, role in PREFIXES.items() if field.startswith(prefix)), OTHER)
+    name = field.removeprefix("set_").removeprefix("actual_")
+    suffix = next((suffix for suffix in SUFFIXES if name.endswith(suffix)), "")
+    return (name.removesuffix(suffix) if suffix != "_modulo" else name), role
+
+
+def measure_of(field: str, title: str) -> str:
+    suffix = next((unit for suffix, unit in SUFFIXES.items() if field.endswith(suffix)), "")
+    return suffix or MEASURES.get(title, "")
+
+
+def _fields(recorded: Recorded, word: str) -> Iterator[tuple[str, str]]:
+    """Unit and field of a word."""
+    units = {topic.removeprefix("/").removesuffix("/state"): rows for topic, rows in recorded.states.items()}
+    unit, _, field = word.strip("/").rpartition("/")
+    unit = unit.removesuffix("/state")
+    if not unit:
+        having = [name for name, rows in units.items() if field in names_of(rows)]
+        moving = [name for name in having if name not in standing(recorded)]
+        if field in units:
+            example = f"{field}/{names_of(units[field])[0]}"
+            raise _unnamed(recorded, f"'{field}' as a unit, not as a field; give one of its fields, {example}")
+        if not having:
+            raise _unknown(recorded, f"no field '{field}'", field, _all_names(units))
+        yield from ((name, field) for name in moving or having)
+        return
+    if unit not in units:
+        raise _unknown(recorded, f"no unit '{unit}' with states", unit, list(units))
+    if field not in names_of(units[unit]):
+        raise _unknown(recorded, f"no field '{field}' of '{unit}'", field, names_of(units[unit]))
+    yield unit, field
+
+
+def names_of(rows: Records) -> list[str]:
+    """Fields of a state that can be drawn."""
+    return [name for name in rows.dtype.names or () if not name.startswith("header.") and name != "cycle"]
+
+
+def _all_names(units: Mapping[str, Records]) -> list[str]:
+    return list(dict.fromkeys(name for rows in units.values() for name in names_of(rows)))
+
+
+def _unknown(recorded: Recorded, what: str, word: str, known: Sequence[str]) -> CncError:
+    return _unnamed(recorded, f"{what}{nearest(word, known)}")
+
+
+def _unnamed(recorded: Recorded, what: str) -> CncError:
+    return CncError(NOT_RECORDED, f"recording {recorded.path}: holds {what}; nothing was drawn")

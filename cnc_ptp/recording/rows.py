@@ -1,0 +1,132 @@
+"""What can be drawn of a recording over time: rows, one above the other, each with its lines.
+
+Reports and pictures draw the same rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+
+SET, ACTUAL, OTHER = "set", "actual", ""
+USUAL = ("position", "velocity", "acceleration", "following error", "speed")
+"""Titles of what a picture shows unless it is told otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A field of a unit's states; `role`: set value, actual value, or something else."""
+
+    name: str
+    rows: Records
+    field: str
+    role: str = OTHER
+    factor: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One plot: of which unit (empty: of several), what, in which unit of measurement."""
+
+    unit: str
+    title: str
+    measure: str
+    lines: list[Line] = field(default_factory=list)
+    legend: bool = False
+    """The lines have names of their own."""
+
+    @property
+    def heading(self) -> str:
+        """`X: position in mm`; rows of no unit have none before the colon."""
+        text = f"{self.title} in {self.measure}" if self.measure else self.title
+        return f"{self.unit}: {text}" if self.unit else text[:1].upper() + text[1:]
+
+
+def axis_label(name: str) -> str:
+    """As people write axes: `x` is X, longer names stay."""
+    return name.upper() if len(name) == 1 else name
+
+
+def moves(rows: Records) -> bool:
+    """True for an axis or a spindle whose position ever changes or that ever has a speed."""
+    names = rows.dtype.names or ()
+    places = [name for name in ("set_position", "actual_position", "set_position_deg") if name in names]
+    speeds = [name for name in ("set_velocity", "set_speed_rpm", "actual_speed_rpm") if name in names]
+    return any(np.ptp(rows[name]) != 0.0 for name in places) or any(np.any(rows[name]) for name in speeds)
+
+
+def standing(recorded: Recorded) -> list[str]:
+    """Axes and spindles that never move."""
+    units = {**recorded.of_type(SPINDLE_STATE), **recorded.of_type(AXIS_STATE)}
+    return [name for name, rows in units.items() if not moves(rows)]
+
+
+def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[Row]:
+    """All rows that show something: nothing of axes and spindles that never move, nothing that is 0 throughout."""
+    channels = recorded.of_type(CHANNEL_STATE)
+    still = standing(recorded)
+    axes = {name: rows for name, rows in recorded.of_type(AXIS_STATE).items() if name not in still}
+    spindles = {name: rows for name, rows in recorded.of_type(SPINDLE_STATE).items() if name not in still}
+    for name, rows in channels.items():
+        feed = [Line("set", rows, "programmed_feed", SET, 60.0), Line("actual", rows, "path_velocity", ACTUAL, 60.0)]
+        yield Row(name, "feed", "mm/min", feed)
+    overrides = [Line(name, rows, "override_percent") for name, rows in {**channels, **axes, **spindles}.items()]
+    if overrides:
+        yield Row("", "override", "%", overrides, legend=True)
+    for name, rows in channels.items():
+        yield Row(name, "program line", "", [Line("line", rows, "line")])
+    for name, rows in spindles.items():
+        yield from _spindle_rows(name, rows)
+    for name, rows in axes.items():
+        yield from _axis_rows(name, rows, units.get(name, "mm"))
+        yield from _control_rows(name, rows, units.get(name, "mm"), torque_units.get(name, "Nm or N"))
+
+
+def _spindle_rows(name: str, rows: Records) -> Iterator[Row]:
+    yield Row(name, "speed", "rpm", _set_and_actual(rows, "set_speed_rpm", "actual_speed_rpm"))
+    angle = _set_and_actual(rows, "set_position_deg", "actual_position_deg")
+    if np.any(rows["target_position_deg"] != rows["set_position_deg"]):
+        angle.append(Line("target", rows, "target_position_deg"))
+    if any(np.any(rows[line.field]) for line in angle):
+        yield Row(name, "angle", "deg", angle, legend=len(angle) > 2)
+    yield from _used(Row(name, "following error", "deg", [Line("following error", rows, "following_error_deg")]))
+
+
+def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
+    label = axis_label(name)
+    yield Row(label, "position", unit, _set_and_actual(rows, "set_position", "actual_position"))
+    yield Row(label, "velocity", f"{unit}/s", _set_and_actual(rows, "set_velocity", "actual_velocity"))
+    yield Row(label, "acceleration", f"{unit}/s²", [Line("set", rows, "set_acceleration", SET)])
+    yield Row(label, "jerk", f"{unit}/s³", [Line("set", rows, "set_jerk", SET)])
+    yield Row(label, "following error", unit, [Line("following error", rows, "following_error")])
+
+
+def _control_rows(name: str, rows: Records, unit: str, torque_unit: str) -> Iterator[Row]:
+    """What goes to the drive besides the command of the position controller."""
+    feedforward = [
+        Line("to the position controller", rows, "feedforward_velocity", SET),
+        Line("to the drive", rows, "additive_velocity", ACTUAL),
+    ]
+    torque = [Line("additive", rows, "additive_torque", SET), Line("drive", rows, "actual_torque", ACTUAL)]
+    friction = [Line("friction compensation", rows, "friction_current")]
+    yield from _used(Row(axis_label(name), "feedforward", f"{unit}/s", feedforward, legend=True))
+    yield from _used(Row(axis_label(name), "torque", torque_unit, torque, legend=True))
+    yield from _used(Row(axis_label(name), "friction compensation, current", "digits of the drive", friction))
+
+
+def _set_and_actual(rows: Records, set_field: str, actual_field: str) -> list[Line]:
+    return [Line("set", rows, set_field, SET), Line("actual", rows, actual_field, ACTUAL)]
+
+
+def _used(row: Row) -> Iterator[Row]:
+    """The row with the lines that the recording has and that are not 0 throughout, if there are any."""
+    lines = [
+        line for line in row.lines if line.field in (line.rows.dtype.names or ()) and np.any(line.rows[line.field])
+    ]
+    if lines:
+        yield Row(row.unit, row.title, row.measure, lines, row.legend)

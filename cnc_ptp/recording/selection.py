@@ -1,0 +1,75 @@
+"""A part of a recording: from one time to another, some units only."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+
+NOT_RECORDED = 26011
+
+
+def selected(
+    recorded: Recorded, *, begin: float | None = None, end: float | None = None, units: Sequence[str] = ()
+) -> Recorded:
+    """The states, events and commands from `begin` up to `end` in s of axes and spindles `units`.
+
+    Channels stay. Raises CncError 26011 for a unit that is not recorded and for a time in which there is nothing.
+    """
+    if units:
+        recorded = _of_units(recorded, units)
+    if begin is None and end is None:
+        return recorded
+    cycle_time = recorded.cycle_time_ns * 1e-9
+    low = -np.inf if begin is None else begin / cycle_time - 1e-6
+    high = np.inf if end is None else end / cycle_time - 1e-6
+    states = {topic: _between(rows, low, high) for topic, rows in recorded.states.items()}
+    if not any(len(rows) for rows in states.values()):
+        raise CncError(NOT_RECORDED, f"recording {recorded.path}: {_nothing(recorded, begin, end)}; nothing was drawn")
+    return replace(
+        recorded,
+        states={topic: rows for topic, rows in states.items() if len(rows)},
+        events=[event for event in recorded.events if low <= event.cycle <= high],
+        commands=[command for command in recorded.commands if low <= command.cycle <= high],
+    )
+
+
+def nearest(word: str, known: Collection[str]) -> str:
+    """`; did you mean 'x' or 'y'?` with the names that are most like a word, otherwise all of them: `; known are …`."""
+    close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
+    if close:
+        return f"; did you mean {' or '.join(repr(name) for name in close)}?"
+    return f"; known are {', '.join(known)}" if known else "; there are none"
+
+
+def _of_units(recorded: Recorded, units: Sequence[str]) -> Recorded:
+    known = [*recorded.of_type(AXIS_STATE), *recorded.of_type(SPINDLE_STATE)]
+    for unit in units:
+        if unit not in known:
+            hint = nearest(unit, known)
+            raise CncError(
+                NOT_RECORDED, f"recording {recorded.path}: holds no axis or spindle '{unit}'{hint}; nothing was drawn"
+            )
+    kept = {*units, *recorded.of_type(CHANNEL_STATE)}
+    states = {topic: rows for topic, rows in recorded.states.items() if topic[1:].removesuffix("/state") in kept}
+    commands = [command for command in recorded.commands if command.target not in known or command.target in units]
+    return replace(recorded, states=states, commands=commands)
+
+
+def _between(rows: Records, low: float, high: float) -> Records:
+    return rows[(rows["cycle"] >= low) & (rows["cycle"] <= high)]
+
+
+def _nothing(recorded: Recorded, begin: float | None, end: float | None) -> str:
+    cycle_time = recorded.cycle_time_ns * 1e-9
+    asked = f"{'the begin' if begin is None else f'{begin:g} s'} to {'the end' if end is None else f'{end:g} s'}"
+    if not recorded.states:
+        return "holds no states"
+    first = min(int(rows["cycle"].min()) for rows in recorded.states.values())
+    return f"nothing from {asked}, it goes from {first * cycle_time:g} s to {recorded.last_cycle * cycle_time:g} s"

@@ -1,0 +1,104 @@
+"""Commands as people type them, checked before anything is sent."""
+
+from pathlib import Path
+
+import pytest
+
+from cnc_ptp.commands.command_words import read_arguments
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.machine_client import arguments_of, request_of, services_of
+
+
+def read(kind, command, *words, unit="u"):
+    return read_arguments(kind, unit, command, words, arguments_of(kind, unit, command))
+
+
+@pytest.mark.parametrize(
+    ("kind", "command", "words", "arguments"),
+    [
+        ("axis", "move_absolute", ["target=100", "velocity=50"], {"target": 100.0, "velocity": 50.0}),
+        ("axis", "move_absolute", ["-12.5", "velocity=1e2"], {"target": -12.5, "velocity": 100.0}),
+        ("axis", "halt", [], {}),
+        ("axis", "power", ["off"], {"enabled": False}),
+        ("axis", "power", ["on=TRUE"], {"enabled": True}),
+        ("axis", "set_override_type", ["0x3"], {"type": 3}),
+        ("axis", "couple", ["master=x", "factor=-0.5"], {"master": "x", "factor": -0.5}),
+        ("axis", "decouple", ["target=0"], {"target": 0.0}),
+        ("axis", "couple_cam", ["x", "file=/a/cam.csv"], {"master": "x", "file": "/a/cam.csv"}),
+        ("spindle", "start", ["direction=cw", "speed_rpm=500"], {"direction": "cw", "speed_rpm": 500.0}),
+        ("channel", "mdi", ["G1 X10 F500"], {"text": "G1 X10 F500"}),
+        ("channel", "mdi", ["S[G136=80]"], {"text": "S[G136=80]"}),
+        ("channel", "mdi", ["text=G1 X=1"], {"text": "G1 X=1"}),
+        ("channel", "load", ["a/b.nc"], {"program": str(Path.cwd() / "a" / "b.nc")}),
+        ("plc", "acknowledge", ["17"], {"id": 17}),
+    ],
+)
+def test_words_become_arguments_and_a_request(kind, command, words, arguments):
+    read_words = read(kind, command, *words)
+    assert read_words == arguments
+    assert {name: type(value) for name, value in read_words.items()} == {n: type(v) for n, v in arguments.items()}
+    request = request_of(services_of(kind)[command], read_words)
+    assert {name: getattr(request, name) for name in arguments} == arguments
+
+
+def test_a_request_says_what_it_has():
+    service = services_of("axis")["decouple"]
+    assert request_of(service, {"target": 0.0}).has_target and not request_of(service, {}).has_target
+
+
+@pytest.mark.parametrize(
+    ("kind", "command", "words", "text"),
+    [
+        ("axis", "move_absolute", [], "22001 axis u: move_absolute refused: argument 'target' is missing"),
+        ("axis", "move_absolute", ["far"], "22001 axis u: move_absolute refused: target = 'far' is not a number"),
+        ("axis", "move_absolute", ["nan"], "22001 axis u: move_absolute refused: target = nan is not finite"),
+        (
+            "axis",
+            "move_absolute",
+            ["1", "speed=2"],
+            "22001 axis u: move_absolute refused: unknown argument 'speed'; nothing was changed. Known: target, velocity, "
+            "acceleration, deceleration, jerk",
+        ),
+        (
+            "axis",
+            "move_absolute",
+            ["1", "target=2"],
+            "22001 axis u: move_absolute refused: argument 'target' is given twice; nothing was sent",
+        ),
+        (
+            "axis",
+            "couple",
+            ["x"],
+            "22001 axis u: couple refused: 'x' has no name; write name=value. Known: factor, master; nothing was sent",
+        ),
+        (
+            "axis",
+            "halt",
+            ["--now"],
+            "22001 axis u: halt refused: '--now' has no name; write name=value. Known: none; nothing was sent",
+        ),
+        ("axis", "power", ["maybe"], "22001 axis u: power refused: enabled = 'maybe' is not a switch"),
+        (
+            "axis",
+            "set_override_type",
+            ["1.5"],
+            "22001 axis u: set_override_type refused: type = '1.5' is not an integer",
+        ),
+        ("spindle", "start", ["direction=up", "speed_rpm=1"], "direction = 'up' is not cw or ccw"),
+        ("axis", "couple", ["master=x", "factor=1", "above=z"], "unknown argument 'above'"),
+        ("spindle", "stop", ["own=on"], "unknown argument 'own'"),
+        ("axis", "fly", [], "22002 axis u: unknown command 'fly'; nothing was sent. Known: "),
+        ("axis", "jog", ["5"], "22002 axis u: jog has no service, use: cnc_ptp jog u + --speed ..."),
+        ("axis", "lead", [], "22002 axis u: unknown command 'lead'; nothing was sent. Known: "),
+        (
+            "channel",
+            "acknowledge",
+            ["1"],
+            "22002 channel u: 'acknowledge' is a command of scenarios only; nothing was sent. Known: ",
+        ),
+    ],
+)
+def test_what_is_wrong_is_told_before_anything_is_sent(kind, command, words, text):
+    with pytest.raises(CncError) as caught:
+        read(kind, command, *words)
+    assert text in str(caught.value)

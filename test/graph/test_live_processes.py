@@ -1,0 +1,41 @@
+"""A standing machine of separate processes (run --stay): how it ends."""
+
+import signal
+import time
+
+import pytest
+from graph_support import Running, one_axis_machine, small_machine, verified
+from live_support import call, wait_for_machine
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_a_machine_of_processes_stays_until_it_is_told_to_end(moving, tmp_path):
+    graph = Running(one_axis_machine(tmp_path), "--stay")
+    try:
+        wait_for_machine()
+        if moving:
+            assert call("do", "x", "move_absolute", "target=250", "velocity=20").exit_code == 0
+        time.sleep(0.5)
+        graph.process.send_signal(signal.SIGTERM)
+        output = graph.finish(1 if moving else 0)
+    finally:
+        graph.end()
+    assert ("the machine was ended (SIGTERM) while all units stood" in output) is not moving
+    told = "failed: P-ERR-26106 the run was interrupted (SIGTERM); everything stops on its ramps"
+    assert (told in output) is moving
+    assert "program time" not in output
+
+
+def test_a_turning_spindle_comes_to_rest_on_its_ramp_before_its_node_ends(tmp_path):
+    """12,000 rpm need more time than axes that stand."""
+    path = tmp_path / "turning.mcap"
+    graph = Running(small_machine(tmp_path), "--stay", "--record", path)
+    try:
+        wait_for_machine()
+        assert call("do", "s", "start", "direction=cw", "speed_rpm=12000", "--wait").exit_code == 0
+        graph.process.send_signal(signal.SIGINT)
+        graph.finish(1)
+    finally:
+        graph.end()
+    speed = verified(path, whole=False).states["/s/state"]["set_speed_rpm"]
+    assert max(abs(speed)) > 10_000.0 and speed[-1] == 0.0

@@ -1,0 +1,154 @@
+"""What of a recording has a plot, columns as texts, commands in words."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from recording_support import smooth_run
+
+from cnc_ptp.machine.blocks import CommandRecord
+from cnc_ptp.recording.columns import STEPS, packed, unpacked
+from cnc_ptp.recording.command_words import argument_words, brief, command_words
+from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.report import report_page
+from cnc_ptp.recording.report_figures import path_figures, time_figure
+from cnc_ptp.recording.rows import standing, time_rows
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    smooth_run(tmp_path / "run.mcap", 0.5)
+    return read_recording(tmp_path / "run.mcap")
+
+
+def still(recorded, *units):
+    """The recording, in which these units stand."""
+    for unit in units:
+        rows = recorded.states[f"/{unit}/state"] = recorded.states[f"/{unit}/state"].copy()
+        for name in rows.dtype.names:
+            if name.startswith(("set_", "actual_", "following", "target", "distance")):
+                rows[name] = rows[name][0] if "position" in name else 0
+    return recorded
+
+
+def headings(recorded):
+    return [row.heading for row in time_rows(recorded, {}, {})]
+
+
+def test_what_stands_has_no_plot_and_is_named(recorded):
+    recorded = still(recorded, "y", "s")
+    assert standing(recorded) == ["s", "y"]
+    found = headings(recorded)
+    assert [heading for heading in found if heading.startswith(("Y:", "s:"))] == []
+    assert "X: position in mm" in found
+    [override] = [row for row in time_rows(recorded, {}, {}) if row.title == "override"]
+    assert [line.name for line in override.lines] == ["channel", "x", "z"]
+    assert "Without plots, as they do not move: s, y." in report_page(recorded)
+
+
+def test_spindle_has_angle_target_and_following_error_where_they_are_in_use(recorded):
+    assert [heading for heading in headings(recorded) if heading.startswith("s:")] == ["s: speed in rpm"]
+    rows = recorded.states["/s/state"] = recorded.states["/s/state"].copy()
+    rows["set_position_deg"] = np.linspace(0.0, 720.0, len(rows))
+    rows["target_position_deg"] = 765.0
+    rows["following_error_deg"][7] = 0.1
+    found = {row.title: [line.name for line in row.lines] for row in time_rows(recorded, {}, {}) if row.unit == "s"}
+    assert found == {
+        "speed": ["set", "actual"],
+        "angle": ["set", "actual", "target"],
+        "following error": ["following error"],
+    }
+
+
+def test_space_is_drawn_only_where_there_is_a_path_in_it(recorded):
+    assert len(path_figures(recorded, {})) == 2
+    assert len(path_figures(still(recorded, "z"), {})) == 1
+    assert path_figures(still(recorded, "y"), {}) == []
+
+
+def test_no_path_without_a_channel_that_moves_along_one(recorded):
+    rows = recorded.states["/channel/state"] = recorded.states["/channel/state"].copy()
+    rows["path_velocity"] = 0.0
+    assert path_figures(recorded, {}) == []
+
+
+def test_commands_are_marked_in_all_plots(recorded):
+    figure = time_figure(recorded, {})
+    assert [shape.x0 for shape in figure.layout.shapes] == [0.0, 0.01, 0.9]
+    assert {(shape.yref, shape.y0, shape.y1) for shape in figure.layout.shapes} == {("paper", 0, 1)}
+    [marks] = [trace for trace in figure.data if trace.meta == "commands"]
+    assert list(marks.customdata) == [
+        "channel load program = bracket.nc",
+        "channel start",
+        "x move absolute target = 9999",
+    ]
+    recorded.commands *= 200
+    for cycle, command in enumerate(recorded.commands):
+        recorded.commands[cycle] = CommandRecord(cycle, command.target, command.command, "{}", True, 0, "")
+    assert len(time_figure(recorded, {}).layout.shapes) == 0
+
+
+# commands in words
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ("{}", ""),
+        ('{"target": 100.0, "velocity": 50.5}', "target = 100 mm, velocity = 50.5 mm/s"),
+        ('{"acceleration": 1e6, "jerk": 5e7}', "acceleration = 1000000 mm/s², jerk = 50000000 mm/s³"),
+        ('{"percent": 75.0, "enabled": false}', "percent = 75 %, enabled = off"),
+        ('{"speed_rpm": 3000.0, "position": 90}', "speed = 3000 rpm, position = 90 mm"),
+        ('{"table": [[0, 1], [2, 3]], "above": ["x", "y"]}', "table = (2 rows), above = x y"),
+        ('{"cycles": [1, 2, 3, 4, 5, 6, 7]}', "cycles = (7 values)"),
+        ('{"text": "a\\nb", "source": null, "list": []}', "text = (2 lines), source = none, list = none"),
+        ('{"limits": {"max_speed_rpm": 5}}', "limits = max speed 5 rpm"),
+        ("{broken", "{broken"),
+        ("[1]", "[1]"),
+    ],
+)
+def test_arguments_have_names_and_units(arguments, words):
+    assert argument_words(arguments, "mm") == words
+
+
+def test_units_are_those_of_the_axis():
+    command = CommandRecord(1, "c", "move_relative", '{"distance": -90.0, "velocity": 5}', True, 0, "")
+    assert command_words(command, {"c": "deg"}) == "move relative distance = -90 deg, velocity = 5 deg/s"
+    assert command_words(command, {}) == "move relative distance = -90, velocity = 5"
+    assert brief(command) == "move relative −90"
+    assert brief(CommandRecord(1, "c", "power", '{"enabled": true}', True, 0, "")) == "power on"
+    assert brief(CommandRecord(1, "c", "odd", "[]", True, 0, "")) == "odd"
+
+
+# columns
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    values=st.lists(st.floats(-1e6, 1e6) | st.just(float("nan")), min_size=1, max_size=200),
+    turns=st.integers(0, 3),
+)
+def test_columns_keep_every_value_within_a_step(values, turns):
+    column = np.array(values)
+    for _ in range(turns):
+        column = np.cumsum(column)
+    text = packed(column)
+    again = unpacked(text)
+    finite = np.isfinite(column)
+    span = float(np.ptp(column[finite])) if finite.any() else 0.0
+    assert np.array_equal(np.isnan(again), ~finite)
+    assert np.all(
+        np.abs(again[finite] - column[finite]) <= 0.51 * span / STEPS + 1e-9 * np.abs(column[finite]) + 1e-300
+    )
+
+
+@given(values=st.lists(st.integers(1 - 2**30, 2**30 - 1), min_size=1, max_size=100))
+def test_whole_numbers_stay_exact(values):
+    assert unpacked(packed(np.array(values))).tolist() == [float(value) for value in values]
+
+
+def test_smooth_motion_takes_little_room():
+    """Ten minutes of a sine in cycles of 1 ms: 4.8 MB as numbers."""
+    time = np.arange(600_000) * 1e-3
+    assert len(packed(100.0 * np.sin(time))["text"]) < 200_000
+    assert len(packed(np.arange(600_000))["text"]) < 5_000
