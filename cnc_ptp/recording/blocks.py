@@ -141,12 +141,19 @@ def fill_states(kind: StateKind, messages: Records, rows: Records, cycles: Cycle
     for name in kind.columns:
         messages[name] = rows[name].reshape(-1)
     if kind.derived:
-        count = rows["set_position"].shape[1]
-        begin, length, digits = (np.repeat(rows[name], count) for name in OF_THE_BLOCK)
-        for name in ("set_position", "actual_position"):
-            messages[f"{name}_modulo"] = within_modulo(messages[name], begin, length)
-        messages["actual_torque_digits"] = messages["actual_torque"] * digits
-        messages["set_direction"] = np.sign(messages["set_velocity"])
+        fill_derived(messages, rows)
+
+
+@np.errstate(invalid="ignore")
+def fill_derived(messages: Records, rows: Records) -> None:
+    """Sets the fields that follow from the others; what is not finite stays so, and has direction 0 if not a number."""
+    count = rows["set_position"].shape[1]
+    begin, length, digits = (np.repeat(rows[name], count) for name in OF_THE_BLOCK)
+    for name in ("set_position", "actual_position"):
+        messages[f"{name}_modulo"] = within_modulo(messages[name], begin, length)
+    messages["actual_torque_digits"] = messages["actual_torque"] * digits
+    velocity = messages["set_velocity"]
+    messages["set_direction"] = (velocity > 0.0).astype(np.int8) - (velocity < 0.0)
 
 
 def state_messages(block: StateBlock, start_ns: int, cycle_ns: int) -> list[bytes]:

@@ -14,6 +14,7 @@ NAMES = {
     17744: ("axis.faults", "FOLLOWING_ERROR", "following error"),
     23060: ("control.commands", "BAD_WEIGHT", "weight_percent"),
     23061: ("control.commands", "FEEDFORWARD_WAITS", "feedforward waits"),
+    23062: ("control.commands", "WEIGHT_LIMITED", "limited to it"),
     25008: ("parameters.errors", "OUT_OF_RANGE", "out of range"),
     25009: ("parameters.errors", "CONTRADICTION", "above max_points"),
     25019: ("parameters.errors", "DENOMINATOR", "denominator"),
