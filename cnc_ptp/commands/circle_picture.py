@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 
 from cnc_ptp.commands.circle_report import UM, CircleTest, VariantResult, direction_name, magnification_for
-from cnc_ptp.commands.picture_file import COLOURS, GRID, INK, SOFT, picture_bytes
+from cnc_ptp.commands.picture_file import COLOURS, picture_bytes
 from cnc_ptp.commissioning.roundness import CircleResult
+from cnc_ptp.plots.colours import EDGE, INK, SOFT
 
 OUTSIDE = -0.35
 """How far the scale goes outwards, over how far it goes inwards."""
@@ -49,7 +50,7 @@ def _scale(axes: PolarAxes, test: CircleTest, magnification: float) -> None:
     names = [f"+{test.axes[0]}", f"+{test.axes[1]}", f"-{test.axes[0]}", f"-{test.axes[1]}"]
     axes.set_thetagrids((0, 45, 90, 135, 180, 225, 270, 315), [names[n // 2] if n % 2 == 0 else "" for n in range(8)])
     axes.tick_params(axis="x", colors=INK)
-    axes.grid(color=GRID, linewidth=0.8)
+    axes.grid(color=EDGE, linewidth=0.8)
     axes.spines["polar"].set_visible(False)
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import plotly.graph_objects as go
 
 from cnc_ptp.commands.curve_report import RPM, curve_lines, drawn_curve
-from cnc_ptp.commands.picture_file import COLOURS, SOFT, plot_page
+from cnc_ptp.commands.picture_file import COLOURS, plot_page
 from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault
+from cnc_ptp.plots.colours import SOFT
 
 HOVER = "%{x:.1f} °/s (%{customdata:.1f} rpm): %{y:.2f} °/s²"
 

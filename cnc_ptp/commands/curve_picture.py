@@ -7,8 +7,9 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from cnc_ptp.commands.curve_report import RPM, drawn_curve, title
-from cnc_ptp.commands.picture_file import COLOURS, GRID, INK, SOFT, picture_bytes
+from cnc_ptp.commands.picture_file import COLOURS, picture_bytes
 from cnc_ptp.commissioning.curve_fit import CurveFit
+from cnc_ptp.plots.colours import EDGE, INK, SOFT
 
 
 def curve_picture(fit: CurveFit, kind: str) -> bytes:
@@ -34,8 +35,8 @@ def draw_curve(fit: CurveFit) -> Figure:
     above.set_xlabel("speed in rpm", color=SOFT)
     for scale in (axes, above):
         scale.tick_params(colors=SOFT, labelsize=9)
-        scale.spines[:].set_color(GRID)
-    axes.grid(color=GRID, linewidth=0.8)
+        scale.spines[:].set_color(EDGE)
+    axes.grid(color=EDGE, linewidth=0.8)
     axes.legend(frameon=False, labelcolor=INK)
     figure.suptitle(title(fit), color=INK, fontsize=12, fontweight="bold")
     return figure

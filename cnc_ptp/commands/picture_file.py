@@ -15,11 +15,11 @@ from plotly.offline import get_plotlyjs
 from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
+from cnc_ptp.plots.colours import BLUE, GREEN, RED, YELLOW
 from cnc_ptp.recording.report import CONFIG, SECURITY, STYLE
 
 KINDS = ("svg", "png", "html")
-COLOURS = ("#1d4f9e", "#b0271d", "#17713a", "#c08a00")
-INK, SOFT, GRID = "#1c2430", "#566273", "#d5dbe3"
+COLOURS = (BLUE.set, RED.set, GREEN.set, YELLOW.set)
 SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none"}
 
 

@@ -22,7 +22,7 @@ from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 
 NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 RUN_OVER = 26115
-NO_ANSWER = 26143
+NOT_ANSWERED = 26143
 PATIENCE = 5.0
 """Seconds after which a call is answered without the axis."""
 WATCH_PERIOD = 0.25
@@ -104,7 +104,7 @@ class CouplingServices:
                 self._answer(call, UPSTREAM_LOST, f"{what} without an answer: its node is lost")
             elif time.monotonic() > call.deadline:
                 reason = f"{what} without an answer for {PATIENCE:g} s"
-                self._answer(call, NO_ANSWER, f"{reason}; {self._withdraw(call)}")
+                self._answer(call, NOT_ANSWERED, f"{reason}; {self._withdraw(call)}")
 
     def _withdraw(self, call: Call) -> str:
         if self._node.unit.withdraw(call.command):

@@ -7,32 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from cnc_ptp.machine.blocks import CommandRecord
+from cnc_ptp.recording.units import unit_of, without_unit
 
-WAY = (
-    "target",
-    "position",
-    "distance",
-    "length",
-    "difference",
-    "activation_position",
-    "slave_offset",
-    "target_position",
-)
-UNITS = {
-    **dict.fromkeys(WAY, "{way}"),
-    "velocity": "{way}/s",
-    "process_velocity": "{way}/s",
-    "velocity_increase": "{way}/s",
-    "acceleration": "{way}/s²",
-    "deceleration": "{way}/s²",
-    "acc_bound": "{way}/s²",
-    "jerk": "{way}/s³",
-    "percent": "%",
-    "weight_percent": "%",
-    "max_acceleration": "°/s²",
-}
-"""Units of arguments by name; those that end in the unit say it themselves."""
-SUFFIXES = {"_rpm": "rpm", "_deg": "°", "_percent": "%", "_ms": "ms", "_us": "µs", "_s": "s"}
 MAIN = {
     "factor": "",
     "target": "",
@@ -61,12 +37,12 @@ def brief(command: CommandRecord) -> str:
     return " ".join([command.command.replace("_", " "), *shown]).replace("-", "−")
 
 
-def argument_words(arguments_json: str, way: str) -> str:
-    """Arguments as `name = value unit`; `way`: mm, deg or empty. What is no object of JSON stays as it is."""
+def argument_words(arguments_json: str, distance: str) -> str:
+    """Arguments as `name = value unit`; `distance`: mm, deg or empty. What is no object of JSON stays as it is."""
     values = json_object(arguments_json)
     if values is None:
         return arguments_json
-    return ", ".join(f"{_label(name)} = {_value(name, value, way)}" for name, value in values.items())
+    return ", ".join(f"{_label(name)} = {_value(name, value, distance)}" for name, value in values.items())
 
 
 def json_object(text: str) -> dict[str, Any] | None:
@@ -83,17 +59,16 @@ def shortened(text: str, letters: int) -> str:
 
 def _label(name: str) -> str:
     """Without the unit, which stands behind the value."""
-    suffix = next((suffix for suffix in SUFFIXES if name.endswith(suffix)), "")
-    return name.removesuffix(suffix).replace("_", " ")
+    return without_unit(name).replace("_", " ")
 
 
-def _value(name: str, value: Any, way: str) -> str:
+def _value(name: str, value: Any, distance: str) -> str:
     if isinstance(value, bool):
         return "on" if value else "off"
     if isinstance(value, int | float):
-        return f"{value:.10g} {_unit(name, way)}".strip()
+        return f"{value:.10g} {unit_of(name, distance)}".strip()
     if isinstance(value, dict):
-        return ", ".join(f"{_label(key)} {_value(key, inner, way)}" for key, inner in value.items()) or "none"
+        return ", ".join(f"{_label(key)} {_value(key, inner, distance)}" for key, inner in value.items()) or "none"
     if isinstance(value, list):
         return _list(value)
     lines = str(value).splitlines()
@@ -111,9 +86,3 @@ def _list(values: list[Any]) -> str:
     if len(values) > FEW:
         return f"({len(values)} values)"
     return " ".join(_value("", value, "") for value in values) or "none"
-
-
-def _unit(name: str, way: str) -> str:
-    if name in UNITS:
-        return UNITS[name].format(way=way) if way else UNITS[name] if "{" not in UNITS[name] else ""
-    return next((unit for suffix, unit in SUFFIXES.items() if name.endswith(suffix)), "")

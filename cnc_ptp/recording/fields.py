@@ -10,26 +10,9 @@ from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
 from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, USUAL, Line, Row, axis_label, standing, time_rows
 from cnc_ptp.recording.selection import NOT_RECORDED, nearest
+from cnc_ptp.recording.units import unit_of, without_role, without_unit
 
-PREFIXES = {"set_": SET, "actual_": ACTUAL}
-SUFFIXES = {"_rpm": "rpm", "_deg_s2": "deg/s²", "_deg": "deg", "_percent": "%", "_modulo": "{way}"}
-MEASURES = {
-    "position": "{way}",
-    "velocity": "{way}/s",
-    "acceleration": "{way}/s²",
-    "jerk": "{way}/s³",
-    "following_error": "{way}",
-    "command_velocity": "{way}/s",
-    "feedforward_velocity": "{way}/s",
-    "additive_velocity": "{way}/s",
-    "additive_torque": "{torque}",
-    "torque": "{torque}",
-    "torque_digits": "digits of the drive",
-    "friction_current": "digits of the drive",
-    "path_velocity": "mm/s",
-    "programmed_feed": "mm/s",
-    "distance_to_go": "mm",
-}
+BY_PREFIX = {"set_": SET, "actual_": ACTUAL}
 
 
 def usual_rows(recorded: Recorded, units: Mapping[str, str]) -> list[Row]:
@@ -66,8 +49,7 @@ def _rows_by_quantity(
     for word in words:
         for unit, field in _fields(recorded, word):
             title, role = quantity(field)
-            ways = {"way": "deg" if units.get(unit) == "deg" else "mm", "torque": torques.get(unit, "Nm or N")}
-            measure = measure_of(field, title).format(**ways)
+            measure = unit_of(field, units.get(unit, "mm"), torques.get(unit, "Nm or N"))
             row = rows.setdefault((title, measure), Row("", title.replace("_", " "), measure, legend=True))
             name = " ".join(filter(None, [axis_label(unit), role]))
             row.lines.append(Line(name, recorded.states[f"/{unit}/state"], field, role))
@@ -76,15 +58,8 @@ def _rows_by_quantity(
 
 def quantity(field: str) -> tuple[str, str]:
     """`set_speed_rpm` is `speed`, a set value."""
-    role = next((role for prefix, role in PREFIXES.items() if field.startswith(prefix)), OTHER)
-    name = field.removeprefix("set_").removeprefix("actual_")
-    suffix = next((suffix for suffix in SUFFIXES if name.endswith(suffix)), "")
-    return (name.removesuffix(suffix) if suffix != "_modulo" else name), role
-
-
-def measure_of(field: str, title: str) -> str:
-    suffix = next((unit for suffix, unit in SUFFIXES.items() if field.endswith(suffix)), "")
-    return suffix or MEASURES.get(title, "")
+    role = next((role for prefix, role in BY_PREFIX.items() if field.startswith(prefix)), OTHER)
+    return without_role(without_unit(field)), role
 
 
 def _fields(recorded: Recorded, word: str) -> Iterator[tuple[str, str]]:
@@ -92,21 +67,30 @@ def _fields(recorded: Recorded, word: str) -> Iterator[tuple[str, str]]:
     units = {topic.removeprefix("/").removesuffix("/state"): rows for topic, rows in recorded.states.items()}
     unit, _, field = word.strip("/").rpartition("/")
     unit = unit.removesuffix("/state")
-    if not unit:
-        having = [name for name, rows in units.items() if field in names_of(rows)]
-        moving = [name for name in having if name not in standing(recorded)]
-        if field in units:
-            example = f"{field}/{names_of(units[field])[0]}"
-            raise _unnamed(recorded, f"'{field}' as a unit, not as a field; give one of its fields, {example}")
-        if not having:
-            raise _unknown(recorded, f"no field '{field}'", field, _all_names(units))
-        yield from ((name, field) for name in moving or having)
+    if unit:
+        yield unit, _field_of_unit(recorded, units, unit, field)
         return
+    having = {name: found for name, rows in units.items() if (found := _field_named(rows, field))}
+    if field in units:
+        example = f"{field}/{names_of(units[field])[0]}"
+        raise _unnamed(recorded, f"'{field}' as a unit, not as a field; give one of its fields, {example}")
+    if not having:
+        raise _unknown(recorded, f"no field '{field}'", field, _all_names(units))
+    still = standing(recorded)
+    yield from {name: found for name, found in having.items() if name not in still}.items() or having.items()
+
+
+def _field_of_unit(recorded: Recorded, units: Mapping[str, Records], unit: str, field: str) -> str:
     if unit not in units:
         raise _unknown(recorded, f"no unit '{unit}' with states", unit, list(units))
-    if field not in names_of(units[unit]):
+    if not (found := _field_named(units[unit], field)):
         raise _unknown(recorded, f"no field '{field}' of '{unit}'", field, names_of(units[unit]))
-    yield unit, field
+    return found
+
+
+def _field_named(rows: Records, word: str) -> str:
+    """The field of this name, with or without its unit: `following_error` of a spindle is `following_error_deg`."""
+    return next((name for name in names_of(rows) if word in (name, without_unit(name))), "")
 
 
 def names_of(rows: Records) -> list[str]:

@@ -305,7 +305,7 @@ def test_duration_ends_the_run(program, tmp_path):
     [
         ("0.3", "warning: P-WARN-26121 channel channel: --duration 0.3 s has cut off the program in line 3, state WAITING"),
         ("0.05", "warning: P-WARN-26121 channel channel: --duration 0.05 s has cut off the program in line 2, state RUNNING"),
-        ("1000", None),
+        ("30", None),
     ],
 )  # fmt: skip
 def test_a_program_that_the_duration_cuts_off_is_told(duration, note, tmp_path):

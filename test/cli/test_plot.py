@@ -76,6 +76,18 @@ def test_chosen_fields_share_a_plot_by_quantity(recording):
     ]
 
 
+def test_fields_are_found_without_their_unit(tmp_path):
+    """The following error of a spindle is `following_error_deg`, its speed `set_speed_rpm`."""
+    (tmp_path / "turn.yaml").write_text("- {at: 0.01, to: s, do: start, direction: cw, speed_rpm: 100}\n")
+    options = ("--scenario", tmp_path / "turn.yaml", "--duration", "0.2", "--record", tmp_path / "run.mcap")
+    assert call("simulate", "config/mill.yaml", *options).exit_code == 0
+    rows = chosen_rows(read_recording(tmp_path / "run.mcap"), ["following_error", "s/set_speed"], {}, {})
+    assert [(row.heading, row.lines[0].field) for row in rows] == [
+        ("S: following error in deg", "following_error_deg"),
+        ("S: speed in rpm", "set_speed_rpm"),
+    ]
+
+
 @pytest.mark.parametrize(
     ("field", "found"),
     [

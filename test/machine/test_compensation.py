@@ -251,13 +251,19 @@ def test_below_vp_the_sum_of_the_accelerations_is_that_of_motion_and_compensatio
     assert bench.state == 1 and not has_bit(bench, COMPENSATING | HAS_JOB)[-1]
 
 
-def test_a_compensation_that_outlasts_its_basic_motion_ends_on_its_own_ramp() -> None:
-    """3 s of it are planned, the motion ends after 1 s: what is added then comes down with AK-, and the job waits."""
+def bench_with_an_outlasting_compensation(deceleration: float) -> UnitBench:
+    """3 s of it are planned on a motion that ends after 1 s; it begins after half of it."""
     bench = axis_bench(count=10)
     bench.accepted("move_absolute", target=1000.0, velocity=1000.0, acceleration=4e4, deceleration=4e4, jerk=4e6)
     bench.run(500)
     values = {"length": 600.0, "process_velocity": 200.0, "velocity_increase": 400.0}
-    bench.accepted("compensation_start", difference=300.0, acceleration=500.0, deceleration=500.0, **values)
+    bench.accepted("compensation_start", difference=300.0, acceleration=500.0, deceleration=deceleration, **values)
+    return bench
+
+
+def test_a_compensation_that_outlasts_its_basic_motion_ends_on_its_own_ramp() -> None:
+    """What is added when the motion ends comes down with AK-, and the job waits."""
+    bench = bench_with_an_outlasting_compensation(500.0)
     bench.run(2000)
     arrived = 1035  # 1000 mm at 1000 mm/s, and half of both ramps
     v = column(bench, "set_velocity")
@@ -271,11 +277,7 @@ def test_a_compensation_that_outlasts_its_basic_motion_ends_on_its_own_ramp() ->
 
 def test_an_emergency_stop_of_a_compensation_that_outlasts_its_motion() -> None:
     """It takes 0.1 s from 100 mm/s and more, where AK- would take 10 times that."""
-    bench = axis_bench(count=10)
-    bench.accepted("move_absolute", target=1000.0, velocity=1000.0, acceleration=4e4, deceleration=4e4, jerk=4e6)
-    bench.run(500)
-    values = {"length": 600.0, "process_velocity": 200.0, "velocity_increase": 400.0}
-    bench.accepted("compensation_start", difference=300.0, acceleration=500.0, deceleration=50.0, **values)
+    bench = bench_with_an_outlasting_compensation(50.0)
     bench.run(550)
     assert bench.column("set_velocity")[-1] > 5.0
     assert bench.accepted("emergency_stop", deceleration=5e4, jerk=5e6) == ""
