@@ -12,6 +12,7 @@ from cnc_ptp.commands.console import RUN_FAILED, print_error
 from cnc_ptp.commands.unit_table import line
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.nodes.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 
 
@@ -49,12 +50,15 @@ class Waiting:
     def until_settled(self, cycle: int) -> int:
         """Returns the exit status; Ctrl-C ends the waiting, not the motion."""
         with EndRequest() as end:
-            while not end.given and not self._settled_after(cycle):
+            while not end.given and not self._settled_after(cycle) and not self._blocks.gone:
                 self._client.spin_for(0.02)
             if end.given:
                 name = signal.Signals(end.number).name
                 print(f"{self._unit}: not waited for any more ({name}); it goes on")
                 return 128 + end.number
+        if not self._settled_after(cycle):
+            Console(stderr=True, highlight=False).print(f"{self._unit}: {GONE_TEXT}", style="red")
+            return RUN_FAILED
         view = self._blocks.view(self._unit)
         assert view is not None
         print(line(view))

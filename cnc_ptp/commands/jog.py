@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 
@@ -15,6 +16,7 @@ from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.unit_view import UnitView
 from cnc_ptp.nodes.jog_topics import PATIENCE as SILENCE
+from cnc_ptp.nodes.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, connected
 from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
 
@@ -73,7 +75,8 @@ class Jogger:
         begun, start = time.monotonic(), self._place().position or 0.0
         way = Way(distance)
         moved, sent = False, begun
-        while not ended() and not self._refused and (seconds is None or time.monotonic() - begun < seconds):
+        deadline = math.inf if seconds is None else begun + seconds
+        while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
             self._stalled = time.monotonic() - sent > SILENCE
             if self._stalled:  # the machine has ended the jog; that this process goes on is no reason to move again
                 self.told(f"this command has stood still for more than {SILENCE:g} s; the jog has ended")
@@ -92,11 +95,17 @@ class Jogger:
         """Ends the jog, waits until the axis stands, tells where; the exit status."""
         cycle = self._place().cycle
         self._send(0.0)
-        stands = self._client.spin_until(lambda: self._place().cycle > cycle + 100 and not self._place().busy, STOP)
+
+        def stands() -> bool:
+            return self._place().cycle > cycle + 100 and not self._place().busy
+
+        self._client.spin_until(lambda: stands() or self._blocks.gone, STOP)
+        if self._blocks.gone:
+            return self.told(GONE_TEXT)
         view = self._place()
         where = f"{view.position:.3f} {view.unit}" if view.position is not None else ""
         print(f"{self._axis}: {view.state} at {where}")
-        return RUN_FAILED if self._refused or self._stalled or view.error_id or not stands else 0
+        return RUN_FAILED if self._refused or self._stalled or view.error_id or not stands() else 0
 
     def told(self, text: str) -> int:
         self._errors.print(f"{self._axis}: {text}", style="red", markup=False)

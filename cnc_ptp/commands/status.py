@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 
@@ -12,11 +13,8 @@ from rich.text import Text
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.commands.unit_table import line, unit_table, wide_console
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.latest_blocks import GONE_TEXT, LatestBlocks
 from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, connected
-
-GONE = 5.0
-"""Seconds without anything new from any unit after which a machine counts as gone."""
 
 
 def status() -> int:
@@ -40,15 +38,14 @@ def watch(units: Sequence[str], rate: float, seconds: float | None) -> int:
         blocks = client.look_at(shown)
         client.spin_until(lambda: end.given or len(blocks.views()) == len(shown), PATIENCE)
         looker = Looker(client, blocks, shown)
-        begun = time.monotonic()
+        deadline = math.inf if seconds is None else time.monotonic() + seconds
         with looker:
-            while not end.given and not looker.gone and (seconds is None or time.monotonic() - begun < seconds):
+            while not end.given and not blocks.gone and (left := deadline - time.monotonic()) > 0.0:
                 looker.show()
-                client.spin_until(lambda: end.given, 1.0 / rate)
-    if looker.gone:
-        text = f"nothing new for {GONE:g} s: the machine does not run any more"
-        Console(stderr=True, highlight=False).print(text, style="red")
-    return RUN_FAILED if looker.gone else 0
+                client.spin_until(lambda: end.given or blocks.gone, min(1.0 / rate, left))
+        if blocks.gone:
+            Console(stderr=True, highlight=False).print(GONE_TEXT, style="red")
+        return RUN_FAILED if blocks.gone else 0
 
 
 def shown_units(client: MachineClient, units: Sequence[str]) -> list[str]:
@@ -74,7 +71,6 @@ class Looker:
         console = wide_console()
         self._live = Live(console=console, auto_refresh=False) if console.is_terminal else None
         self._cycle = -1
-        self._changed = time.monotonic()
 
     def __enter__(self) -> Looker:
         if self._live is not None:
@@ -85,17 +81,12 @@ class Looker:
         if self._live is not None:
             self._live.stop()
 
-    @property
-    def gone(self) -> bool:
-        return time.monotonic() - self._changed > GONE
-
     def show(self) -> None:
         """What is the newest now; lines only of what is new."""
         views = self._blocks.views()
         cycle = max((view.cycle for view in views), default=-1)
         new = cycle != self._cycle
-        if new:
-            self._cycle, self._changed = cycle, time.monotonic()
+        self._cycle = cycle
         if self._live is not None:
             silent = [unit for unit in self._units if unit not in {view.name for view in views}]
             table = unit_table(views, silent)

@@ -3,43 +3,77 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
+from cnc_ptp import msg
+from cnc_ptp.nodes.sequence import is_newer
+from cnc_ptp.nodes.topics import jog_topic
+
+JOG_SILENT = 26134
+SECOND_JOG = 26144
+JOG_IN_FREE_RUN = 26145
 PATIENCE = 0.2
 """Seconds without a message after which a jog ends."""
+SILENCE = f"{PATIENCE * 1000.0:.0f} ms"
 
 
 class JogTopics:
-    """Velocities that clients ask for, axis by axis: what of them is a change, and who has fallen silent."""
+    """Velocities that clients ask for, axis by axis: what of them is a change, and who has fallen silent.
 
-    def __init__(self) -> None:
+    Only one client has an axis in hand, until it ends its jog or falls silent; others are ignored. In free run all are:
+    a silence in which the clock of the machine runs ahead would be a long motion.
+    """
+
+    def __init__(self, warn: Callable[[int, str], None]) -> None:
+        """`warn(number, text)`: tells people what happens to their messages, once for each client."""
+        self._warn = warn
+        self._told: set[tuple[int, str, str]] = set()
+        self._sequence: dict[tuple[str, str], int] = {}
         self._velocity: dict[str, float] = {}
         self._heard: dict[str, float] = {}
         self._client: dict[str, str] = {}
 
-    def heard(self, axis: str, velocity: float, now: float) -> float | None:
-        """A message has come; the velocity (mm/s, deg/s; 0 ends the jog) to command, None when it is the same still.
+    def heard(self, axis: str, message: msg.Jog, now: float, *, paced: bool) -> float | None:
+        """The velocity (mm/s, deg/s; 0 ends the jog) to command, None when it is the same still, or does not count.
 
-        A velocity that is no number ends the jog as well: who sends it has lost control.
+        A velocity that is no number ends the jog as well: who sends it has lost control. `now` in s; `paced`: the
+        machine runs in real time.
         """
-        velocity = velocity if math.isfinite(velocity) else 0.0
-        self._heard[axis] = now
-        if velocity == self._velocity.get(axis, 0.0):
+        client = message.header.frame_id
+        if not paced:
+            text = f"is not obeyed in free run, where {SILENCE} may be a long motion"
+            self._tell(JOG_IN_FREE_RUN, axis, client, text)
             return None
-        self._velocity[axis] = velocity
-        return velocity
-
-    def is_foreign(self, axis: str, client: str, now: float) -> bool:
-        """True while another client jogs the axis: only one has it in hand, until it ends the jog or falls silent."""
-        held = bool(self._velocity.get(axis)) and now - self._heard[axis] <= PATIENCE
-        if held and client != self._client[axis]:
-            return True
+        if self._is_foreign(axis, client, now):
+            text = f"has a second client '{client}'; it is ignored while the first one jogs {axis}"
+            self._tell(SECOND_JOG, axis, client, text)
+            return None
+        if not is_newer(message.sequence, self._sequence.get((axis, client), 0)):
+            return None
+        self._sequence[axis, client] = message.sequence
         self._client[axis] = client
-        return False
+        self._heard[axis] = now
+        velocity = message.velocity if message.valid and math.isfinite(message.velocity) else 0.0
+        return None if velocity == self._velocity.get(axis, 0.0) else self._set(axis, velocity)
 
     def fallen_silent(self, now: float) -> list[str]:
         """Each axis once; its jog ends, and the next message begins a new one."""
         jogged = [axis for axis, velocity in self._velocity.items() if velocity]
         silent = [axis for axis in jogged if now - self._heard[axis] > PATIENCE]
         for axis in silent:
-            self._velocity[axis] = 0.0
+            self._set(axis, 0.0)
+            self._warn(JOG_SILENT, f"plc: no message on /{jog_topic(axis)} for {SILENCE}; the jog of {axis} ends")
         return silent
+
+    def _set(self, axis: str, velocity: float) -> float:
+        self._velocity[axis] = velocity
+        return velocity
+
+    def _is_foreign(self, axis: str, client: str, now: float) -> bool:
+        held = bool(self._velocity.get(axis)) and now - self._heard[axis] <= PATIENCE
+        return held and client != self._client[axis]
+
+    def _tell(self, error_id: int, axis: str, client: str, text: str) -> None:
+        if (error_id, axis, client) not in self._told:
+            self._told.add((error_id, axis, client))
+            self._warn(error_id, f"plc: /{jog_topic(axis)} {text}")

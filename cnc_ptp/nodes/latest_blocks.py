@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -12,6 +13,9 @@ from rclpy.serialization import deserialize_message
 from cnc_ptp.machine.unit_view import VIEWS, UnitView, view_of
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
 
+GONE = 5.0
+"""Seconds without a block of any unit after which a machine counts as gone."""
+GONE_TEXT = f"nothing new for {GONE:g} s: the machine does not run any more"
 REMEMBERED = ("axis", "spindle")
 """Kinds of units whose last block a late reader gets, too."""
 
@@ -24,6 +28,7 @@ class LatestBlocks:
         self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
         self._rotary = rotary
         self._serialised: dict[str, bytes] = {}
+        self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
             durability = "TRANSIENT_LOCAL" if kind in REMEMBERED else "VOLATILE"
             quality = QoSProfile(depth=1, durability=QoSDurabilityPolicy[durability])
@@ -32,8 +37,14 @@ class LatestBlocks:
     def _keeper(self, unit: str) -> Any:
         def received(serialised: bytes) -> None:
             self._serialised[unit] = serialised
+            self._heard = time.monotonic()
 
         return received
+
+    @property
+    def gone(self) -> bool:
+        """No unit has published anything for GONE seconds."""
+        return time.monotonic() - self._heard > GONE
 
     def view(self, unit: str) -> UnitView | None:
         """None before the first block."""

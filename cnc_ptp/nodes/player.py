@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import sys
 import time
 from collections.abc import Iterator
@@ -17,8 +18,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes.claim import claim_unit
 from cnc_ptp.nodes.observed_topics import is_input
-from cnc_ptp.nodes.topics import published_topic
+from cnc_ptp.nodes.topics import block_topic, published_topic
 from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.qos import parse_profiles
 from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording
@@ -27,13 +29,14 @@ DISCOVERY = 1.0
 """Seconds between the first publisher and the first message, so that subscribers find them."""
 FAREWELL = 0.5
 LARGEST_BATCH = 500
+BLOCK = block_topic("")
 
 
 class PlayerNode(Node):
     """Publishes every topic of a recording with the bytes, and the quality of service, that it was recorded with.
 
     Topics whose message type is not installed here are left out: `left_out`; unless `inputs`, those that the PLC writes
-    as well: `inputs_left_out`.
+    as well: `inputs_left_out`. `units`: those whose blocks it publishes.
     """
 
     def __init__(self, path: str, *, rate: float, inputs: bool = False) -> None:
@@ -49,6 +52,7 @@ class PlayerNode(Node):
             for topic, of in classes.items()
             if of is not None
         }
+        self.units = [topic.strip("/").removesuffix(BLOCK) for topic in self._publish_to if topic.endswith(BLOCK)]
         played = [topics[topic] for topic in self._publish_to]
         self.topics = len(played)
         self.total = sum(info.count for info in played)
@@ -166,15 +170,18 @@ def _left_out(node: PlayerNode) -> str:
 def publish_recording(path: str, *, rate: float, inputs: bool = False) -> int:
     """Plays a recording to its end; returns the exit status.
 
-    The domain is held as for a run: the nodes of one would take the blocks of the recording for theirs.
+    The domain and the units of the recording are held as by a run: nodes would take the recorded blocks for theirs.
+    Raises CncError 26107 and 26141 when somebody has them.
     """
     show = _Show(path, rate)
 
     def make() -> PlayerNode:
         claims.append(process.claim_domain())
-        return show.begin(PlayerNode(path, rate=rate, inputs=inputs))
+        node = PlayerNode(path, rate=rate, inputs=inputs)
+        claims.extend(claim_unit(node, unit) for unit in node.units)
+        return show.begin(node)
 
-    claims: list[Any] = []
+    claims: list[socket.socket] = []
     try:
         return process.run_node(
             make, done=lambda node: node.done, wait=lambda node: node.wait_time(), after=lambda node: show.advance(node)

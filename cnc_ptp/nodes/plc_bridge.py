@@ -23,6 +23,7 @@ from cnc_ptp.nodes.coupling_services import CouplingServices
 from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.jog_topics import JogTopics
 from cnc_ptp.nodes.joint_states import JointStates
+from cnc_ptp.nodes.sequence import is_newer
 from cnc_ptp.nodes.silence import SilentTopics
 from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT, jog_topic
 from cnc_ptp.nodes.unit_node import UnitNode
@@ -31,8 +32,6 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118
 OVERRIDE_STALE = 26119
-JOG_SILENT = 26134
-SECOND_JOG = 26144
 FULL_OVERRIDE = 100.0
 
 
@@ -77,9 +76,9 @@ class PlcBridgeNode(UnitNode):
             received = partial(self._on_external_setpoint, unit)
             self.create_subscription(msg.ExternalSetpoint, f"{unit}/external_setpoint", received, BLOCKS)
             self._listen(msg.CyclicCouplingFactor, unit, "coupling_factor", self._coupling_factor)
-        self._jogs = JogTopics()
+        self._jogs = JogTopics(self._warn)
         for unit in machine.axes:
-            self._listen_to_jog(unit)
+            self.create_subscription(msg.Jog, jog_topic(unit), partial(self._on_jog, unit), PLC_INPUT)
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self._factors: dict[str, float] = {}
@@ -172,32 +171,15 @@ class PlcBridgeNode(UnitNode):
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
         self.unit.setpoints.arrive(axis, row)
 
-    def _listen_to_jog(self, axis: str) -> None:
-        topic = jog_topic(axis)
-        told: set[str] = set()
-
-        def received(message: msg.Jog) -> None:
-            if self._jogs.is_foreign(axis, message.header.frame_id, time.monotonic()):
-                if message.header.frame_id not in told:
-                    told.add(message.header.frame_id)
-                    text = f"plc: /{topic} has a second client '{message.header.frame_id}'; it is ignored while"
-                    self._warn(SECOND_JOG, f"{text} the first one jogs {axis}")
-                return
-            if not is_newer(message.sequence, self._sequence.get(topic, 0)):
-                return
-            self._sequence[topic] = message.sequence
-            velocity = self._jogs.heard(axis, message.velocity if message.valid else 0.0, time.monotonic())
-            if velocity is not None:
-                self.input(Command(axis, JOG, {"velocity": velocity}))
-
-        self.create_subscription(msg.Jog, topic, received, PLC_INPUT)
+    def _on_jog(self, axis: str, message: msg.Jog) -> None:
+        velocity = self._jogs.heard(axis, message, time.monotonic(), paced=self.paced)
+        if velocity is not None:
+            self.input(Command(axis, JOG, {"velocity": velocity}))
 
     def _watch_jogs(self) -> None:
         """Nothing moves without a living hand on it."""
         for axis in self._jogs.fallen_silent(time.monotonic()):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
-            silence = f"{JOG_PATIENCE * 1000.0:.0f} ms"
-            self._warn(JOG_SILENT, f"plc: no message on /{jog_topic(axis)} for {silence}; the jog of {axis} ends")
 
     def input(self, command: Command) -> None:
         if isinstance(self.unit, PlcUnit):
@@ -246,11 +228,6 @@ class PlcBridgeNode(UnitNode):
 
     def _warn(self, error_id: int, text: str) -> None:
         self.tell(Severity.WARNING, error_id, text)
-
-
-def is_newer(sequence: int, last: int) -> bool:
-    """False for repeated and older numbers. 0 is not looked at; 1 begins a new count; the count may run over."""
-    return sequence == 0 or (sequence == 1 and last != 1) or 0 < (sequence - last) % 2**32 < 2**31
 
 
 def without_text(entry: Entry) -> Entry:

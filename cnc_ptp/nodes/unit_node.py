@@ -103,6 +103,8 @@ class UnitNode(Node):
         self._told_twice: set[str] = set()
         self._masters: dict[str, Any] = {}
         self._running = False
+        self.paced = False
+        """The clock runs in real time."""
         self._alone = False
         self._ended = False
         self._busy = False
@@ -182,10 +184,10 @@ class UnitNode(Node):
             return
         if not self._running and message.scheduled_monotonic_ns:
             process.take_priority()
-        self._running = True
+        self._running, self.paced = True, bool(message.scheduled_monotonic_ns)
         self._heard[CLOCK] = time.monotonic()
         self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
-        if message.scheduled_monotonic_ns:
+        if self.paced:
             self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
         before = self._gate.duplicates
         if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):

@@ -1,55 +1,93 @@
 """What the PLC makes of jog messages: a command for each change, an end for each silence."""
 
 import math
+from itertools import count
 
 import pytest
 
+from cnc_ptp import msg
 from cnc_ptp.nodes.jog_topics import PATIENCE, JogTopics
 
+SILENT = (26134, "plc: no message on /x/jog for 200 ms; the jog of x ends")
+SECOND = (26144, "plc: /x/jog has a second client '{}'; it is ignored while the first one jogs x")
+FREE_RUN = (26145, "plc: /x/jog is not obeyed in free run, where 200 ms may be a long motion")
 
-def test_only_changes_are_commands():
-    jogs = JogTopics()
+
+class Jogs:
+    """Jog topics, and clients that number their messages."""
+
+    def __init__(self):
+        self.warnings = []
+        self.topics = JogTopics(lambda number, text: self.warnings.append((number, text)))
+        self._numbers = {}
+
+    def heard(self, axis, velocity, now, *, client="a", paced=True, sequence=None, valid=True):
+        numbers = self._numbers.setdefault(client, count(1))
+        message = msg.Jog(sequence=sequence or next(numbers), valid=valid, velocity=velocity)
+        message.header.frame_id = client
+        return self.topics.heard(axis, message, now, paced=paced)
+
+
+@pytest.fixture
+def jogs():
+    return Jogs()
+
+
+def test_only_changes_are_commands(jogs):
     asked = [0.0, 5.0, 5.0, -5.0, 0.0, 0.0, 5.0]
-    assert [jogs.heard("x", velocity, 0.1 * n) for n, velocity in enumerate(asked)] == [
-        None,
-        5.0,
-        None,
-        -5.0,
-        0.0,
-        None,
-        5.0,
-    ]
+    commanded = [None, 5.0, None, -5.0, 0.0, None, 5.0]
+    assert [jogs.heard("x", velocity, 0.1 * n) for n, velocity in enumerate(asked)] == commanded
     assert jogs.heard("c", 5.0, 0.7) == 5.0
+    assert jogs.warnings == []
 
 
 @pytest.mark.parametrize("nonsense", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_ends_the_jog(nonsense):
-    jogs = JogTopics()
+def test_what_is_no_number_ends_the_jog(jogs, nonsense):
     assert jogs.heard("x", nonsense, 0.0) is None
     jogs.heard("x", 5.0, 0.1)
     assert jogs.heard("x", nonsense, 0.2) == 0.0
 
 
-def test_silence_ends_a_jog_once_and_the_next_message_begins_a_new_one():
-    jogs = JogTopics()
+def test_a_message_that_is_not_valid_ends_the_jog(jogs):
+    jogs.heard("x", 5.0, 0.1)
+    assert jogs.heard("x", 5.0, 0.2, valid=False) == 0.0
+
+
+def test_silence_ends_a_jog_once_and_the_next_message_begins_a_new_one(jogs):
     jogs.heard("x", 5.0, 0.0)
     jogs.heard("y", 0.0, 0.0)
-    assert jogs.fallen_silent(PATIENCE) == []
+    assert jogs.topics.fallen_silent(PATIENCE) == []
     jogs.heard("x", 5.0, 0.15)
-    assert jogs.fallen_silent(PATIENCE + 0.1) == []
-    assert jogs.fallen_silent(PATIENCE + 0.16) == ["x"]
-    assert jogs.fallen_silent(9.0) == []
+    assert jogs.topics.fallen_silent(PATIENCE + 0.1) == []
+    assert jogs.topics.fallen_silent(PATIENCE + 0.16) == ["x"]
+    assert jogs.topics.fallen_silent(9.0) == []
     assert jogs.heard("x", 5.0, 9.1) == 5.0
+    assert jogs.warnings == [SILENT]
 
 
-def test_a_second_client_is_foreign_while_the_first_one_jogs():
-    jogs = JogTopics()
-    assert not jogs.is_foreign("x", "a", 0.0)
-    jogs.heard("x", 5.0, 0.0)
-    assert jogs.is_foreign("x", "b", 0.1) and jogs.is_foreign("x", "", 0.1)
-    assert not jogs.is_foreign("x", "a", 0.1) and not jogs.is_foreign("y", "b", 0.1)
-    jogs.heard("x", 0.0, 0.1)
-    assert not jogs.is_foreign("x", "b", 0.15)
-    jogs.heard("x", -5.0, 0.15)
-    assert jogs.is_foreign("x", "a", 0.16)
-    assert not jogs.is_foreign("x", "a", 0.16 + 2 * PATIENCE)
+def test_a_second_client_is_ignored_while_the_first_one_jogs(jogs):
+    assert jogs.heard("x", 5.0, 0.0) == 5.0
+    for client in ("b", "", "b"):
+        assert jogs.heard("x", -9.0, 0.1, client=client) is None
+    assert jogs.warnings == [(SECOND[0], SECOND[1].format(client)) for client in ("b", "")]
+    assert jogs.heard("x", 6.0, 0.1) == 6.0 and jogs.heard("y", 1.0, 0.1, client="b") == 1.0
+    assert jogs.heard("x", 0.0, 0.1) == 0.0
+    assert jogs.heard("x", -5.0, 0.15, client="b") == -5.0
+    assert jogs.heard("x", 5.0, 0.16) is None
+    assert jogs.heard("x", 5.0, 0.16 + 2 * PATIENCE) == 5.0
+
+
+def test_each_client_numbers_its_own_messages(jogs):
+    """After a client that has sent 1200 the other one goes on with 31."""
+    assert jogs.heard("x", 5.0, 0.0, sequence=30) == 5.0 and jogs.heard("x", 0.0, 0.1, sequence=31) == 0.0
+    assert jogs.heard("x", 5.0, 0.2, client="b", sequence=1199) == 5.0
+    assert jogs.heard("x", 0.0, 0.3, client="b", sequence=1200) == 0.0
+    assert jogs.heard("x", 8.0, 0.4, sequence=32) == 8.0
+    assert jogs.heard("x", 9.0, 0.5, sequence=32) is None  # repeated
+
+
+def test_nothing_is_jogged_in_free_run(jogs):
+    assert [jogs.heard("x", velocity, 0.0, paced=False) for velocity in (5.0, -5.0)] == [None, None]
+    assert jogs.warnings == [FREE_RUN]
+    assert jogs.topics.fallen_silent(9.0) == []
+    assert jogs.heard("x", 5.0, 10.0) == 5.0

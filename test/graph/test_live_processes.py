@@ -1,6 +1,8 @@
 """A standing machine of separate processes (run --stay): how it ends."""
 
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -39,3 +41,28 @@ def test_a_turning_spindle_comes_to_rest_on_its_ramp_before_its_node_ends(tmp_pa
         graph.end()
     speed = verified(path, whole=False).states["/s/state"]["set_speed_rpm"]
     assert max(abs(speed)) > 10_000.0 and speed[-1] == 0.0
+
+
+def test_commands_notice_that_the_machine_is_gone(tmp_path):
+    """Killed as a power failure does it: `do --wait`, `jog` and `watch` end, each with status 1."""
+    graph = Running(small_machine(tmp_path), "--stay", "--composed")
+    text = "nothing new for 5 s: the machine does not run any more"
+    waiting = ["do", "x", "move_absolute", "target=100", "velocity=1", "--wait"]
+    try:
+        wait_for_machine()
+        clients = [
+            subprocess.Popen([sys.executable, "-m", "cnc_ptp", *words], stderr=subprocess.PIPE, text=True)
+            for words in (
+                waiting,
+                ["jog", "y", "+", "--speed", "1", "--distance", "50"],
+                ["watch", "x", "--rate", "0.1"],
+            )
+        ]
+        time.sleep(6.0)
+        assert [client.poll() for client in clients] == [None] * 3
+        graph.process.kill()
+        errors = [client.communicate(timeout=60.0)[1] for client in clients]
+    finally:
+        graph.end()
+    assert [client.returncode for client in clients] == [1] * 3
+    assert errors[0] == f"x: {text}\n" and errors[1].endswith(f"y: {text}\n") and errors[2] == f"{text}\n"

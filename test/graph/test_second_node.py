@@ -80,6 +80,22 @@ def test_a_stray_node_was_there_first(one_axis, ros_domain, options):
     assert "computed twice 0" in run("run", one_axis, "--duration", "0.2", *options).stdout  # the unit is free again
 
 
+def test_a_recording_is_not_played_to_nodes_that_nobody_supervises(one_axis, ros_domain, tmp_path):
+    """They would take its blocks and ticks for theirs; a run holds the whole domain."""
+    run("simulate", one_axis, "--duration", "0.1", "--record", tmp_path / "run.mcap")
+    stray = node(one_axis, "x")
+    try:
+        wait_until_claimed(stray.pid)
+        refused = run("replay", tmp_path / "run.mcap", "--publish", expect=2)
+        assert refused.stderr == refusal(stray.pid, command_line(one_axis), ros_domain)
+        assert "published" not in refused.stdout
+    finally:
+        stray.kill()
+        stray.wait()
+        stray.stderr.close()
+    assert "published" in run("replay", tmp_path / "run.mcap", "--publish").stdout
+
+
 def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path):
     recording = tmp_path / "run.mcap"
     scenario = tmp_path / "move.yaml"
