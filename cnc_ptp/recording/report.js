@@ -108,10 +108,26 @@
   const traces = plot.data.map((trace, index) => ({ index, line: lines[trace.meta] })).filter((trace) => trace.line);
   const axisOf = (trace) => plot.data[trace.index].yaxis.replace("y", "yaxis");
   let updating = false;
+  let again = false;
 
+  // what comes while Plotly is at work is done behind it
   async function zoomed() {
-    if (updating) return;
+    if (updating) {
+      again = true;
+      return;
+    }
     updating = true;
+    again = false;
+    try {
+      await fill();
+    } finally {
+      updating = false;
+      if (again) await zoomed();
+    }
+    draw();
+  }
+
+  async function fill() {
     const [begin, end] = plot._fullLayout.xaxis.range;
     const xs = [];
     const ys = [];
@@ -140,8 +156,6 @@
     const words = commandWords();
     if (words) await Plotly.restyle(plot, { text: [words] }, [marks]);
     await Plotly.update(plot, { x: xs, y: ys }, ranges, traces.map((trace) => trace.index));
-    updating = false;
-    draw();
   }
 
   // cursor and reference
@@ -259,7 +273,7 @@
       draw();
     });
     plot.on("plotly_relayout", zoomed);
-    plot.on("plotly_restyle", () => updating || zoomed());
+    plot.on("plotly_restyle", ([change]) => "text" in change || zoomed()); // the words are its own
   }
 
   async function begin() {

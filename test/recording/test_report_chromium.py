@@ -24,11 +24,14 @@ PROBE = """
 (async function () {
   const plot = document.getElementById("time"), found = {};
   while (plot.dataset.cycles !== "all") await new Promise((next) => setTimeout(next, 50));
+  const find = (title, name) => {
+    const axis = "y" + (plot.layout.annotations.findIndex((note) => note.text === title) + 1);
+    return plot.data.find((one) => one.yaxis === axis && one.name === name);
+  };
   const of = (title, name) => {
-    const place = plot.layout.annotations.findIndex((note) => note.text === title);
-    const axis = "y" + (place + 1);
-    const trace = plot.data.find((one) => one.yaxis === axis && one.name === name);
-    return { x: Array.from(trace.x), y: Array.from(trace.y), range: plot.layout["yaxis" + (place + 1)].range };
+    const trace = find(title, name);
+    const range = plot.layout[trace.yaxis.replace("y", "yaxis")].range;
+    return { x: Array.from(trace.x), y: Array.from(trace.y), range };
   };
   const mouse = (kind, time, target) => {
     const layout = plot._fullLayout, box = plot.getBoundingClientRect();
@@ -62,6 +65,34 @@ PROBE = """
   await until(() => scale() !== before);
   found.again = of("X: position in mm", "actual");
   found.words = plot.data.find((one) => one.meta === "commands").text;
+
+  const update = Plotly.update;
+  const zoom = (begin, end) => Plotly.relayout(plot, { "xaxis.range[0]": begin, "xaxis.range[1]": end });
+  const busy = (meanwhile) => {
+    Plotly.update = async (...all) => {
+      Plotly.update = update;
+      await meanwhile();
+      return update(...all);
+    };
+  };
+  const shows = (time) => {
+    const { x } = of("X: position in mm", "actual");
+    return x.length < 100 && x.includes(time);
+  };
+  busy(() => zoom(0.9, 0.95));
+  await zoom(0.5, 0.55);
+  await until(() => shows(0.92));
+  found.late = of("X: position in mm", "actual");
+  const hidden = plot.data.indexOf(find("X: position in mm", "set"));
+  busy(() => Plotly.restyle(plot, { visible: "legendonly" }, [hidden]));
+  await zoom(0.24, 0.26);
+  await until(() => shows(0.25) && of("X: position in mm", "actual").range[0] > 5);
+  found.alone = of("X: position in mm", "actual");
+  busy(() => Promise.reject(new Error("Plotly failed")));
+  await zoom(1.1, 1.15);
+  await zoom(1.5, 1.55);
+  await until(() => shows(1.52));
+  found.behind = of("X: position in mm", "actual");
   const result = document.createElement("pre");
   result.id = "probe";
   result.textContent = encodeURIComponent(JSON.stringify(found));
@@ -83,7 +114,7 @@ def open_page(page):
         "--host-resolver-rules=MAP * ~NOTFOUND",
         f"--user-data-dir={page.parent / 'profile'}",
         "--enable-logging=stderr",
-        "--virtual-time-budget=20000",
+        "--virtual-time-budget=40000",
         "--window-size=1400,1000",
         "--dump-dom",
         page.as_uri(),
@@ -128,7 +159,7 @@ def test_nothing_offers_to_send_data_away(opened):
 
 @pytest.fixture(scope="module")
 def probe(tmp_path_factory):
-    """What the plots held before, while and after the page was zoomed to 0.25 ... 0.3 s."""
+    """What the plots held before, while and after the page was zoomed to 0.25 ... 0.3 s, and behind later zooms."""
     folder = tmp_path_factory.mktemp("probe")
     smooth_run(folder / "run.mcap", 2.0)
     recorded = read_recording(folder / "run.mcap")
@@ -165,6 +196,22 @@ def test_scales_follow_the_zoom(probe, position):
     low, high = probe["again"]["range"]
     assert low < -40.0 and high > 40.0
     assert max(probe["again"]["y"]) == pytest.approx(max(map(position, range(2000))), abs=1e-4)
+
+
+def shown_cycles(part):
+    return {round(time * 1000) for time in part["x"]}
+
+
+def test_what_comes_while_plotly_is_at_work_is_not_lost(probe, position):
+    """Another zoom, and a line hidden by its legend entry: points and scale are those of the last window."""
+    assert set(range(900, 951)) <= shown_cycles(probe["late"]) <= set(range(898, 953))
+    low, high = probe["alone"]["range"]
+    actual = [position(cycle) for cycle in range(239, 262)]
+    assert 0.0 < min(actual) - low < 2.0 and 0.0 < high - max(actual) < 2.0  # the set position is about 0 there
+
+
+def test_zooming_goes_on_behind_a_failure(probe):
+    assert set(range(1500, 1551)) <= shown_cycles(probe["behind"]) <= set(range(1498, 1553))
 
 
 def test_cursor_and_reference(probe, position):
