@@ -10,7 +10,7 @@ import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.layout import Records
-from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+from cnc_ptp.recording.reader import AXIS_STATE, SPINDLE_STATE, Recorded
 
 NOT_RECORDED = 26011
 
@@ -20,7 +20,8 @@ def selected(
 ) -> Recorded:
     """The states, events and commands from `begin` up to `end` in s of axes and spindles `units`.
 
-    Channels stay. Raises CncError 26011 for a unit that is not recorded and for a time in which there is nothing.
+    What is of no axis and no spindle stays. Raises CncError 26011 for a unit that is not recorded and for a time in
+    which there is nothing.
     """
     if units:
         recorded = _of_units(recorded, units)
@@ -56,10 +57,16 @@ def _of_units(recorded: Recorded, units: Sequence[str]) -> Recorded:
             raise CncError(
                 NOT_RECORDED, f"recording {recorded.path}: holds no axis or spindle '{unit}'{hint}; nothing was drawn"
             )
-    kept = {*units, *recorded.of_type(CHANNEL_STATE)}
-    states = {topic: rows for topic, rows in recorded.states.items() if topic[1:].removesuffix("/state") in kept}
-    commands = [command for command in recorded.commands if command.target not in known or command.target in units]
-    return replace(recorded, states=states, commands=commands)
+    left_out = {*known} - {*units}
+    states = {
+        topic: rows for topic, rows in recorded.states.items() if topic[1:].removesuffix("/state") not in left_out
+    }
+    return replace(
+        recorded,
+        states=states,
+        events=[event for event in recorded.events if event.source not in left_out],
+        commands=[command for command in recorded.commands if command.target not in left_out],
+    )
 
 
 def _between(rows: Records, low: float, high: float) -> Records:

@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
+from cnc_ptp.machine.blocks import Event
 from cnc_ptp.plots.over_time import Marker, label_rows
 from cnc_ptp.plots.recording_picture import Heading, draw_rows
 from cnc_ptp.recording.fields import chosen_rows, quantity, usual_rows
@@ -145,6 +146,15 @@ def test_part_of_a_recording(recording):
     result = call("plot", recording, "--from", "0.2", "--to", "0.4", "-o", recording.parent / "part.png")
     assert result.output == f"{recording.parent}/part.png: 8 plots, 0.2 s to 0.4 s\n"
     assert (recording.parent / "part.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_events_of_other_axes_are_left_out(recording):
+    """Those of the chosen ones stay, and those that come of no axis and no spindle."""
+    recorded = read_recording(recording)
+    recorded.events = [Event(300, source, 1, 23001, "text") for source in ("x", "c", "plc", "supervisor")]
+    part = selected(recorded, units=["x"])
+    assert [event.source for event in part.events] == ["x", "plc", "supervisor"]
+    assert len(selected(recorded, begin=0.1).events) == 4
 
 
 def test_report_of_a_part(recording):
