@@ -8,11 +8,13 @@ DISTANCES = (
     "distance",
     "length",
     "difference",
+    "difference_limit",
     "activation_position",
+    "slave_position",
     "slave_offset",
-    "target_position",
     "following_error",
 )
+"""`master_position` and `master_offset` have none: their axis is the master, and may be of the other kind."""
 VELOCITIES = (
     "velocity",
     "process_velocity",
@@ -42,9 +44,6 @@ BY_SUFFIX = {
     "_deg_s2": "deg/s²",
     "_deg": "deg",
     "_percent": "%",
-    "_ms": "ms",
-    "_us": "µs",
-    "_s": "s",
 }
 """Names that end in their unit; the longer endings stand first."""
 ROLES = ("set_", "actual_")
