@@ -138,7 +138,7 @@ def curves(title: str, run: FigureRun, end: int) -> Iterator[Curve]:
 
 def fine_unit(title: str, run: FigureRun, drawn: list[Curve]) -> tuple[list[Curve], str]:
     """The curves and their unit; where a panel may, small ways in µm."""
-    units = [run.units[name].shown(panel.unit) for name, panel in drawn_panels(title, run)]
+    units = [run.units[name].unit_of(panel.fields[0]) for name, panel in drawn_panels(title, run)]
     fine = all(panel.fine for _, panel in drawn_panels(title, run)) and set(units) == {"mm"}
     micrometres = in_micrometres(drawn) if fine else None
     return (drawn, " or ".join(dict.fromkeys(units))) if micrometres is None else (micrometres, "µm")

@@ -18,6 +18,7 @@ from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.plots.over_time import Column, Marker
 from cnc_ptp.plots.panels import UNIT_KINDS
 from cnc_ptp.recording.command_words import brief
+from cnc_ptp.recording.units import unit_of
 from figures.scenario_head import FigureError, FigureScenario
 
 NOT_SHOWN = INTERNAL | {"reset_feedforward"}
@@ -32,9 +33,9 @@ class DrawnUnit:
     way: str
     torque: str
 
-    def shown(self, unit: str) -> str:
-        """A panel's unit as text: "{way}/s" is mm/s."""
-        return unit.format(way=self.way, torque=self.torque)
+    def unit_of(self, field: str) -> str:
+        """`set_velocity` is in mm/s."""
+        return unit_of(field, self.way, self.torque)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,14 +12,13 @@ from cnc_ptp.plots.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """One panel: the unit of its scale, its height in points, its fields and their colours.
+    """One panel: its height in points, its fields and their colours.
 
-    `unit`: {way} is mm or deg, {torque} is N or Nm. `fields` are set value and actual value, or one value alone.
-    `at_end`: the last value is written at the right, and not the extremes. `with_override`: the override is drawn as
-    the velocity that it asks for. `fine`: small values are shown in µm.
+    `fields` are set value and actual value, or one value alone. `at_end`: the last value is written at the right, and
+    not the extremes. `with_override`: the override is drawn as the velocity that it asks for. `fine`: small values are
+    shown in µm.
     """
 
-    unit: str
     height: float
     fields: tuple[str, ...]
     colours: Pair
@@ -45,23 +44,23 @@ def columns(block: type) -> tuple[str, ...]:
 
 
 AXIS = {
-    "position": Panel("{way}", 110.0, ("set_position", "actual_position"), BLUE, at_end=True),
-    "velocity": Panel("{way}/s", 130.0, ("set_velocity", "actual_velocity"), GREEN, with_override=True),
-    "acceleration": Panel("{way}/s²", 110.0, ("set_acceleration", "actual_acceleration"), RED),
-    "jerk": Panel("{way}/s³", 90.0, ("set_jerk",), PURPLE),
-    "following error": Panel("{way}", 80.0, ("following_error",), YELLOW, fine=True),
-    "command velocity": Panel("{way}/s", 90.0, ("command_velocity",), BLUE),
-    "feedforward": Panel("{way}/s", 90.0, ("feedforward_velocity",), PURPLE),
-    "additive velocity": Panel("{way}/s", 90.0, ("additive_velocity",), PURPLE),
-    "additive torque": Panel("{torque}", 90.0, ("additive_torque",), RED),
-    "friction current": Panel("digits", 90.0, ("friction_current",), RED),
-    "torque": Panel("{torque}", 110.0, ("actual_torque",), TEAL),
+    "position": Panel(110.0, ("set_position", "actual_position"), BLUE, at_end=True),
+    "velocity": Panel(130.0, ("set_velocity", "actual_velocity"), GREEN, with_override=True),
+    "acceleration": Panel(110.0, ("set_acceleration", "actual_acceleration"), RED),
+    "jerk": Panel(90.0, ("set_jerk",), PURPLE),
+    "following error": Panel(80.0, ("following_error",), YELLOW, fine=True),
+    "command velocity": Panel(90.0, ("command_velocity",), BLUE),
+    "feedforward": Panel(90.0, ("feedforward_velocity",), PURPLE),
+    "additive velocity": Panel(90.0, ("additive_velocity",), PURPLE),
+    "additive torque": Panel(90.0, ("additive_torque",), RED),
+    "friction current": Panel(90.0, ("friction_current",), RED),
+    "torque": Panel(110.0, ("actual_torque",), TEAL),
 }
 SPINDLE = {
-    "speed": Panel("rpm", 130.0, ("set_speed_rpm", "actual_speed_rpm"), GREEN, with_override=True),
-    "acceleration": Panel("deg/s²", 110.0, ("set_acceleration_deg_s2",), RED),
-    "position": Panel("deg", 110.0, ("set_position_deg", "actual_position_deg"), BLUE, at_end=True),
-    "following error": Panel("deg", 80.0, ("following_error_deg",), YELLOW),
+    "speed": Panel(130.0, ("set_speed_rpm", "actual_speed_rpm"), GREEN, with_override=True),
+    "acceleration": Panel(110.0, ("set_acceleration_deg_s2",), RED),
+    "position": Panel(110.0, ("set_position_deg", "actual_position_deg"), BLUE, at_end=True),
+    "following error": Panel(80.0, ("following_error_deg",), YELLOW),
 }
 UNIT_KINDS = {
     "axis": UnitKind(

@@ -27,6 +27,7 @@ from cnc_ptp.plots.panels import AXIS, SPINDLE, Panel
 from cnc_ptp.plots.sheet import GAP, HEADER, TITLE_OFFSET, Name, Sheet, draw_header, style_plot
 from cnc_ptp.recording.command_words import brief, shortened
 from cnc_ptp.recording.decimate import line_points
+from cnc_ptp.recording.fields import quantity
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.rows import SET, Line, Row
 
@@ -34,8 +35,8 @@ POINTS = 3000
 MOST_LABEL_ROWS = 4
 MOST_MARKS = 60
 LETTERS = 34
-OTHER = Panel("", 90.0, (), BLUE)
-ANGLE = replace(SPINDLE["position"], at_end=False)
+OTHER = Panel(90.0, (), BLUE)
+BY_QUANTITY = {quantity(field)[0]: panel for panel in (*SPINDLE.values(), *AXIS.values()) for field in panel.fields}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +68,7 @@ def draw_rows(recorded: Recorded, rows: Sequence[Row], heading: Heading, span: S
 
 def panel_of(row: Row) -> Panel:
     """Height and colours of the quantity, as the figures have them."""
-    if row.title == "angle":
-        return ANGLE
-    return SPINDLE[row.title] if row.title == "speed" else AXIS.get(row.title, OTHER)
+    return BY_QUANTITY.get(quantity(row.lines[0].field)[0], OTHER)
 
 
 def draw_row(plot: Axes, row: Row, panel: Panel, cycle_time: float, *, room_above: float) -> None:

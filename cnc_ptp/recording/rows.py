@@ -12,6 +12,7 @@ import numpy as np
 
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
+from cnc_ptp.recording.units import unit_of
 
 SET, ACTUAL, OTHER = "set", "actual", ""
 USUAL = ("position", "velocity", "acceleration", "following error", "speed")
@@ -77,9 +78,9 @@ def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mappin
         yield Row(name, "feed", "mm/min", feed)
     overrides = [Line(name, rows, "override_percent") for name, rows in {**channels, **axes, **spindles}.items()]
     if overrides:
-        yield Row("", "override", "%", overrides, legend=True)
+        yield _row("", "override", overrides, legend=True)
     for name, rows in channels.items():
-        yield Row(name, "program line", "", [Line("line", rows, "line")])
+        yield _row(name, "program line", [Line("line", rows, "line")])
     for name, rows in spindles.items():
         yield from _spindle_rows(name, rows)
     for name, rows in axes.items():
@@ -87,36 +88,44 @@ def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mappin
         yield from _control_rows(name, rows, units.get(name, "mm"), torque_units.get(name, "Nm or N"))
 
 
+def _row(
+    name: str, title: str, lines: list[Line], distance: str = "", torque: str = "", *, legend: bool = False
+) -> Row:
+    """In the unit of measurement of its fields; `distance`: mm or deg, `torque`: Nm or N."""
+    return Row(name, title, unit_of(lines[0].field, distance, torque), lines, legend)
+
+
 def _spindle_rows(name: str, rows: Records) -> Iterator[Row]:
-    yield Row(name, "speed", "rpm", _set_and_actual(rows, "set_speed_rpm", "actual_speed_rpm"))
+    yield _row(name, "speed", _set_and_actual(rows, "set_speed_rpm", "actual_speed_rpm"))
     angle = _set_and_actual(rows, "set_position_deg", "actual_position_deg")
     if np.any(rows["target_position_deg"] != rows["set_position_deg"]):
         angle.append(Line("target", rows, "target_position_deg"))
     if any(np.any(rows[line.field]) for line in angle):
-        yield Row(name, "angle", "deg", angle, legend=len(angle) > 2)
-    yield from _used(Row(name, "following error", "deg", [Line("following error", rows, "following_error_deg")]))
+        yield _row(name, "angle", angle, legend=len(angle) > 2)
+    yield from _used(_row(name, "following error", [Line("following error", rows, "following_error_deg")]))
 
 
-def _axis_rows(name: str, rows: Records, unit: str) -> Iterator[Row]:
+def _axis_rows(name: str, rows: Records, distance: str) -> Iterator[Row]:
     label = axis_label(name)
-    yield Row(label, "position", unit, _set_and_actual(rows, "set_position", "actual_position"))
-    yield Row(label, "velocity", f"{unit}/s", _set_and_actual(rows, "set_velocity", "actual_velocity"))
-    yield Row(label, "acceleration", f"{unit}/s²", [Line("set", rows, "set_acceleration", SET)])
-    yield Row(label, "jerk", f"{unit}/s³", [Line("set", rows, "set_jerk", SET)])
-    yield Row(label, "following error", unit, [Line("following error", rows, "following_error")])
+    yield _row(label, "position", _set_and_actual(rows, "set_position", "actual_position"), distance)
+    yield _row(label, "velocity", _set_and_actual(rows, "set_velocity", "actual_velocity"), distance)
+    yield _row(label, "acceleration", [Line("set", rows, "set_acceleration", SET)], distance)
+    yield _row(label, "jerk", [Line("set", rows, "set_jerk", SET)], distance)
+    yield _row(label, "following error", [Line("following error", rows, "following_error")], distance)
 
 
-def _control_rows(name: str, rows: Records, unit: str, torque_unit: str) -> Iterator[Row]:
+def _control_rows(name: str, rows: Records, distance: str, torque_unit: str) -> Iterator[Row]:
     """What goes to the drive besides the command of the position controller."""
+    label = axis_label(name)
     feedforward = [
         Line("to the position controller", rows, "feedforward_velocity", SET),
         Line("to the drive", rows, "additive_velocity", ACTUAL),
     ]
     torque = [Line("additive", rows, "additive_torque", SET), Line("drive", rows, "actual_torque", ACTUAL)]
     friction = [Line("friction compensation", rows, "friction_current")]
-    yield from _used(Row(axis_label(name), "feedforward", f"{unit}/s", feedforward, legend=True))
-    yield from _used(Row(axis_label(name), "torque", torque_unit, torque, legend=True))
-    yield from _used(Row(axis_label(name), "friction compensation, current", "digits of the drive", friction))
+    yield from _used(_row(label, "feedforward", feedforward, distance, legend=True))
+    yield from _used(_row(label, "torque", torque, torque=torque_unit, legend=True))
+    yield from _used(_row(label, "friction compensation, current", friction))
 
 
 def _set_and_actual(rows: Records, set_field: str, actual_field: str) -> list[Line]:

@@ -9,9 +9,11 @@ from click.testing import CliRunner
 from cnc_ptp import cli
 from cnc_ptp.machine.blocks import Event
 from cnc_ptp.plots.over_time import Marker, label_rows
-from cnc_ptp.plots.recording_picture import Heading, draw_rows
+from cnc_ptp.plots.panels import AXIS, SPINDLE
+from cnc_ptp.plots.recording_picture import OTHER, Heading, draw_rows, panel_of
 from cnc_ptp.recording.fields import chosen_rows, quantity, usual_rows
 from cnc_ptp.recording.reader import read_recording
+from cnc_ptp.recording.rows import Line, Row
 from cnc_ptp.recording.selection import selected
 
 SCENARIO = """
@@ -191,6 +193,23 @@ def test_values_and_labels_of_the_picture(recording):
     drawn = next(line for line in first.lines if len(line.get_xdata()) > 2 and line.get_linewidth() == 1.4)
     assert np.max(drawn.get_ydata()) == highest
     assert (first.get_xlim(), second.get_xlim()) == ((0.0, 1.5), (0.0, 1.5))
+
+
+@pytest.mark.parametrize(
+    ("field", "panel"),
+    [
+        ("set_velocity", AXIS["velocity"]),
+        ("actual_speed_rpm", SPINDLE["speed"]),
+        ("actual_position_deg", AXIS["position"]),
+        ("following_error_deg", AXIS["following error"]),
+        ("feedforward_velocity", AXIS["feedforward"]),
+        ("friction_current", AXIS["friction current"]),
+        ("override_percent", OTHER),
+    ],
+)
+def test_pictures_have_the_panels_of_the_figures(field, panel):
+    """Whatever the row is called."""
+    assert panel_of(Row("", "as the report calls it", "", [Line("", np.empty(0), field)])) == panel
 
 
 def test_labels_of_a_part_begin_at_its_begin():

@@ -16,7 +16,7 @@ from figures import __main__ as command
 from figures.external_profile import FILE, csv_text
 from figures.kinds import KINDS, draw
 from figures.picture import label_rows
-from figures.run import Marker, run_figure
+from figures.run import DrawnUnit, Marker, run_figure
 from figures.scenario_head import ROOT, FigureError, FigureScenario, read_head
 
 HEAD = {"title": "A move", "caption": "One millimetre.", "machine": "config/ptp.yaml", "axes": "x"}
@@ -117,6 +117,14 @@ def test_commands_of_the_set_up_are_not_marked():
 def test_setpoints_that_come_block_by_block_are_marked_once():
     texts = [marker.text for marker in run_of("ptp_external_setpoints").markers]
     assert texts == ["external enable 600", "external setpoints", "external disable"]
+
+
+@pytest.mark.parametrize(
+    ("title", "unit"),
+    [("velocity", "deg/s"), ("torque", "Nm"), ("friction current", "digits of the drive")],
+)
+def test_panels_have_the_unit_of_their_fields(title, unit):
+    assert DrawnUnit("axis", "deg", "Nm").unit_of(UNIT_KINDS["axis"].panels[title].fields[0]) == unit
 
 
 # pictures
