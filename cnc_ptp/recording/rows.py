@@ -18,6 +18,9 @@ SET, ACTUAL, OTHER = "set", "actual", ""
 USUAL = ("position", "velocity", "acceleration", "following error", "speed")
 """Titles of what a picture shows unless it is told otherwise."""
 
+FEEDFORWARD = ("feedforward_velocity", "additive_velocity", "additive_torque")
+"""What the feedforward of an axis gives."""
+
 
 @dataclass(frozen=True, slots=True)
 class Line:
@@ -76,9 +79,10 @@ def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mappin
     for name, rows in channels.items():
         feed = [Line("set", rows, "programmed_feed", SET, 60.0), Line("actual", rows, "path_velocity", ACTUAL, 60.0)]
         yield Row(name, "feed", "mm/min", feed)
-    overrides = [Line(name, rows, "override_percent") for name, rows in {**channels, **axes, **spindles}.items()]
-    if overrides:
-        yield _row("", "override", overrides, legend=True)
+    yield from _shared_row("override", "override_percent", {**channels, **axes, **spindles})
+    fed_forward = {name: rows for name, rows in {**axes, **spindles}.items() if _is_fed_forward(rows)}
+    for row in _shared_row("feedforward weight", "feedforward_percent", fed_forward):
+        yield from _used(row)
     for name, rows in channels.items():
         yield _row(name, "program line", [Line("line", rows, "line")])
     for name, rows in spindles.items():
@@ -93,6 +97,18 @@ def _row(
 ) -> Row:
     """In the unit of measurement of its fields; `distance`: mm or deg, `torque`: Nm or N."""
     return Row(name, title, unit_of(lines[0].field, distance, torque), lines, legend)
+
+
+def _shared_row(title: str, field: str, units: Mapping[str, Records]) -> Iterator[Row]:
+    """One row with a line of each unit, if there are any."""
+    if units:
+        yield _row("", title, [Line(name, rows, field) for name, rows in units.items()], legend=True)
+
+
+def _is_fed_forward(rows: Records) -> bool:
+    """Whether the feedforward of an axis gives anything; the states of a spindle have only its weight."""
+    outputs = [name for name in FEEDFORWARD if name in (rows.dtype.names or ())]
+    return not outputs or any(np.any(rows[name]) for name in outputs)
 
 
 def _spindle_rows(name: str, rows: Records) -> Iterator[Row]:

@@ -60,6 +60,22 @@ def test_spindle_has_angle_target_and_following_error_where_they_are_in_use(reco
     }
 
 
+def test_weight_of_the_feedforward_is_shown_where_it_acts(recorded):
+    """In x and the spindle, constant as it is; y has a weight but nothing to weigh, z and old recordings have none."""
+    assert not any(row.title == "feedforward weight" for row in time_rows(recorded, {}, {}))
+    x, y, s = (recorded.states[f"/{unit}/state"].copy() for unit in "xys")
+    x["feedforward_percent"], y["feedforward_percent"], s["feedforward_percent"] = 100.0, 100.0, 80.0
+    x["additive_torque"] = 0.5
+    recorded.states |= {"/x/state": x, "/y/state": y, "/s/state": s}
+    [row] = [row for row in time_rows(recorded, {}, {}) if row.title == "feedforward weight"]
+    assert (row.heading, row.legend) == ("Feedforward weight in %", True)
+    assert [(line.name, line.rows[line.field][0]) for line in row.lines] == [("x", 100.0), ("s", 80.0)]
+    names = [name for name in x.dtype.names if name != "feedforward_percent"]
+    recorded.states["/x/state"] = x[names]
+    [row] = [row for row in time_rows(recorded, {}, {}) if row.title == "feedforward weight"]
+    assert [line.name for line in row.lines] == ["s"]
+
+
 def test_space_is_drawn_only_where_there_is_a_path_in_it(recorded):
     assert len(path_figures(recorded, {})) == 2
     assert len(path_figures(still(recorded, "z"), {})) == 1
