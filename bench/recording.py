@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, Writer
 from bench.figures import Effort, Figure, Say, median_of, medians_of, stopwatch
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
-from cnc_ptp.recording.report import write_report
+from cnc_ptp.recording.report import report_page
 from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.verify import verify
 from cnc_ptp.recording.writer import Recording
@@ -166,5 +166,5 @@ def reading(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
     yield Figure("read a recording", length / read, "× real time")
     yield Figure("compare with a second run", length / compare, "× real time")
     page = path.with_suffix(".html")
-    report = median_of(effort.runs, seconds(lambda: write_report(recorded, page)))
+    report = median_of(effort.runs, seconds(lambda: page.write_text(report_page(recorded), encoding="utf-8")))
     yield Figure(f"report of {length:.0f} s", report, "s")

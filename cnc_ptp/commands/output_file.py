@@ -34,13 +34,13 @@ def check_page(output: str, **inputs: str | None) -> None:
         raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending; nothing was started")
 
 
-def write_output(output: str, content: str | bytes) -> None:
-    """Writes a file. Raises CncError 27030."""
+def write_output(output: str, content: str | bytes, *, remains: str = "the result above is all") -> None:
+    """Writes a file. Raises CncError 27030 with what `remains` without it."""
     data = content.encode() if isinstance(content, str) else content
     try:
         Path(output).write_bytes(data)
     except OSError as error:
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; the result above is all") from None
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; {remains}") from None
 
 
 def deliver(console: Console, output: str | None, text: str) -> None:

@@ -36,7 +36,8 @@ def plot(
     title = Path(program).name if program else whole.path.name
     recorded = in_machine_order(selected(whole, begin=begin, end=end, units=axes))
     rows = rows_of(recorded, topics)
-    write_output(output, content_of(recorded, rows, title, picture_kind(output)))
+    content = content_of(recorded, rows, title, picture_kind(output))
+    write_output(output, content, remains="the recording is unchanged")
     begin, end = time_range(recorded)
     print(f"{output}: {len(rows)} plots, {begin:g} s to {end:g} s")
     if not recorded.complete:

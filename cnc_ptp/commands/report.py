@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from cnc_ptp.commands.output_file import check_page
+from cnc_ptp.commands.output_file import check_page, write_output
 from cnc_ptp.recording.reader import Recorded, read_recording
-from cnc_ptp.recording.report import write_report
+from cnc_ptp.recording.report import report_page
 from cnc_ptp.recording.selection import selected
 
 
@@ -19,7 +19,8 @@ def report(recording: str, output: str, begin: float | None, end: float | None, 
     whole = read_recording(recording)
     recorded = selected(whole, begin=begin, end=end, units=axes)
     made = datetime.now(tz=UTC).strftime("%Y-%m-%d %H:%M UTC")
-    write_report(recorded, output, program=program_of(whole), date=made)
+    page = report_page(recorded, program=program_of(whole), date=made)
+    write_output(output, page, remains="the recording is unchanged")
     size = Path(output).stat().st_size / 1e6
     first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
     print(f"{output}: {size:.1f} MB, cycles {first} to {recorded.last_cycle}")

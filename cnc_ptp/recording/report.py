@@ -11,7 +11,6 @@ from typing import Any
 import plotly.graph_objects as go
 from plotly.offline import get_plotlyjs
 
-from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
 from cnc_ptp.recording.command_words import argument_words, json_object
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
@@ -87,29 +86,13 @@ summary { cursor: pointer; font-weight: 600; }
 """
 
 
-def write_report(
-    recorded: Recorded, out_html: str | Path, *, program: str = "", machine: str = "", date: str = ""
-) -> None:
-    """Writes the page. `program`, `machine` and `date` stand in its head; any text in it is escaped.
-
-    Raises CncError 26010 when the page cannot be written.
-    """
-    page = report_page(recorded, program=program, machine=machine, date=date)
-    try:
-        Path(out_html).write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise CncError(
-            26010, f"report {out_html}: cannot be written: {error.strerror}; the recording is unchanged, check the path"
-        ) from error
-
-
-def report_page(recorded: Recorded, *, program: str = "", machine: str = "", date: str = "") -> str:
-    """The page as text."""
+def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str:
+    """The page as text. `program` and `date` stand in its head; any text in it is escaped."""
     recorded = in_machine_order(recorded)
     figures = summary(recorded)
     title = program or recorded.path.name
     parts = [
-        _head(title, [part for part in (machine, date, recorded.path.name) if part]),
+        _head(title, [part for part in (date, recorded.path.name) if part]),
         "<main>",
         _incomplete(recorded),
         _cards(figures),

@@ -184,6 +184,14 @@ def test_output_that_is_no_picture_or_the_recording(recording):
     assert (result.exit_code, result.stderr) == (2, text)
 
 
+@pytest.mark.parametrize(("command", "name"), [("report", "full.html"), ("plot", "full.svg")])
+def test_output_that_cannot_be_written(recording, tmp_path, command, name):
+    (tmp_path / name).symlink_to("/dev/full")
+    result = call(command, recording, "-o", tmp_path / name)
+    text = f"P-ERR-27030 {tmp_path}/{name} cannot be written: No space left on device; the recording is unchanged\n"
+    assert (result.exit_code, result.stderr) == (2, text)
+
+
 def test_values_and_labels_of_the_picture(recording):
     recorded = read_recording(recording)
     rows = [row for row in usual_rows(recorded, {"x": "mm", "c": "deg"}) if row.title == "velocity"]

@@ -11,7 +11,7 @@ import pytest
 from recording_support import smooth_run
 
 from cnc_ptp.recording.reader import read_recording
-from cnc_ptp.recording.report import plots_page, write_report
+from cnc_ptp.recording.report import plots_page, report_page
 from cnc_ptp.recording.rows import time_rows
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -127,7 +127,8 @@ def open_page(page):
 def opened(tmp_path_factory):
     folder = tmp_path_factory.mktemp("browser")
     smooth_run(folder / "run.mcap", 2.0, text=EVIL)
-    write_report(read_recording(folder / "run.mcap"), folder / "run.html", program="bracket.nc")
+    page = report_page(read_recording(folder / "run.mcap"), program="bracket.nc")
+    (folder / "run.html").write_text(page, encoding="utf-8")
     return open_page(folder / "run.html")
 
 
