@@ -5,22 +5,19 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from html import escape
-from typing import Any
 
-import matplotlib
 import plotly.graph_objects as go
 from matplotlib.figure import Figure
-from plotly.offline import get_plotlyjs
 
 from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.colours import BLUE, GREEN, RED, YELLOW
-from cnc_ptp.recording.report import CONFIG, SECURITY, STYLE
+from cnc_ptp.plots.svg import svg_text
+from cnc_ptp.recording.report import CONFIG, page_head
 
 KINDS = ("svg", "png", "html")
 COLOURS = (BLUE.set, RED.set, GREEN.set, YELLOW.set)
-SETTINGS: dict[Any, Any] = {"svg.hashsalt": "cnc_ptp", "svg.fonttype": "none"}
 
 
 def picture_kind(output: str) -> str:
@@ -38,22 +35,18 @@ def check_picture(output: str, **inputs: str | None) -> None:
 
 def picture_bytes(drawing: Figure, kind: str, *, title: str) -> bytes:
     """An `svg` or `png` file, the same for the same drawing."""
+    if kind == "svg":
+        return svg_text(drawing, title=title).encode()
     buffer = io.BytesIO()
-    with matplotlib.rc_context(SETTINGS):
-        metadata = {"Date": None, "Creator": None, "Title": title} if kind == "svg" else {"Software": None}
-        drawing.savefig(buffer, format=kind, dpi=150, metadata=metadata)
+    drawing.savefig(buffer, format=kind, dpi=150, metadata={"Software": None})
     return buffer.getvalue()
 
 
 def plot_page(plot: go.Figure, lines: Sequence[str]) -> str:
     """One self-contained HTML page: title (the first of `lines`), plot, and the other lines as a table of text."""
-    title, table = escape(lines[0]), escape("\n".join(lines[1:]))
+    table = escape("\n".join(lines[1:]))
     drawn = plot.to_html(full_html=False, include_plotlyjs=False, config=CONFIG, div_id="plot")
     return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<meta http-equiv="Content-Security-Policy" content="{SECURITY}">'
-        f"<title>{title}</title><style>{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
-        f"<header><h1>{title}</h1></header><main>\n"
+        f"{page_head(lines[0])}<main>\n"
         f"<section>{drawn}</section><section><pre>{table}</pre></section></main></body></html>\n"
     )

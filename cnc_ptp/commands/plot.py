@@ -10,7 +10,6 @@ from cnc_ptp.commands.picture_file import check_picture, picture_bytes, picture_
 from cnc_ptp.commands.report import program_of
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.recording_picture import Heading, draw_rows
-from cnc_ptp.plots.svg import svg_text
 from cnc_ptp.recording.fields import chosen_rows, usual_rows
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.report import plots_page
@@ -63,4 +62,4 @@ def content_of(recorded: Recorded, rows: list[Row], title: str, kind: str) -> st
     begin, end = time_range(recorded)
     where = f"Recording {recorded.path.name}, {begin:g} s to {end:g} s."
     drawing = draw_rows(recorded, rows, Heading(title, where), (begin, end))
-    return svg_text(drawing, title=title) if kind == "svg" else picture_bytes(drawing, kind, title=title)
+    return picture_bytes(drawing, kind, title=title)

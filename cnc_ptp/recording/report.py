@@ -92,7 +92,7 @@ def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str
     figures = summary(recorded)
     title = program or recorded.path.name
     parts = [
-        _head(title, [part for part in (date, recorded.path.name) if part]),
+        page_head(title, [part for part in (date, recorded.path.name) if part]),
         "<main>",
         _incomplete(recorded),
         _cards(figures),
@@ -111,17 +111,19 @@ def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str
 def plots_page(recorded: Recorded, rows: list[Row], *, title: str) -> str:
     """A page of some plots alone."""
     plots = _section("Over time", time_plots(recorded, rows), HINT)
-    body = [_head(title, [recorded.path.name]), "<main>", _incomplete(recorded), plots, "</main></body></html>\n"]
+    body = [page_head(title, [recorded.path.name]), "<main>", _incomplete(recorded), plots, "</main></body></html>\n"]
     return "\n".join(body)
 
 
-def _head(title: str, details: Sequence[str]) -> str:
+def page_head(title: str, details: Sequence[str] = ()) -> str:
+    """All of a page before its main part."""
+    below = f"<p>{' · '.join(map(escape, details))}</p>" if details else ""
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{SECURITY}">'
         f"<title>{escape(title)}</title><style>{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
-        f"<header><h1>{escape(title)}</h1><p>{' · '.join(map(escape, details))}</p></header>"
+        f"<header><h1>{escape(title)}</h1>{below}</header>"
     )
 
 

@@ -11,6 +11,7 @@ import yaml
 from commands_support import MILL, PTP, call, changed_mill
 
 from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, comparison_lines
+from cnc_ptp.plots.colours import DARK
 from cnc_ptp.recording.reader import read_recording
 
 RADIUS, FEED = 25.0, 2000.0
@@ -128,6 +129,9 @@ def test_both_directions_need_a_ring_at_least_as_wide(comparison):
 def test_pictures(comparison):
     svg, png, page = (picture.read_bytes() for picture in comparison[1])
     assert svg.startswith(b"<?xml") and svg.count(b"without feedforward") == 4 and b"Circle test XY" in svg
+    style, body = svg.decode().split("</style>")
+    assert "prefers-color-scheme: dark" in style
+    assert set(re.findall(r"#[0-9a-f]{6}", body)) <= set(DARK)
     assert png.startswith(b"\x89PNG\r\n")
     text = page.decode()
     assert text.startswith("<!DOCTYPE html>") and "default-src 'none'" in text

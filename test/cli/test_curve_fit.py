@@ -14,6 +14,7 @@ from cnc_ptp.commissioning.curve_points import CurvePoint
 from cnc_ptp.commissioning.faults import CURVE_RISES
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import CurveParameters, ParameterError, read_machine
+from cnc_ptp.plots.colours import DARK
 from cnc_ptp.recording.reader import read_recording
 
 POINTS = [(12_000, 16_000), (24_000, 8000), (36_000, 4000), (48_000, 2000)]
@@ -141,6 +142,9 @@ def test_pictures(tmp_path):
     svg, png, page = (picture.read_bytes() for picture in pictures)
     for text in (b"speed in rpm", b"n_grenz", b"a_min", b"polynomial through 4 points"):
         assert text in svg
+    style, body = svg.decode().split("</style>")
+    assert "prefers-color-scheme: dark" in style
+    assert set(re.findall(r"#[0-9a-f]{6}", body)) <= set(DARK)
     assert png.startswith(b"\x89PNG\r\n")
     assert page.startswith(b"<!DOCTYPE html>")
     assert "b3       -1.92901235e-10 s/°²" in page.decode()
