@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from cnc_ptp.plots.svg import svg_text, write_if_changed
+from cnc_ptp.plots.svg import svg_text
 from figures.kinds import draw
 from figures.run import run_figure
 from figures.scenario_head import ROOT, FigureError, read_head
@@ -26,6 +26,15 @@ def draw_figure(scenario: Path, pictures: Path) -> str:
     change = "written" if write_if_changed(picture, text) else "unchanged"
     size = len(text.encode()) / 1000
     return f"{figure.name}: {run.cycles * run.cycle_time:.2f} s of machine time, {size:.0f} kB, {change}"
+
+
+def write_if_changed(path: Path, text: str) -> bool:
+    """Writes a file unless it has that text already; True when written."""
+    if path.exists() and path.read_text(encoding="utf-8") == text:
+        return False
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return True
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})

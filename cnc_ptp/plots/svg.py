@@ -1,10 +1,9 @@
-"""Writes a drawing as SVG: the same bytes for the same motion, small, readable on light and on dark pages."""
+"""A drawing as SVG: the same bytes for the same motion, small, readable on light and on dark pages."""
 
 from __future__ import annotations
 
 import io
 import re
-from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -50,12 +49,3 @@ def style() -> str:
     ]
     dark = "\n".join(rules)
     return f"text{{font-family:{FONTS}!important}}\n@media (prefers-color-scheme: dark){{\n{dark}\n}}\n"
-
-
-def write_if_changed(path: Path, text: str) -> bool:
-    """Writes a file unless it has that text already; True when written."""
-    if path.exists() and path.read_text(encoding="utf-8") == text:
-        return False
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    return True

@@ -53,17 +53,3 @@ def _deflated(numbers: npt.NDArray[np.int32], order: int) -> bytes:
     planes = zigzag.view(np.uint8).reshape(-1, 4).T
     compressor = zlib.compressobj(6, zlib.DEFLATED, -15)
     return compressor.compress(np.ascontiguousarray(planes).tobytes()) + compressor.flush()
-
-
-def unpacked(column: dict[str, Any]) -> npt.NDArray[np.float64]:
-    """The values again; as report.js does it."""
-    data = zlib.decompress(base64.b64decode(column["text"]), -15)
-    planes = np.frombuffer(data, dtype=np.uint8).reshape(4, -1)
-    zigzag = np.ascontiguousarray(planes.T).view("<u4")[:, 0]
-    wrapped = (zigzag >> np.uint32(1)) ^ (np.uint32(0) - (zigzag & np.uint32(1)))
-    for _ in range(column["order"]):
-        wrapped = np.cumsum(wrapped, dtype=np.uint32)
-    numbers = wrapped.view(np.int32)
-    values: npt.NDArray[np.float64] = column["offset"] + column["step"] * numbers.astype(np.float64)
-    values[numbers == np.iinfo(np.int32).min] = np.nan
-    return values

@@ -19,7 +19,7 @@ from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points, path_points
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import OTHER, SET, Row, standing, time_rows
+from cnc_ptp.recording.rows import OTHER, SET, Row, standing
 from cnc_ptp.recording.statistics import axis_units
 
 SET_COLOUR, ACTUAL_COLOUR, OTHER_COLOUR, DEVIATION = "#5b93d6", "#d9480f", "#6a4fa3", "#b3261e"
@@ -52,20 +52,11 @@ STATE_COLOURS = {
 SEVERITY_COLOURS = {Severity.INFO: "#5b6b7f", Severity.WARNING: "#e0a100", Severity.ERROR: "#c62828"}
 
 
-def time_figure(
-    recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str] | None = None
-) -> go.Figure:
-    """All quantities over time, one above the other; zooming one of them zooms all.
-
-    `units`: mm or deg by axis; `torque_units`: Nm or N. What does not move or is not in use has no plot. The lines are
-    thinned out; report.js takes their place by those of `time_columns` as the page is zoomed.
-    """
-    rows = list(time_rows(recorded, units, torque_units or {}))
-    return rows_figure(recorded, rows)
-
-
 def rows_figure(recorded: Recorded, rows: Sequence[Row]) -> go.Figure:
-    """States, events and commands, and below them the rows."""
+    """States, events and commands, and below them the rows; zooming one of them zooms all.
+
+    The lines are thinned out; report.js takes their place by those of `time_columns` as the page is zoomed.
+    """
     count = len(rows) + 1
     first = max(ROW_HEIGHT, BAND_HEIGHT * (2 + len(recorded.states)))
     height = first + len(rows) * (ROW_HEIGHT + ROW_GAP)

@@ -260,11 +260,8 @@ class Recording:
         require_shape(kind_of(block), block)
         self._block(topic_of(name, "block"), kind_of(block).block.name, block, None)
 
-    def axis_block_message(self, name: str, block: AxisBlock) -> None:
-        """`/<name>/block`."""
-        self._block_alone(name, block)
-
     def spindle_block_message(self, name: str, block: SpindleBlock) -> None:
+        """`/<name>/block`."""
         self._block_alone(name, block)
 
     def channel_block_message(self, name: str, block: ChannelBlock) -> None:

@@ -7,6 +7,8 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
+import plotly.graph_objects as go
+
 from cnc_ptp.machine.blocks import (
     AxisBlock,
     Block,
@@ -19,6 +21,9 @@ from cnc_ptp.machine.blocks import (
     PlcBlock,
     SpindleBlock,
 )
+from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.report_figures import rows_figure
+from cnc_ptp.recording.rows import time_rows
 from cnc_ptp.recording.writer import Recording
 
 MACHINE = "/machine:\n  ros__parameters: {axes: [x, y, z], note: 'Fräse'}\n"
@@ -209,3 +214,8 @@ def _channel(first: int, cycles: int) -> ChannelBlock:
         state=[state] * 10,
         error_id=[0] * 10,
     )
+
+
+def time_figure(recorded: Recorded, units: dict[str, str], torque_units: dict[str, str] | None = None) -> go.Figure:
+    """All that a report draws over time; `units`: mm or deg by axis, `torque_units`: Nm or N."""
+    return rows_figure(recorded, list(time_rows(recorded, units, torque_units or {})))

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recording_support import MACHINE, smooth_run
+from recording_support import MACHINE, smooth_run, time_figure
 
 from cnc_ptp.machine.blocks import AxisStateCode, CommandRecord, Event
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, read_recording
 from cnc_ptp.recording.report import report_page
-from cnc_ptp.recording.report_figures import path_axes, path_figures, state_bands, time_figure
+from cnc_ptp.recording.report_figures import path_axes, path_figures, state_bands
 from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.statistics import Extreme, axis_units, in_machine_order, last_diagnostics, summary, torque_units
 from cnc_ptp.recording.writer import Recording

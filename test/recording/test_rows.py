@@ -1,17 +1,20 @@
 """What of a recording has a plot, columns as texts, commands in words."""
 
+import base64
+import zlib
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from recording_support import smooth_run
+from recording_support import smooth_run, time_figure
 
 from cnc_ptp.machine.blocks import CommandRecord
-from cnc_ptp.recording.columns import STEPS, packed, unpacked
+from cnc_ptp.recording.columns import STEPS, packed
 from cnc_ptp.recording.command_words import argument_words, brief, command_words
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.report import report_page
-from cnc_ptp.recording.report_figures import path_figures, time_figure
+from cnc_ptp.recording.report_figures import path_figures
 from cnc_ptp.recording.rows import standing, time_rows
 
 
@@ -137,6 +140,20 @@ def test_units_are_those_of_the_axis():
 
 
 # columns
+
+
+def unpacked(column):
+    """The values again; as report.js does it."""
+    data = zlib.decompress(base64.b64decode(column["text"]), -15)
+    planes = np.frombuffer(data, dtype=np.uint8).reshape(4, -1)
+    zigzag = np.ascontiguousarray(planes.T).view("<u4")[:, 0]
+    wrapped = (zigzag >> np.uint32(1)) ^ (np.uint32(0) - (zigzag & np.uint32(1)))
+    for _ in range(column["order"]):
+        wrapped = np.cumsum(wrapped, dtype=np.uint32)
+    numbers = wrapped.view(np.int32)
+    values = column["offset"] + column["step"] * numbers.astype(np.float64)
+    values[numbers == np.iinfo(np.int32).min] = np.nan
+    return values
 
 
 @settings(max_examples=60, deadline=None)
