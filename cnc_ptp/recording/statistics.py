@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,7 @@ def largest_following_errors(recorded: Recorded) -> dict[str, Extreme]:
 
 def axis_units(recorded: Recorded) -> dict[str, str]:
     """`mm` or `deg` by axis as the machine file says; empty when the recording holds none that can be loaded."""
-    machine = _machine(recorded)
+    machine = _machine(recorded.machine_yaml)
     return {name: "deg" if axis.rotary else "mm" for name, axis in machine.axes.items()} if machine else {}
 
 
@@ -113,7 +114,7 @@ def in_machine_order(recorded: Recorded) -> Recorded:
 
     Units of each kind as /machine lists them, what it does not list behind them; as it is without a machine file.
     """
-    machine = _machine(recorded)
+    machine = _machine(recorded.machine_yaml)
     if machine is None:
         return recorded
     units = [*machine.channels, *machine.spindles, *machine.axes]
@@ -132,16 +133,18 @@ def torque_units(recorded: Recorded) -> dict[str, str]:
 
     Empty when the recording holds no machine file that can be loaded.
     """
-    machine = _machine(recorded)
+    machine = _machine(recorded.machine_yaml)
     if machine is None:
         return {}
     shaft = {name: axis.rotary or uses_feed_constant(machine.raw(name)) for name, axis in machine.axes.items()}
     return {name: "Nm" if on_shaft else "N" for name, on_shaft in shaft.items()}
 
 
-def _machine(recorded: Recorded) -> MachineParameters | None:
+@lru_cache(maxsize=1)
+def _machine(text: str) -> MachineParameters | None:
+    """A recording and its parts have one text, which is read once."""
     try:
-        return load_machine(recorded.machine_yaml, MACHINE_FILE)
+        return load_machine(text, MACHINE_FILE)
     except CncError:
         return None
 

@@ -9,11 +9,14 @@ import pytest
 from recording_support import MACHINE, smooth_run, time_figure
 
 from cnc_ptp.machine.blocks import AxisStateCode, CommandRecord, Event
+from cnc_ptp.parameters import load_machine
+from cnc_ptp.recording import statistics
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, read_recording
 from cnc_ptp.recording.report import report_page
 from cnc_ptp.recording.report_figures import path_axes, path_figures, state_bands
 from cnc_ptp.recording.schemas import load_schema
+from cnc_ptp.recording.selection import selected
 from cnc_ptp.recording.statistics import Extreme, axis_units, in_machine_order, last_diagnostics, summary, torque_units
 from cnc_ptp.recording.writer import Recording
 
@@ -162,6 +165,14 @@ def test_units_stand_in_the_order_of_the_machine_file(tmp_path):
     titles = re.findall('"([A-Z]): position in mm"', page)
     assert titles == ["X", "Y", "Z", "Q"]
     assert list(last_diagnostics(in_machine_order(recorded))) == ["channel", "s", "x", "y", "plc"]
+
+
+def test_a_report_reads_the_machine_file_once(recorded, monkeypatch):
+    recorded.machine_yaml = (PROJECT / "config" / "mill.yaml").read_text() + "# of this test\n"
+    read = []
+    monkeypatch.setattr(statistics, "load_machine", lambda *given: read.append(given) or load_machine(*given))
+    assert "largest following error of x" in report_page(selected(recorded, end=1.0))
+    assert read == [(recorded.machine_yaml, "machine.yaml")]
 
 
 def test_torque_units_come_from_the_machine_file(recorded):
