@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from pathlib import Path
 
 from mcap.opcode import Opcode
@@ -67,7 +66,7 @@ class _Survey:
 
     def before_last_chunk(self) -> Contents:
         contents = self._contents
-        contents.crc = zlib.crc32(self._records.path.read_bytes()[: contents.end])
+        contents.crc = self._records.crc_up_to(contents.end)
         return contents
 
     def write_last_chunk(self, file: McapFile) -> None:

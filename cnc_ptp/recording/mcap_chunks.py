@@ -148,6 +148,10 @@ class McapRecords:
                 yield self.parse(Channel.read, inner)
             offset += size
 
+    def crc_up_to(self, offset: int) -> int:
+        """CRC of the file before `offset`."""
+        return zlib.crc32(self._data[:offset])
+
     def corrupt(self, offset: int, reason: str) -> CncError:
         return CncError(
             26003,
@@ -171,7 +175,7 @@ class McapRecords:
     def _check_data_crc(self, record: RawRecord) -> None:
         self._data_ended = True
         expected = self.parse(DataEnd.read, record).data_section_crc
-        if expected not in (0, zlib.crc32(self._data[: record.offset])):
+        if expected not in (0, self.crc_up_to(record.offset)):
             raise self.corrupt(record.offset, "the CRC of the data section does not match its content")
 
     def _finish(self, record: RawRecord, end: int) -> None:

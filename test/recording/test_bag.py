@@ -2,6 +2,7 @@
 
 import random
 import shutil
+from pathlib import Path
 
 import pytest
 import yaml
@@ -189,6 +190,16 @@ def test_cut_recording_is_closed_wherever_it_was_cut(path, tmp_path):
         assert after.states.keys() == before.states.keys()
         assert close_cut(cut) == ""
     assert list(iter_messages(path)) == whole
+
+
+def test_cut_recording_is_read_once(path, tmp_path, monkeypatch):
+    """It may be of some gigabytes."""
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    read, read_bytes = [], Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda file: read.append(file) or read_bytes(file))
+    assert close_cut(cut)
+    assert read == [cut]
 
 
 def test_closed_recording_is_read_by_rosbags(path, tmp_path):
