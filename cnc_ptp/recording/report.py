@@ -12,6 +12,7 @@ import plotly.graph_objects as go
 from plotly.offline import get_plotlyjs
 
 from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
+from cnc_ptp.plots.colours import BLUE, EDGE, INK, RED, SOFT
 from cnc_ptp.recording.command_words import argument_words, json_object
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
 from cnc_ptp.recording.report_figures import path_figures, rows_figure, time_columns
@@ -36,24 +37,26 @@ HINT = (
     "Drag sideways to zoom all plots, double click for the whole run; the scales follow. The cursor shows the values "
     "of a cycle: click for a reference, Δt and Δy count from there, Esc takes it away. Click a legend entry to hide it."
 )
+COLOURS = (
+    f":root {{ --ink: {INK}; --soft: {SOFT}; --line: {EDGE}; --page: #f4f6f9; --blue: {BLUE.set}; --red: {RED.set}; "
+    "--amber: #8a5b00; }"
+)
 STYLE = """
-:root { --ink: #1c2430; --faint: #667085; --line: #e1e6ed; --paper: #f4f6f9; --blue: #1f5fa8; --red: #b3261e;
-        --amber: #8a5b00; }
 * { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink);
+body { margin: 0; background: var(--page); color: var(--ink);
        font: 15px/1.5 system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif; }
 header { background: white; border-bottom: 1px solid var(--line); padding: 22px 32px 18px; }
 h1 { margin: 0; font-size: 26px; font-weight: 650; letter-spacing: -0.01em; }
-header p { margin: 2px 0 0; color: var(--faint); }
+header p { margin: 2px 0 0; color: var(--soft); }
 main { max-width: 1500px; margin: 0 auto; padding: 20px 24px 48px; }
 section { background: white; border: 1px solid var(--line); border-radius: 10px; padding: 14px 18px 16px;
           margin: 0 0 18px; }
 h2 { margin: 0 0 8px; font-size: 17px; font-weight: 620; }
-.note { color: var(--faint); margin: 0 0 8px; font-size: 13.5px; }
+.note { color: var(--soft); margin: 0 0 8px; font-size: 13.5px; }
 .cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(170px, 1fr)); gap: 12px; margin: 0 0 18px; }
 .card { background: white; border: 1px solid var(--line); border-radius: 10px; padding: 10px 14px; }
 .card b { display: block; font-size: 21px; font-weight: 620; font-variant-numeric: tabular-nums; }
-.card span { color: var(--faint); font-size: 13px; }
+.card span { color: var(--soft); font-size: 13px; }
 .card.bad b { color: var(--red); }
 .warn { background: #fff6e0; border: 1px solid #f0d38c; color: var(--amber); border-radius: 10px; padding: 10px 16px;
         margin: 0 0 18px; }
@@ -62,7 +65,7 @@ h2 { margin: 0 0 8px; font-size: 17px; font-weight: 620; }
 @media (min-width: 1000px) { .paths.two > div { flex-basis: calc(50% - 9px); } }
 .scroll { overflow: auto; max-height: 460px; }
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; }
-th { position: sticky; top: 0; background: white; text-align: left; color: var(--faint); font-weight: 560; }
+th { position: sticky; top: 0; background: white; text-align: left; color: var(--soft); font-weight: 560; }
 th, td { padding: 5px 12px 5px 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.text { overflow-wrap: anywhere; }
@@ -72,7 +75,7 @@ tr.warning td { background: #fff8e6; }
        white-space: nowrap; }
 tr.error .tag, tr.refused .tag { background: #f6cfcb; color: var(--red); }
 tr.warning .tag { background: #fbe6ae; color: var(--amber); }
-pre { background: var(--paper); border-radius: 8px; padding: 12px; overflow: auto; font-size: 12.5px;
+pre { background: var(--page); border-radius: 8px; padding: 12px; overflow: auto; font-size: 12.5px;
       max-height: 420px; }
 summary { cursor: pointer; font-weight: 600; }
 .cursor-layer { position: absolute; inset: 0; pointer-events: none; font-size: 12px; }
@@ -122,7 +125,7 @@ def page_head(title: str, details: Sequence[str] = ()) -> str:
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{SECURITY}">'
-        f"<title>{escape(title)}</title><style>{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
+        f"<title>{escape(title)}</title><style>{COLOURS}{STYLE}</style><script>{get_plotlyjs()}</script></head><body>\n"
         f"<header><h1>{escape(title)}</h1>{below}</header>"
     )
 

@@ -14,6 +14,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode, CommandRecord, Severity
+from cnc_ptp.plots.colours import BY_AXIS, EDGE, FAINT, GRID, INK, PURPLE, RED
 from cnc_ptp.recording.columns import packed
 from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points, path_points
@@ -22,11 +23,11 @@ from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, R
 from cnc_ptp.recording.rows import OTHER, SET, Row, standing
 from cnc_ptp.recording.statistics import axis_units
 
-SET_COLOUR, ACTUAL_COLOUR, OTHER_COLOUR, DEVIATION = "#5b93d6", "#d9480f", "#6a4fa3", "#b3261e"
-COLOURS = ["#1f5fa8", "#e07b00", "#3f9b4f", "#6a4fa3", "#2aa198", "#b3261e", "#8c6d31", "#5b6b7f"]
+SET_COLOUR, ACTUAL_COLOUR = "#5b93d6", "#d9480f"
+"""No two of the figures' colours are as easy to tell apart, the thin actual value above the wide set value."""
+COLOURS = [*(pair.set for pair in BY_AXIS), *(pair.actual for pair in BY_AXIS)]
 PRECISE = ("position", "angle", "following error")
 """Keep all digits."""
-INK, GRID, FAINT = "#1c2430", "#e6eaf0", "#8a94a3"
 ROW_HEIGHT, ROW_GAP, TOP, BOTTOM = 150, 54, 84, 48
 BAND_HEIGHT = 24
 MOST_BANDS = 4000
@@ -144,8 +145,8 @@ def colour_of(row: Row, index: int) -> str:
     if line.role != OTHER:
         return SET_COLOUR if line.role == SET else ACTUAL_COLOUR
     if line.name == "following error":
-        return DEVIATION
-    return COLOURS[index % len(COLOURS)] if len(row.lines) > 1 else OTHER_COLOUR
+        return RED.set
+    return COLOURS[index % len(COLOURS)] if len(row.lines) > 1 else PURPLE.set
 
 
 def _mark_commands(figure: go.Figure, recorded: Recorded) -> None:
@@ -257,6 +258,7 @@ def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
         ", ".join(f"{command.target} {command_words(command, units)}" for command in of) for of in moments.values()
     ]
     refused = [not all(command.accepted for command in of) for of in moments.values()]
+    colours = [SEVERITY_COLOURS[Severity.ERROR] if no else INK for no in refused]
     figure.add_trace(
         go.Scatter(
             x=[cycle * recorded.cycle_time_ns * 1e-9 for cycle in moments],
@@ -264,7 +266,7 @@ def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
             mode="markers+text",
             name="command",
             meta="commands",
-            marker={"color": [DEVIATION if no else INK for no in refused], "size": 9, "symbol": "triangle-down"},
+            marker={"color": colours, "size": 9, "symbol": "triangle-down"},
             text=[""] * len(words),
             textposition="middle right",
             textfont={"size": 10},
@@ -329,7 +331,7 @@ def _hover(axes: list[str]) -> str:
 
 def _plane_figure(path: Path, axes: list[str]) -> go.Figure:
     x, y = (_compact(path.points[index], precise=False) for index in (0, 1))
-    line = go.Scatter(x=x, y=y, mode="lines", line={"color": "#c3cad4", "width": 1}, hoverinfo="skip")
+    line = go.Scatter(x=x, y=y, mode="lines", line={"color": FAINT, "width": 1}, hoverinfo="skip")
     marks = go.Scatter(
         x=x,
         y=y,
@@ -393,7 +395,7 @@ def _style(figure: go.Figure, height: int) -> None:
     figure.update_xaxes(gridcolor=GRID, zeroline=False, linecolor=GRID, showline=True)
     figure.update_yaxes(
         gridcolor=GRID,
-        zerolinecolor="#cfd6df",
+        zerolinecolor=EDGE,
         linecolor=GRID,
         showline=True,
         exponentformat="none",

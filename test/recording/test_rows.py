@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from recording_support import smooth_run, time_figure
 
 from cnc_ptp.machine.blocks import CommandRecord
+from cnc_ptp.plots.colours import BY_AXIS, DARK, INK, RED
 from cnc_ptp.recording.columns import STEPS, packed
 from cnc_ptp.recording.command_words import argument_words, brief, command_words
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.report import report_page
-from cnc_ptp.recording.report_figures import path_figures
+from cnc_ptp.recording.report_figures import colour_of, path_figures
 from cnc_ptp.recording.rows import standing, time_rows
 
 
@@ -105,6 +106,19 @@ def test_commands_are_marked_in_all_plots(recorded):
     for cycle, command in enumerate(recorded.commands):
         recorded.commands[cycle] = CommandRecord(cycle, command.target, command.command, "{}", True, 0, "")
     assert len(time_figure(recorded, {}).layout.shapes) == 0
+
+
+def test_lines_have_the_colours_of_the_figures(recorded):
+    """Set and actual values have two of their own, which differ; a unit has one of the figures'."""
+    rows = list(time_rows(recorded, {}, {}))
+    colours = {(row.title, line.name): colour_of(row, i) for row in rows for i, line in enumerate(row.lines)}
+    pairs = {colours.pop(("position", "set")), colours.pop(("position", "actual"))}
+    assert len(pairs) == 2
+    assert {colour for colour in colours.values() if colour not in pairs} <= {*DARK}
+    of_units = [colours["override", name] for name in ("channel", "x", "y", "z", "s")]
+    assert of_units == [pair.set for pair in BY_AXIS[:5]]
+    assert colours["following error", "following error"] == RED.set
+    assert f"<style>:root {{ --ink: {INK}; " in report_page(recorded)
 
 
 # commands in words
