@@ -17,6 +17,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.commands import COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
 
@@ -25,6 +26,8 @@ NO_MACHINE = 26135
 NO_ANSWER = 26136
 PATIENCE = 5.0
 """Seconds for the machine to be found (DDS announces itself every 3 s at the latest), and for an answer."""
+MARGIN = 1.0
+"""Seconds that a call waits longer than the PLC does, which takes a coupling back that no axis answers (26143)."""
 UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
 AXIS_TYPE = "kenngr.achs_typ"
 ROTARY = ("ACHSTYP_ROTATOR", 2)
@@ -101,9 +104,11 @@ class MachineClient(Node):
     def ask(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Any:
         """The response to a command. Raises CncError 26136 when none comes in time."""
         service = services_of(self.kinds[unit])[command]
-        answer = self._answer(self.create_client(service, f"{unit}/{command}"), request_of(service, arguments))
+        patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
+        client = self.create_client(service, f"{unit}/{command}")
+        answer = self._answer(client, request_of(service, arguments), patience)
         if answer is None:
-            text = f"{self.kinds[unit]} {unit}: {command}: no answer within {PATIENCE:g} s"
+            text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
             raise CncError(NO_ANSWER, f"{text}; whether it was carried out is not known, see `cnc_ptp status`")
         return answer
 

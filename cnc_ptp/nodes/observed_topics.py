@@ -1,20 +1,28 @@
-"""Topics that a recording keeps as they come: what the PLC writes, joint states, handshakes, logs."""
+"""Topics that a recording keeps as they come: what the PLC writes, joint states, handshakes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from rcl_interfaces.msg import Log
-from rclpy.qos import QoSProfile, qos_profile_rosout_default
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
 from cnc_ptp import msg
-from cnc_ptp.nodes.topics import BLOCKS, EVENTS, JOINT_STATES, LIFE_SIGN, PLC_INPUT, handshake_topic
+from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nodes.topics import (
+    EVENTS,
+    JOINT_STATES,
+    LIFE_SIGN,
+    PLC_INPUT,
+    PLC_TOPICS,
+    handshake_topic,
+    plc_quality,
+    plc_topic,
+)
 from cnc_ptp.parameters import MachineParameters
 
-ROSOUT = "/rosout"
-INPUTS = ("Switch", "Override", "ExternalSetpoint", "CyclicCouplingFactor", "Jog", "FeedRelease", "LifeSign")
+INPUTS = {of.__name__ for topics in PLC_TOPICS.values() for of in topics.values()} | {msg.LifeSign.__name__}
 """Message types of the topics that the PLC writes: a machine obeys them."""
 
 
@@ -30,19 +38,11 @@ def observed_topics(machine: MachineParameters) -> Iterator[Observed]:
     """All of a machine, whether somebody publishes on them or not."""
     for channel in machine.channels:
         yield Observed(handshake_topic(channel), msg.HandshakeRequest, EVENTS)
-        yield Observed(f"{channel}/feed_hold", msg.Switch, PLC_INPUT)
-    for unit in (*machine.channels, *machine.axes, *machine.spindles):
-        yield Observed(f"{unit}/override", msg.Override, PLC_INPUT)
-    for unit in (*machine.axes, *machine.spindles):
-        yield Observed(f"{unit}/enable", msg.Switch, PLC_INPUT)
-    for axis in machine.axes:
-        yield Observed(f"{axis}/external_setpoint", msg.ExternalSetpoint, BLOCKS)
-        yield Observed(f"{axis}/coupling_factor", msg.CyclicCouplingFactor, PLC_INPUT)
-        yield Observed(f"{axis}/jog", msg.Jog, PLC_INPUT)
-        yield Observed(f"{axis}/feed_release", msg.FeedRelease, PLC_INPUT)
+    for unit, kind in unit_kinds(machine).items():
+        for name, message_type in PLC_TOPICS.get(kind, {}).items():
+            yield Observed(plc_topic(unit, name), message_type, plc_quality(message_type))
     yield Observed(LIFE_SIGN, msg.LifeSign, PLC_INPUT)
     yield Observed(JOINT_STATES, JointState, PLC_INPUT)
-    yield Observed(ROSOUT, Log, qos_profile_rosout_default)
 
 
 def is_input(type_name: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import sys
 import time
@@ -25,8 +26,10 @@ from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.qos import parse_profiles
 from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording
 
-DISCOVERY = 1.0
-"""Seconds between the first publisher and the first message, so that subscribers find them."""
+DISCOVERY = 5.0
+"""Seconds in which subscribers may find the publishers before the first message goes out."""
+SETTLED = 1.0
+"""Seconds without a further subscriber after which it goes out earlier."""
 FAREWELL = 0.5
 LARGEST_BATCH = 500
 BLOCK = block_topic("")
@@ -47,21 +50,23 @@ class PlayerNode(Node):
         self.inputs_left_out = sorted(recorded.keys() - topics.keys())
         classes = {topic: message_class(info.type_name) for topic, info in topics.items()}
         self.left_out = sorted(topic for topic, of in classes.items() if of is None)
-        self._publish_to = {
-            topic: self.create_publisher(of, published_topic(topic), qos_of(topics[topic])).publish
+        self._played = {
+            topic: self.create_publisher(of, published_topic(topic), qos_of(topics[topic]))
             for topic, of in classes.items()
             if of is not None
         }
-        self.units = [topic.strip("/").removesuffix(BLOCK) for topic in self._publish_to if topic.endswith(BLOCK)]
-        played = [topics[topic] for topic in self._publish_to]
+        self.units = [topic.strip("/").removesuffix(BLOCK) for topic in self._played if topic.endswith(BLOCK)]
+        played = [topics[topic] for topic in self._played]
         self.topics = len(played)
         self.total = sum(info.count for info in played)
         self._first_ns = min((info.first_ns for info in played), default=0)
         self.seconds = (max((info.last_ns for info in played), default=0) - self._first_ns) * 1e-9
-        self._messages: Iterator[RawMessage] = iter_messages(path, topics=self._publish_to.keys())
+        self._messages: Iterator[RawMessage] = iter_messages(path, topics=self._played.keys())
         self._next: RawMessage | None = next(self._messages, None)
         self._rate = rate
-        self._begin = time.monotonic() + DISCOVERY
+        self._deadline = time.monotonic() + DISCOVERY
+        self._subscribers, self._settled = 0, math.inf
+        self._begin: float | None = None
         self._end: float | None = None
         self.published = 0
 
@@ -76,25 +81,36 @@ class PlayerNode(Node):
 
     def wait_time(self) -> float:
         """Seconds until the next message is due, at most 0.1."""
-        if self._next is None:
+        if self._next is None or self._begin is None:
             return process.SPIN_TIMEOUT
-        return min(process.SPIN_TIMEOUT, max(0.0, self._due(self._next) - time.monotonic()))
+        return min(process.SPIN_TIMEOUT, max(0.0, self._due(self._next, self._begin) - time.monotonic()))
 
     def advance(self) -> None:
         """Publishes what is due."""
         now = time.monotonic()
+        if self._begin is None:
+            self._await_subscribers(now)
+            return
         for _ in range(LARGEST_BATCH):
             if self._next is None:
                 self._end = self._end or now + FAREWELL
                 return
-            if self._due(self._next) > now:
+            if self._due(self._next, self._begin) > now:
                 return
-            self._publish_to[self._next.topic](self._next.cdr)
+            self._played[self._next.topic].publish(self._next.cdr)
             self.published += 1
             self._next = next(self._messages, None)
 
-    def _due(self, message: RawMessage) -> float:
-        return self._begin + (message.log_time_ns - self._first_ns) * 1e-9 / self._rate
+    def _await_subscribers(self, now: float) -> None:
+        """Begins when there are some and no more come, at the latest at the deadline: what goes out earlier is lost."""
+        subscribers = sum(publisher.get_subscription_count() for publisher in self._played.values())
+        if subscribers != self._subscribers:
+            self._subscribers, self._settled = subscribers, now + SETTLED
+        if now > min(self._settled, self._deadline):
+            self._begin = now
+
+    def _due(self, message: RawMessage, begin: float) -> float:
+        return begin + (message.log_time_ns - self._first_ns) * 1e-9 / self._rate
 
 
 def message_class(type_name: str) -> Any:
@@ -146,7 +162,8 @@ class _Show:
             self._bar.update(self._task, completed=node.position, where=where)
 
     def end(self) -> None:
-        self._bar.stop()
+        if self._bar.live.is_started:
+            self._bar.stop()
         node = self._node
         if node is not None:
             at = "" if node.published == node.total else f", up to {node.position:.1f} s of {node.seconds:.1f} s"

@@ -17,7 +17,7 @@ from cnc_ptp.machine.blocks import Block, Command, Severity
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.plc_unit import PlcUnit
 from cnc_ptp.machine.scenario import Entry
-from cnc_ptp.machine.wiring import PLC, build_unit
+from cnc_ptp.machine.wiring import PLC, build_unit, unit_kinds
 from cnc_ptp.nodes import arguments, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
 from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
@@ -25,7 +25,7 @@ from cnc_ptp.nodes.jog_topics import JogTopics
 from cnc_ptp.nodes.joint_states import JointStates
 from cnc_ptp.nodes.sequence import is_newer
 from cnc_ptp.nodes.silence import SilentTopics
-from cnc_ptp.nodes.topics import BLOCKS, LIFE_SIGN, PLC_INPUT, jog_topic
+from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
 
@@ -65,20 +65,12 @@ class PlcBridgeNode(UnitNode):
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
         self._spindles = list(machine.spindles)
         self._overrides = SilentTopics(self._life_sign_timeout)
-        for unit in (*machine.channels, *machine.axes, *machine.spindles):
-            self._listen(msg.Override, unit, "override", self._override)
-        for unit in machine.channels:
-            self._listen(msg.Switch, unit, "feed_hold", partial(self._switch, command="feed_hold", idle=False))
-        for unit in (*machine.axes, *machine.spindles):
-            self._listen(msg.Switch, unit, "enable", partial(self._switch, command="power", idle=True))
-        for unit in machine.axes:
-            self._listen(msg.FeedRelease, unit, "feed_release", self._feed_release)
-            received = partial(self._on_external_setpoint, unit)
-            self.create_subscription(msg.ExternalSetpoint, f"{unit}/external_setpoint", received, BLOCKS)
-            self._listen(msg.CyclicCouplingFactor, unit, "coupling_factor", self._coupling_factor)
         self._jogs = JogTopics(self._warn)
-        for unit in machine.axes:
-            self.create_subscription(msg.Jog, jog_topic(unit), partial(self._on_jog, unit), PLC_INPUT)
+        for unit, kind in unit_kinds(machine).items():
+            for name, message_type in PLC_TOPICS.get(kind, {}).items():
+                self.create_subscription(
+                    message_type, plc_topic(unit, name), self._receiver(unit, name), plc_quality(message_type)
+                )
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self._factors: dict[str, float] = {}
@@ -87,27 +79,33 @@ class PlcBridgeNode(UnitNode):
         self._joints = JointStates(self, machine)
         self._joints_due = 0
 
-    def _listen(
-        self, message_type: Any, unit: str, name: str, convert_message: Callable[[str, Any], Command | None]
-    ) -> None:
-        topic = f"/{unit}/{name}"
+    def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
+        """What is done with the messages of a topic in PLC_TOPICS."""
+        series = {"external_setpoint": self._on_external_setpoint, "jog": self._on_jog}
+        if name in series:
+            return partial(series[name], unit)
+        values: dict[str, Callable[[str, Any], Command | None]] = {
+            "override": self._override,
+            "feed_hold": partial(self._switch, command="feed_hold", idle=False),
+            "enable": partial(self._switch, command="power", idle=True),
+            "feed_release": self._feed_release,
+            "coupling_factor": self._coupling_factor,
+        }
+        return partial(self._on_value, unit, f"/{unit}/{name}", values[name])
 
-        def received(message: Any) -> None:
-            if not is_newer(message.sequence, self._sequence.get(topic, 0)):
-                return
-            self._sequence[topic] = message.sequence
-            if message.valid:
-                self._served.add(topic)
-            elif topic not in self._served:
-                return  # an empty message of somebody who has never served the topic releases nothing
-            command = convert_message(unit, message)
-            if command is None:
-                return
-            if self._last.get(topic) != command.arguments_json:
-                self._last[topic] = command.arguments_json
-                self.input(command)
-
-        self.create_subscription(message_type, f"{unit}/{name}", received, PLC_INPUT)
+    def _on_value(self, unit: str, topic: str, command_of: Callable[[str, Any], Command | None], message: Any) -> None:
+        """A value counts when it changes."""
+        if not is_newer(message.sequence, self._sequence.get(topic, 0)):
+            return
+        self._sequence[topic] = message.sequence
+        if message.valid:
+            self._served.add(topic)
+        elif topic not in self._served:
+            return  # an empty message of somebody who has never served the topic releases nothing
+        command = command_of(unit, message)
+        if command is not None and self._last.get(topic) != command.arguments_json:
+            self._last[topic] = command.arguments_json
+            self.input(command)
 
     def _override(self, unit: str, message: msg.Override) -> Command:
         if unit in self._spindles:

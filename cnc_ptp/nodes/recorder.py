@@ -12,16 +12,18 @@ from typing import Any
 
 import click
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Log
 from rclpy.node import Node
+from rclpy.qos import qos_profile_rosout_default
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Event, PlcBlock, Severity
+from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
-from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
@@ -53,8 +55,8 @@ class RecorderNode(Node):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
-    and what observed_topics names: these come as raw bytes and are stamped with the time of their arrival, in free run
-    with that of the last tick.
+    what observed_topics names, and of /rosout what the nodes of its namespace say: these come as raw bytes and are
+    stamped with the time of their arrival, in free run with that of the last tick.
     Publishes /clock/report: ready, and in free run every tick that is recorded completely; /events: blocks that did not
     arrive. A block that comes twice is recorded once.
     """
@@ -90,6 +92,8 @@ class RecorderNode(Node):
         for topic, message_type, quality in observed_topics(machine):
             received = self._guarded(partial(self._on_observed, recorded_topic(topic), type_name(message_type)))
             self.create_subscription(message_type, topic, received, quality, raw=True)
+        received = self._guarded(self._on_log)
+        self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         self.create_timer(FLUSH_PERIOD, self._guarded(self._flush))
 
@@ -151,10 +155,9 @@ class RecorderNode(Node):
             return
         stamp_ns = convert.nanoseconds(message.header.stamp)
         recording.raw(recorded_topic(block_topic(unit)), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
-        block = convert.message_to_block(message)
-        if not isinstance(block, PlcBlock):
-            recording.states(unit, block)
-        self._note_complete(block.first_cycle)
+        if block_type is not msg.PlcBlock:
+            recording.states(unit, convert.message_to_block(message))
+        self._note_complete(message.first_cycle)
 
     def _is_new(self, unit: str, message: Any) -> bool:
         """False for a block that is recorded already; tells when blocks before it have not come."""
@@ -191,6 +194,11 @@ class RecorderNode(Node):
         stamp_ns = self._tick_ns if self._free_run else time.time_ns()
         self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
 
+    def _on_log(self, data: bytes) -> None:
+        """The topic is one for all namespaces; what nodes of others say is left out."""
+        if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
+            self._on_observed(ROSOUT, type_name(Log), data)
+
     def _single(self, record: Any) -> None:
         self._heard = time.monotonic()
         self._keep(record)
@@ -225,6 +233,10 @@ def require_writable(path: str) -> None:
         raise CncError(
             NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}; nothing was started"
         ) from None
+
+
+def _namespace(logger: str) -> str:
+    return logger.rpartition(".")[0]
 
 
 @click.command()

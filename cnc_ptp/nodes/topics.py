@@ -122,13 +122,37 @@ COUPLING_SERVICES: dict[str, Any] = {
 }
 """Services of the axes that the plc_bridge answers: it sees all axes, and reads the tables."""
 
+OVERRIDE_INPUT = {"override": msg.Override}
+PLC_TOPICS: dict[str, dict[str, Any]] = {
+    "channel": {**OVERRIDE_INPUT, "feed_hold": msg.Switch},
+    "axis": {
+        **OVERRIDE_INPUT,
+        "enable": msg.Switch,
+        "feed_release": msg.FeedRelease,
+        "external_setpoint": msg.ExternalSetpoint,
+        "coupling_factor": msg.CyclicCouplingFactor,
+        "jog": msg.Jog,
+    },
+    "spindle": {**OVERRIDE_INPUT, "enable": msg.Switch},
+}
+"""Topics `/<unit>/<name>` that the PLC writes, by kind of unit; besides its life sign."""
+
+
+def plc_topic(unit: str, name: str) -> str:
+    return f"{unit}/{name}"
+
+
+def plc_quality(message_type: Any) -> QoSProfile:
+    """External setpoints are a series of which none may be lost; of the others the newest counts."""
+    return BLOCKS if message_type is msg.ExternalSetpoint else PLC_INPUT
+
 
 def block_topic(unit: str) -> str:
     return f"{unit}/block"
 
 
 def jog_topic(axis: str) -> str:
-    return f"{axis}/jog"
+    return plc_topic(axis, "jog")
 
 
 def state_topic(unit: str) -> str:

@@ -23,6 +23,7 @@ from cnc_ptp.recording.schemas import PRIMITIVES, Schema, load_schema
 OF_THE_BLOCK = ("modulo_begin", "modulo_length", "torque_digits")
 """Scalars of an AxisBlock from which its state messages have positions in the modulo range and digits of the drive."""
 StateBlock = AxisBlock | SpindleBlock | ChannelBlock
+ALL = slice(None)
 Cycles = npt.NDArray[np.uint64]
 Times = npt.NDArray[np.uint64]
 
@@ -156,15 +157,15 @@ def fill_derived(messages: Records, rows: Records) -> None:
     messages["set_direction"] = (velocity > 0.0).astype(np.int8) - (velocity < 0.0)
 
 
-def state_messages(block: StateBlock, start_ns: int, cycle_ns: int) -> list[bytes]:
-    """CDR of the states of a block, cycle by cycle; `start_ns` is the stamp of cycle 0."""
+def state_messages(block: StateBlock, start_ns: int, cycle_ns: int, wanted: slice = ALL) -> list[bytes]:
+    """CDR of the `wanted` states of a block, cycle by cycle; `start_ns` is the stamp of cycle 0."""
     kind = kind_of(block)
     packer = kind.packer(block.count)
     rows = packer.rows([packer.pack(block)])
     messages = kind.layout.empty(block.count)
     cycles = cycles_of(rows, block.count)
     fill_states(kind, messages, rows, cycles, np.uint64(start_ns) + cycles * np.uint64(cycle_ns))
-    return [message.tobytes() for message in messages]
+    return [message.tobytes() for message in messages[wanted]]
 
 
 def within_modulo(

@@ -136,6 +136,18 @@ def test_watch_prints_lines_until_it_is_told_to_end(machine):
     assert [line.split()[0] for line in lines] == ["x", "s"] * 3
 
 
+def test_an_interrupt_ends_the_waiting_and_not_the_motion(machine):
+    words = command("do", "y", "move_relative", "distance=30", "velocity=0.5", "--wait")
+    waiting = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+    assert "accepted" in waiting.stdout.readline()
+    waiting.send_signal(signal.SIGINT)
+    told, _ = waiting.communicate(timeout=30.0)
+    assert (waiting.returncode, told) == (130, "y: not waited for any more (SIGINT); it goes on\n")
+    first, second = place("y"), place("y")
+    assert second > first
+    assert call("do", "y", "stop", "--wait").exit_code == 0
+
+
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, folder):
     """Killed, or stalled, which no one but the watcher of the messages could notice."""

@@ -10,7 +10,7 @@ import rclpy
 from client_support import Client
 from graph_support import MILL, SHORT_PROGRAM, Running, command, one_axis_machine, run, verified
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, qos_profile_rosout_default
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
@@ -84,22 +84,23 @@ def test_qualities_of_the_recording_are_those_of_the_nodes():
         assert player.qos_of(TopicInfo("/t", type_name(message_type))) == published
     for topic, message_type, quality in observed_topics(read_machine(str(MILL))):
         assert player.qos_of(TopicInfo("/t", type_name(message_type))) == quality, topic
+    assert player.qos_of(TopicInfo("/rosout", "rcl_interfaces/msg/Log")) == qos_profile_rosout_default
 
 
 def test_replay_publishes_with_the_recorded_quality_and_says_so(recording):
     total = sum(1 for _ in iter_messages(recording))
     topics = len(read_recording(recording).topics)
-    publishing = subprocess.Popen(
-        command("replay", recording, "--publish", "--inputs", "--rate", "0.5"),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
     process.initialise()
     node = Node("test_reader", enable_rosout=False)
     heard = []
     node.create_subscription(msg.Override, "/x/override", heard.append, PLC_INPUT)
     executor = process.EventsExecutor()
     executor.add_node(node)
+    publishing = subprocess.Popen(
+        command("replay", recording, "--publish", "--inputs", "--rate", "0.5"),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     offered = {}
     while publishing.poll() is None:
         executor.spin_once(timeout_sec=0.05)

@@ -1,0 +1,63 @@
+"""What commands say when a machine, or a part of it, does not answer."""
+
+from contextlib import nullcontext
+
+import pytest
+import rclpy
+from graph_support import MILL, run
+from live_support import call
+
+from cnc_ptp.nodes import player, process
+from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient
+
+
+@pytest.fixture
+def client(monkeypatch):
+    """It knows a machine that says nothing."""
+    process.initialise()
+    client = MachineClient()
+    client.kinds = {"x": "axis", "plc": "plc"}
+    monkeypatch.setattr(client, "_answer", lambda *_: None)
+    for command in ("do", "jog", "status"):
+        monkeypatch.setattr(f"cnc_ptp.commands.{command}.connected", lambda: nullcontext(client))
+    for command in ("jog", "status"):
+        monkeypatch.setattr(f"cnc_ptp.commands.{command}.PATIENCE", 0.2)
+    yield client
+    client.destroy_node()
+    rclpy.try_shutdown()
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"),
+    [(["move_absolute", "target=1"], PATIENCE), (["couple", "master=y", "factor=1"], COUPLING_PATIENCE + 1.0)],
+)
+def test_a_command_without_an_answer_may_have_been_carried_out(client, words, seconds):
+    done = call("do", "x", *words)
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr == (
+        f"P-ERR-26136 axis x: {words[0]}: no answer within {seconds:g} s; "
+        "whether it was carried out is not known, see `cnc_ptp status`\n"
+    )
+
+
+def test_a_unit_without_blocks_has_no_data(client):
+    done = call("status")
+    assert done.exit_code == 1
+    assert done.stdout.splitlines()[-1].split() == ["x", "no", "data"]
+
+
+def test_a_jog_without_a_listener_moves_nothing(client):
+    done = call("jog", "x", "+", "--speed", "5")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert done.stderr == "x: the machine does not listen, or shows nothing of the axis; nothing has moved\n"
+
+
+def test_topics_whose_type_is_not_installed_are_not_played(monkeypatch, tmp_path):
+    run("simulate", MILL, "--duration", "0.05", "--record", tmp_path / "run.mcap")
+    known = player.message_class
+    monkeypatch.setattr(player, "message_class", lambda name: None if name.endswith("/AxisState") else known(name))
+    done = call("replay", tmp_path / "run.mcap", "--publish")
+    assert done.exit_code == 0
+    left_out = [line for line in done.stdout.splitlines() if line.startswith("note: ")]
+    assert left_out == [f"note: /{axis}/state is left out, its message type is not installed" for axis in "xyz"]
