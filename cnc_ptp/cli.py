@@ -8,7 +8,13 @@ from typing import Any
 
 import click
 
-from cnc_ptp.commands.completion import complete_axis, complete_command, complete_unit, complete_word
+from cnc_ptp.commands.completion import (
+    complete_axis,
+    complete_command,
+    complete_shown_unit,
+    complete_unit,
+    complete_word,
+)
 from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.errors import CncError
 from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
@@ -145,7 +151,7 @@ def jog_command(machine: str | None, **options: Any) -> None:
 
 
 @main.command("watch")
-@click.argument("units", nargs=-1, metavar="[UNIT]...", shell_complete=complete_unit)
+@click.argument("units", nargs=-1, metavar="[UNIT]...", shell_complete=complete_shown_unit)
 @click.option("--rate", type=RATE, default=5.0, show_default=True, help="Times a second.")
 @click.option("--time", "seconds", type=POSITIVE, help="Seconds; without it until Ctrl-C.")
 @COMPLETE_FROM
@@ -180,6 +186,8 @@ def replay_command(**options: Any) -> None:
 
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
+        if options["inputs"] or options["rate"] != 1.0:
+            raise click.UsageError("--inputs and --rate are options of --publish; nothing was replayed")
     sys.exit(replay(**options))
 
 

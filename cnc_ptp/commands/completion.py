@@ -17,6 +17,11 @@ def complete_unit(context: click.Context, parameter: click.Parameter, incomplete
     return matching(unit_kinds_of(context), incomplete)
 
 
+def complete_shown_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Units that have a state to look at."""
+    return matching({unit: kind for unit, kind in unit_kinds_of(context).items() if kind != "plc"}, incomplete)
+
+
 def complete_axis(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     axes = {unit: kind for unit, kind in unit_kinds_of(context).items() if kind == "axis"}
     return matching(axes, incomplete)

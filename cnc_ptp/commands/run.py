@@ -60,7 +60,7 @@ def print_summary(
 ) -> None:
     console = Console(highlight=False, soft_wrap=True)
     cycle_time = machine.cycle_time_us * 1e-6
-    cycles = monitor.progress.cycle
+    cycles = monitor.cycle
     console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
     for line in time_lines(monitor.programs, cycle_time):
         console.print(line, markup=False)

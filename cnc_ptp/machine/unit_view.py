@@ -27,7 +27,7 @@ class UnitView:
     cycle: int
     """After the last one of the block."""
     stamp: float
-    """Of that cycle, s since 1970."""
+    """Of the block, s since 1970."""
     position: float | None = None
     unit: str = ""
     """mm or deg."""

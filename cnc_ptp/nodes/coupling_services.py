@@ -17,11 +17,10 @@ from cnc_ptp.machine.cam_file import parse_cam
 from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.unit import UPSTREAM_LOST
-from cnc_ptp.nodes.requests import given_arguments
+from cnc_ptp.nodes.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 
 NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
-RUN_OVER = 26115
 NOT_ANSWERED = 26143
 PATIENCE = 5.0
 """Seconds after which a call is answered without the axis."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -34,13 +33,6 @@ SUPERVISOR = "supervisor"
 """Source of events about node processes, which the supervisor prints itself."""
 
 
-@dataclass
-class Progress:
-    """How far the run is."""
-
-    cycle: int = 0
-
-
 class RunMonitor(Node):
     """Subscriptions: /<channel>/block, /plc/block, /events, /commands, /diagnostics, /lateness.
 
@@ -49,7 +41,8 @@ class RunMonitor(Node):
 
     def __init__(self, machine: MachineParameters) -> None:
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
-        self.progress = Progress()
+        self.cycle = 0
+        """So far is the run."""
         self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
         self.notes: list[str] = []
@@ -85,7 +78,7 @@ class RunMonitor(Node):
         self._needed.append(self.create_subscription(block_type, topic, received, BLOCKS))
 
     def _report_ready(self) -> None:
-        if self.progress.cycle:
+        if self.cycle:
             self._ready_timer.cancel()
         elif all(subscription.get_publisher_count() for subscription in self._needed):
             self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
@@ -134,7 +127,7 @@ class RunMonitor(Node):
         return total
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
-        self.progress.cycle = max(self.progress.cycle, message.first_cycle + message.count)
+        self.cycle = max(self.cycle, message.first_cycle + message.count)
         self.run_done, self._plc_knows_failure = message.run_done, message.run_failed
         self._plc_block = message.first_cycle
 

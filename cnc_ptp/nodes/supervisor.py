@@ -121,7 +121,7 @@ class Supervisor:
         self._note_deaths()
         if self._stop_deadline is None:
             return self._not_started_in_time()
-        if not self._monitor.progress.cycle:
+        if not self._monitor.cycle:
             return True
         living = [name for name in self._moving_units if self._processes[name].poll() is None]
         standing = self._monitor.standing
@@ -129,7 +129,7 @@ class Supervisor:
         return settled or time.monotonic() > self._stop_deadline
 
     def _not_started_in_time(self) -> bool:
-        if self._monitor.progress.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
+        if self._monitor.cycle or time.monotonic() - self._started_at < START_TIMEOUT:
             return False
         names = self._monitor.get_node_names_and_namespaces()
         there = {name for name, namespace in names if namespace == self._monitor.get_namespace()}
@@ -152,7 +152,7 @@ class Supervisor:
     def _fail(self, error_id: int, text: str) -> None:
         """Notes a failure, tells it to the graph, and has everything that still lives stopped."""
         self.failures.append(f"P-ERR-{error_id} {text}")
-        event = Event(self._monitor.progress.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
+        event = Event(self._monitor.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
         if self._stop_deadline is None:
             self._stop_everything()
@@ -166,7 +166,7 @@ class Supervisor:
         self._monitor.watch_standstill([name for name in self._moving_units if name not in self._dead])
 
     def _what_follows(self) -> str:
-        return "everything stops on its ramps" if self._monitor.progress.cycle else "nothing has moved yet"
+        return "everything stops on its ramps" if self._monitor.cycle else "nothing has moved yet"
 
     def _note_signal(self, number: int, frame: object) -> None:
         """Only notes it: a handler runs in the midst of whatever the process does."""
@@ -204,7 +204,7 @@ class Supervisor:
         """What a recorder that was killed has left open, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
         closed = recorder is None or recorder.returncode in (0, process.SIGNALLED + signal.SIGTERM)
-        if self._job.record is None or closed or not self._monitor.progress.cycle:
+        if self._job.record is None or closed or not self._monitor.cycle:
             return
         try:
             close_cut(self._job.record)

@@ -27,7 +27,7 @@ from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.health import Health
 from cnc_ptp.nodes.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.parameters import declare_parameters, refused_change
-from cnc_ptp.nodes.requests import given_arguments, objection
+from cnc_ptp.nodes.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
     BLOCKS,
@@ -51,7 +51,6 @@ MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
 BLOCK_SKIPPED = 26102
 CAME_TWICE = 26142
-RUN_OVER = 26115
 TOO_LATE = 26116
 LONGEST_COMMAND = 2.0
 """Seconds that a command or block may take; after that the node counts as silent."""

@@ -23,14 +23,15 @@ def test_commands_of_the_command_line():
     assert completed(incomplete="wa") == ["watch"]
 
 
-@pytest.mark.parametrize("command", ["do", "watch"])
-def test_units(command):
-    assert completed(command, "--machine", MILL) == ["plc", "channel", "s", "x", "y", "z"]
+@pytest.mark.parametrize(("command", "plc"), [("do", ["plc"]), ("watch", [])])
+def test_units(command, plc):
+    """`watch` refuses the plc, which has no state."""
+    assert completed(command, "--machine", MILL) == [*plc, "channel", "s", "x", "y", "z"]
     assert completed(command, "--machine", PTP, incomplete="c") == ["c"]
 
 
 def test_several_units_to_watch():
-    assert completed("watch", "--machine", PTP, "x") == ["plc", "x", "y", "z", "c"]
+    assert completed("watch", "--machine", PTP, "x") == ["x", "y", "z", "c"]
 
 
 def test_axes_and_directions_to_jog():

@@ -93,6 +93,13 @@ def test_replay_starts_a_node_only_to_publish():
     assert refused("replay", "a.mcap", "--namespace", "cell") == f"'-r __ns:=/cell' {text}"
 
 
+@pytest.mark.parametrize("option", [["--inputs"], ["--rate", "2"]])
+def test_options_of_publish_need_it(option):
+    done = call("replay", "a.mcap", *option)
+    assert done.exit_code == 2
+    assert "--inputs and --rate are options of --publish; nothing was replayed" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "text"),
     [

@@ -1,5 +1,6 @@
 """What /diagnostics says of a unit, without a graph: the worst finding first, numbers with their units."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,7 @@ class Watched:
             for event in self.runner.unit.take_events():
                 self.health.note(event)
             self.health.add_block(block)
+            self.block = block
 
     def command(self, name, **arguments):
         record = self.runner.command(Command(self.runner.unit.name, name, arguments))
@@ -147,11 +149,13 @@ def test_the_plc_tells_how_the_run_goes(fields, result):
 
 def test_an_error_without_a_text_has_its_number():
     axis = Watched(PTP, "x")
-    axis.health.note(Event(0, "x", Severity.ERROR, 4711, "another one"))
     axis.command("group_error", source="y", error=26101)
     axis.run(1)
-    axis.health._error_texts.clear()
-    assert axis.status()[1].startswith("ErrorStop, P-ERR-")
+    assert re.fullmatch(r"ErrorStop, P-ERR-\d+ .+", axis.status()[1])
+    axis.health = Health(axis.runner.unit, block_ms=10.0, length_unit="mm")  # it has not heard the event
+    axis.health.note(Event(0, "x", Severity.ERROR, 4711, "another one"))
+    axis.health.add_block(axis.block)
+    assert re.fullmatch(r"ErrorStop, P-ERR-\d+", axis.status()[1])
 
 
 def test_histograms_of_nodes_add_up():
