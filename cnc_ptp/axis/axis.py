@@ -125,8 +125,11 @@ class Axis:
         return self.compensation.offset + self.external.zero(cycle)
 
     def moving(self, cycle: int) -> bool:
-        added = self.superposed and (self.compensation.moving or self.external.moving(cycle))
-        return added or not self.ptp.finished(cycle)
+        return self.superposition_moves(cycle) or not self.ptp.finished(cycle)
+
+    def superposition_moves(self, cycle: int) -> bool:
+        """Compensation or external setpoints move the axis on top of its basic motion."""
+        return self.superposed and (self.compensation.moving or self.external.moving(cycle))
 
     def absorb(self, cycle: int) -> None:
         """The basic motion takes over what compensation and external setpoints have added; both are over.

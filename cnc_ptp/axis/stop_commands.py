@@ -57,7 +57,7 @@ class StopCommands:
         """Stops with a deceleration (mm/s²) and a jerk (mm/s³), which are at least those of the start.
 
         No value keeps the axis from stopping; warning 23016 says what was corrected. The ramp of a stop or halt
-        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase).
+        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing on top of it).
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
@@ -65,14 +65,19 @@ class StopCommands:
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
         if axis.state == S.STOPPING and axis.ptp.drop_suspended():
             return f"axis {axis.name}: {command} takes the new target back; the axis stops"
-        brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
-        if brakes and not axis.compensation.moving:
+        if self._ends_by_itself(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
         return warning
+
+    def _ends_by_itself(self, cycle: int) -> bool:
+        """In the natural brake phase, and nothing on top moves the axis or may do so: external setpoints may come."""
+        axis = self._axis
+        brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
+        return brakes and axis.external.mode is None and not axis.superposition_moves(cycle)
 
     def _emergency_ramp(self, command: str, deceleration: object, jerk: object) -> tuple[Limits, str | None]:
         """The ramp that comes nearest to the two values without being weaker than the start, and what was corrected."""
