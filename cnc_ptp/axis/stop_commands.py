@@ -30,13 +30,21 @@ class StopCommands:
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
         self._refuse_synchronous(command)
-        if axis.state == S.STOPPING and axis.ptp.drop_suspended():
-            return f"axis {axis.name}: {command} takes the new target back; the axis stops"
+        taken_back = self._take_target_back(command)
+        if taken_back is not None:
+            return taken_back
         if axis.state not in MOVING:
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
         axis.stop(cycle, locks=locks)
         self._stopped(locks)
         return None
+
+    def _take_target_back(self, command: str) -> str | None:
+        """Drops a new target that waits for the end of a stop; says so if there is one."""
+        axis = self._axis
+        if axis.state != S.STOPPING or not axis.ptp.drop_suspended():
+            return None
+        return f"axis {axis.name}: {command} takes the new target back; the axis stops"
 
     def _refuse_synchronous(self, command: str) -> None:
         """What follows a channel or a master is stopped there."""
@@ -63,15 +71,14 @@ class StopCommands:
         self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
-        if axis.state == S.STOPPING and axis.ptp.drop_suspended():
-            return f"axis {axis.name}: {command} takes the new target back; the axis stops"
         if self._ends_by_itself(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
+        taken_back = self._take_target_back(command)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
-        return warning
+        return "; ".join(filter(None, (warning, taken_back))) or None
 
     def _ends_by_itself(self, cycle: int) -> bool:
         """In the natural brake phase, and nothing on top moves the axis or may do so: external setpoints may come."""
