@@ -271,10 +271,9 @@ class Axis:
             self.has_been_stopped = False
         if not self.ptp.arrived(cycle):
             return
-        if self.state in (S.DISCRETE_MOTION, S.STOPPING):
-            self.compensation.end()
-            if self.compensation.moving:
-                return
+        self.compensation.end()
+        if self.compensation.moving:
+            return
         if self._jogs_to_limit:
             self._tell_limit(cycle)
         if self.superposed and self.external.mode is not None:
@@ -290,11 +289,14 @@ class Axis:
         return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
 
     def _tell_limit(self, cycle: int) -> None:
-        position, parameters = self.ptp.state(cycle)[0], self.parameters
-        positive = position == parameters.soft_limit_positive
+        position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
+        positive = position == self.parameters.soft_limit_positive
         name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
         text = f"axis {self.name}: the jog has come to the {name} soft limit {position} {self.unit} ({parameter})"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; the axis stands")
+        now = "the axis stands" if rest == position else f"the axis stands at {rest:g} {self.unit}"
+        if self.external.mode is not None or self.superposition_moves(cycle):
+            now = "external setpoints have the axis now"
+        self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; {now}")
 
     def _finish(self, state: S) -> None:
         if state != self.state:
