@@ -299,7 +299,8 @@ class Axis:
         self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; {now}")
 
     def _finish(self, state: S) -> None:
-        if state != self.state:
+        """A stop whose table is through, while external setpoints come to rest, may still be led to a new target."""
+        if state != self.state or self.ptp.job is not None:
             self.ptp.finish()
         self.state = state
 

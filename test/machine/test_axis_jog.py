@@ -246,10 +246,9 @@ def test_a_jog_below_external_setpoints_ends_once_at_the_limit() -> None:
     ]
     assert bench.state == S.CONTINUOUS_MOTION and motion(bench)[-1] == (300.0, 0.0, 0.0)
     assert bench.last.status_bits[-1] & (StatusBit.HAS_JOB | StatusBit.EXT_SETPOINT) == StatusBit.EXT_SETPOINT
-    begin = bench.cycle + 10
-    feed(bench, generator(-100.0, first_cycle=begin), 500)
+    feed(bench, generator(-100.0, first_cycle=bench.cycle + 10, velocity=200.0), 700)
     assert motion(bench)[-1] == (pytest.approx(200.0), 0.0, 0.0)
-    feed(bench, generator(150.0, first_cycle=bench.cycle + 10, start=-100.0), 500)
+    feed(bench, generator(150.0, first_cycle=bench.cycle + 10, velocity=200.0, start=-100.0), 700)
     assert [text[:12] for text in bench.event_texts()] == ["P-ERR-23070 ", "P-ERR-120002"]
 
 
