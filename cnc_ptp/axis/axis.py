@@ -362,7 +362,7 @@ class Axis:
         if self.error_id:
             return setpoint
         if self.ptp.withholds(setpoint[1]) and not self._stops_in_time(cycle, setpoint[1]):
-            where = "forwards" if setpoint[1] > 0.0 else "backwards"
+            where = "forward" if setpoint[1] > 0.0 else "backward"
             reason = f"it is moved {where}, which is not released (set_feed_release)"
             return self._fault_before(cycle, FEED_WITHHELD, reason, setpoint)
         if self.superposed:

@@ -214,7 +214,7 @@ def test_external_setpoints_in_a_withheld_direction_are_a_fault_before_they_move
     withhold(bench, sign)
     feed(bench, generator(sign * 300.0, first_cycle=20), 300)
     (text,) = bench.event_texts()
-    where = "forwards" if sign > 0.0 else "backwards"
+    where = "forward" if sign > 0.0 else "backward"
     reason = f"it is moved {where}, which is not released (set_feed_release)"
     assert text == f"P-ERR-23058 axis x: {reason}; the axis stops on its own ramp (ErrorStop)"
     assert not column(bench, "set_position").any()
