@@ -32,7 +32,7 @@ from cnc_ptp.parameters import AxisParameters
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
-PAIR_ERRORS = (GANTRY_DIFFERENCE, GROUP_ERROR)
+PAIR_ERRORS = (FEED_WITHHELD, GANTRY_DIFFERENCE, GROUP_ERROR)
 """Errors in which the slave of a gantry pair stops with its master."""
 ROUNDING = 1e-9
 """Part of a velocity limit."""
@@ -394,7 +394,11 @@ class Axis:
         """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
 
         Without a superposition there, it begins at `setpoint`. The acceleration of a superposition ends at once.
+        The slave of a gantry pair goes on with its master.
         """
+        if self._pair_in(error_id) is not None:
+            self.fault(cycle, error_id, reason)
+            return setpoint
         begin = cycle
         if self._before is not None and self._before[0] == cycle - 1:
             begin, setpoint = self._before
@@ -471,9 +475,10 @@ class Axis:
         `setpoint` within a block, where another source than the own generator has given it.
         """
         self.error_id = error_id
-        if error_id in PAIR_ERRORS and self.coupled and self.coupling is not None and self.coupling.keeps_pair:
+        pair = self._pair_in(error_id)
+        if pair is not None:
             self._note_propagation(cycle, error_id)
-            text = f"axis {self.name}: {reason}; the axis stops with its master {self.coupling.master} (ErrorStop)"
+            text = f"axis {self.name}: {reason}; the axis stops with its master {pair.master} (ErrorStop)"
             self._report_error(cycle, error_id, text)
             return
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
@@ -488,6 +493,11 @@ class Axis:
         self.target_window.forget()
         self.state = S.ERROR_STOP
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
+
+    def _pair_in(self, error_id: int) -> Coupling | None:
+        """The coupling on which the slave of a gantry pair stays in this error."""
+        keeps = self.coupled and self.coupling is not None and self.coupling.keeps_pair
+        return self.coupling if keeps and error_id in PAIR_ERRORS else None
 
     def _note_propagation(self, cycle: int, error_id: int) -> None:
         if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from cnc_ptp.axis.faults import GANTRY_DIFFERENCE
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
 from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
@@ -46,9 +45,10 @@ class AxisGroups:
                 yield from self._spread(name)
 
     def _delay(self, name: str) -> int:
+        """None for the slave of a gantry pair, which in error goes on with its master until that stops."""
         parameters = self._axes[name]
-        torn = self._blocks[name].error_id[-1] == GANTRY_DIFFERENCE
-        if torn or not parameters.error_propagation_delayed:
+        waits = self._blocks[name].state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
+        if waits or not parameters.error_propagation_delayed:
             return 0
         return round(parameters.error_propagation_delay / self._cycle_time)
 
