@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable
 from itertools import pairwise
-from math import ulp
 from typing import NamedTuple
 
 from cnc_ptp.axis.tables import standing
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
-from cnc_ptp.motion.limits import LARGEST_STATE
+from cnc_ptp.motion.limits import LARGEST_STATE, rounding
 from cnc_ptp.motion.profile import State
 
 LONGEST_PERIOD = 0.02
 """Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
-PLACES = 4
-"""Units in the last place of a position that are rounding."""
 NEGLIGIBLE_VELOCITY = 1e-9
 """mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
 ABSOLUTE = "absolute"
@@ -214,7 +211,7 @@ class ExternalSetpoints:
             driving = setpoint._replace(position=setpoint.position - self._reference)
             way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
             farthest = self._limits.velocity * self._cycle_time * (1.0 + 1e-9)
-            if abs(way) > farthest + PLACES * ulp(max(abs(setpoint.position), abs(self._reference))):
+            if abs(way) > farthest + rounding(setpoint.position, self._reference):
                 self.rejected = setpoint, way
                 self._waiting.clear()
                 return

@@ -6,7 +6,7 @@ import sys
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, copysign, inf, isinf, ulp
+from math import ceil, copysign, inf, isinf
 
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
@@ -17,7 +17,7 @@ from cnc_ptp.motion import (
     plan_to_position,
     plan_to_velocity,
 )
-from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state
+from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
 from cnc_ptp.motion.profile import Row
 
 State = tuple[float, float, float, float]
@@ -34,9 +34,7 @@ SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
 
 INSTANT = 1e-9
-"""s; a stop that misses the target by what the axis moves in it, or by rounding (`PLACES`), ends there."""
-PLACES = 8
-"""Units in the last place of a position that are rounding."""
+"""s; a stop that misses the target by what the axis moves in it, or by rounding, ends there."""
 
 REDUCTIONS = 8
 """Steps in which a new velocity that cannot be reached is brought nearer to the old one (TX1250 2.4)."""
@@ -346,9 +344,8 @@ class PtpGenerator:
         """How far (mm, deg) behind the target of `job`, seen in the direction of motion, a stop would end; 0 at it."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
-        rounding = abs(velocity) * INSTANT + PLACES * ulp(max(abs(position), abs(job.target)))
         behind = copysign(1.0, velocity) * (ahead - job.target)
-        return 0.0 if abs(behind) <= rounding else behind
+        return 0.0 if abs(behind) <= abs(velocity) * INSTANT + rounding(position, job.target) else behind
 
     def _in_brake_phase(self, cycle: int, job: Job) -> bool:
         """True when the table leads to the target and a stop would do the same: nothing can be changed any more.
