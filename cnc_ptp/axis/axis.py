@@ -18,8 +18,6 @@ from cnc_ptp.axis.faults import (
     JOG_AT_LIMIT,
     SETPOINT_TOO_FAR,
     SETPOINTS_STOPPED,
-    SOFT_LIMIT_NEGATIVE,
-    SOFT_LIMIT_POSITIVE,
     SUM_TOO_FAST,
     TARGET_MISSED,
 )
@@ -290,13 +288,11 @@ class Axis:
 
     def _tell_limit(self, cycle: int) -> None:
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
-        positive = position == self.parameters.soft_limit_positive
-        name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
-        text = f"axis {self.name}: the jog has come to the {name} soft limit {position} {self.unit} ({parameter})"
+        limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
         now = "the axis stands" if rest == position else f"the axis stands at {rest:g} {self.unit}"
         if self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints have the axis now"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; {now}")
+        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has come to the {limit.text}; {now}")
 
     def _finish(self, state: S) -> None:
         """A stop whose table is through, while external setpoints come to rest, may still be led to a new target."""
@@ -438,14 +434,11 @@ class Axis:
 
     def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
         position, velocity = setpoint[:2]
-        low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
-        where = f"set position {position} {self.unit} is beyond the"
-        if position > high and velocity > 0.0:
-            reason = f"{where} positive soft limit {high} {self.unit} (P-AXIS-00178)"
-            self.fault(cycle, SOFT_LIMIT_POSITIVE, reason, setpoint)
-        elif position < low and velocity < 0.0:
-            reason = f"{where} negative soft limit {low} {self.unit} (P-AXIS-00177)"
-            self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason, setpoint)
+        limit = self.checks.soft_limit(velocity)
+        outside = position > limit.position if velocity > 0.0 else position < limit.position
+        if outside and velocity != 0.0:
+            reason = f"set position {position} {self.unit} is beyond the {limit.text}"
+            self.fault(cycle, limit.error_id, reason, setpoint)
 
     def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
         set_position, velocity, _, _ = setpoint
