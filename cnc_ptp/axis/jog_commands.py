@@ -10,6 +10,7 @@ from cnc_ptp.axis.ptp import Job
 from cnc_ptp.axis.ptp_commands import refuse_other_source
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
+from cnc_ptp.motion.limits import rounding
 
 JOG = "jog"
 
@@ -68,8 +69,12 @@ class JogCommands:
             axis.refuse(JOG, COMPENSATION_RUNS, "a position compensation is active")
 
     def _check_room(self, cycle: int, velocity: float) -> None:
-        """Raises 120002 and 120003 where the axis stands at its soft limit, or beyond it, and is to go on outwards."""
+        """Raises 120002 and 120003 outwards from the soft limit at which the axis stands, or beyond which it is."""
         axis, limit = self._axis, self._axis.checks.soft_limit(velocity)
-        room = copysign(1.0, velocity) * (limit.position - axis.setpoint(cycle)[0])
+        position = axis.setpoint(cycle)[0]
+        room = copysign(1.0, velocity) * (limit.position - position)
+        if room < -rounding(limit.position, position):
+            reason = f"the axis is at {position} {axis.unit}, beyond its {limit.text}"
+            axis.refuse(JOG, limit.error_id, reason)
         if room <= axis.parameters.encoder_increment and axis.state == S.STANDSTILL:
             axis.refuse(JOG, limit.error_id, f"the axis is at its {limit.text}")

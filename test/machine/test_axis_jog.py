@@ -181,10 +181,37 @@ def test_in_the_brake_phase_to_the_limit_only_the_other_direction_counts() -> No
 @pytest.mark.parametrize(("start", "back"), [(350.0, -20.0), (-1020.0, 20.0)])
 def test_an_axis_beyond_its_limit_may_jog_back_only(start: float, back: float) -> None:
     bench = limited(-1000.0, 300.0, start_position=start)
-    assert "is at its" in bench.refused("jog", velocity=-back)
+    name, limit = ("positive", "300.0 mm (P-AXIS-00178)") if start > 0.0 else ("negative", "-1000.0 mm (P-AXIS-00177)")
+    assert bench.refused("jog", velocity=-back).endswith(
+        f"jog refused: the axis is at {start} mm, beyond its {name} soft limit {limit}; nothing was changed"
+    )
     bench.accepted("jog", velocity=back)
     bench.run(1000)
     assert bench.state == S.CONTINUOUS_MOTION and len(bench.events) == 1  # that refusal
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("cycles", [1, 5, 100, 1000])
+def test_from_beyond_the_limit_only_the_other_direction_is_taken_in_motion_too(sign: float, cycles: int) -> None:
+    """At 600 mm, limit 500 mm: a jog outwards would drive back to the limit with the velocity asked for."""
+    benches = [limited(-500.0, 500.0, start_position=sign * 600.0) for _ in range(2)]
+    for bench in benches:
+        bench.accepted("jog", velocity=sign * -10.0)
+        bench.run(cycles)
+    name, number, parameter = (
+        ("positive", 120002, "P-AXIS-00178") if sign > 0.0 else ("negative", 120003, "P-AXIS-00177")
+    )
+    position = benches[0].unit._axis.setpoint(benches[0].cycle)[0]
+    assert benches[0].refused("jog", velocity=sign * 50.0) == (
+        f"P-ERR-{number} axis x: jog refused: the axis is at {position} mm, beyond its {name} soft limit "
+        f"{sign * 500.0} mm ({parameter}); nothing was changed"
+    )
+    assert benches[1].accepted("jog", velocity=sign * -20.0) == ""
+    benches[1].accepted("jog", velocity=0.0)
+    benches[1].run(500)
+    assert benches[1].refused("jog", velocity=sign * 50.0)[:12] == f"P-ERR-{number}"
+    benches[0].run(500)
+    assert motion(benches[0])[-1][1] == pytest.approx(sign * -10.0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
