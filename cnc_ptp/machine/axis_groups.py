@@ -10,6 +10,7 @@ from cnc_ptp.parameters import AxisParameters
 
 STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
 STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
+CHANGES_OF_COUPLINGS = COUPLINGS | {"decouple", "set_coupling_factor", "set_cyclic_factor", "change_cam"}
 
 
 class AxisGroups:
@@ -133,25 +134,31 @@ class CommandsOfBlock:
     def must_wait(self, command: Command) -> bool:
         """Keeps back a coupling that runs in a circle only if others of this block are carried out, or refused.
 
-        What comes after it for these axes waits as well, so that the order stays; stops go out at once.
+        Starts of these axes and changes of their couplings wait behind it, so that the order stays. All else goes out
+        at once, stops above all, unless a start of the same axis waits.
         """
         axis, master = command.target, master_in(command)
-        waits = any(axis == before.target for before in self.waiting)
+        waits = self._is_behind(command)
         if master is not None:
             undecided = axis in self.above(master) and axis not in reachable(self._certain, master)
             waits = waits or undecided or bool({axis, master} & self._waiting_axes)
-        elif command.command in STARTS:
+        elif starts(command):
             waits = waits or axis in self._waiting_axes
         if waits:
             self.waiting.append(command)
             self._waiting_axes |= set() if master is None else {axis, master, *self.above(master)}
         return waits
 
+    def _is_behind(self, command: Command) -> bool:
+        """Something for the same axis waits that it must not overtake."""
+        ordered = starts(command) or command.command in CHANGES_OF_COUPLINGS
+        return any(before.target == command.target and (ordered or starts(before)) for before in self.waiting)
+
     def add(self, command: Command) -> None:
         """A command that goes out with this block."""
         axis, master = command.target, master_in(command)
         self.completed.append(command)
-        if command.command in STARTS:
+        if starts(command):
             self.started.add(axis)
         elif master is not None and axis not in (master, *self.above(master)):
             self._possible.setdefault(axis, []).append(master)
@@ -161,6 +168,12 @@ class CommandsOfBlock:
             self._certain.pop(axis, None)
             if not command.arguments:  # what has arguments may be refused for them
                 self._possible.pop(axis, None)
+
+
+def starts(command: Command) -> bool:
+    """It may move a standing axis; a jog with velocity 0 ends one."""
+    ends_jog = command.command == "jog" and command.arguments.get("velocity") == 0.0
+    return command.command in STARTS and not ends_jog
 
 
 def master_in(command: Command) -> str | None:
