@@ -209,6 +209,7 @@ class AxisUnit(Unit):
         actual_position = loop.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
+        self._path.watch(cycle, base[1])
         setpoint = axis.watch(cycle, setpoint)
         self._master.watch_gantry(cycle, setpoint, actual_position)
         axis.watch_target(cycle, setpoint, actual_position)
