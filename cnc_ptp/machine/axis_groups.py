@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
+from cnc_ptp.axis.states import REST_STATES
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
 from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
 
-STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
 STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
 CHANGES_OF_COUPLINGS = COUPLINGS | {"decouple", "set_coupling_factor", "set_cyclic_factor", "change_cam"}
 
@@ -98,7 +98,7 @@ class AxisGroups:
         slave = bool(block.master) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
         still = block.set_velocity[-1] == 0.0 and block.set_acceleration[-1] == 0.0
         still = still and not block.status_bits[-1] & StatusBit.HAS_JOB  # held by override 0, or in its first cycle
-        return still and (slave or block.state[-1] in STANDING)
+        return still and (slave or block.state[-1] in REST_STATES)
 
     def _lead_commands(self) -> Iterator[Command]:
         """Tells masters whom they have got and lost."""
