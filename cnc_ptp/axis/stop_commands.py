@@ -65,7 +65,8 @@ class StopCommands:
         """Stops with a deceleration (mm/s²) and a jerk (mm/s³), which are at least those of the start.
 
         No value keeps the axis from stopping; warning 23016 says what was corrected. The ramp of a stop or halt
-        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing on top of it).
+        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing on top of it), 23040 (a
+        slave, also one that follows as a flying saw on a path).
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
