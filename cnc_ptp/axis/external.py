@@ -87,6 +87,8 @@ class ExternalSetpoints:
         self._rest = standing(0.0)
         self._rest_cycle = 0
         self._reference = 0.0
+        self._velocity = 0.0
+        """What was contributed in the cycle of the last `at`."""
         self.mode: str | None = None
         """absolute, relative, or None while disabled."""
         self.rejected: tuple[Setpoint, float] | None = None
@@ -157,8 +159,8 @@ class ExternalSetpoints:
         return self._driving is not None or (cycle - self._rest_cycle) * self._cycle_time < self._rest.duration
 
     def silence(self, cycle: int) -> int:
-        """Cycles for which the axis has been moving on without a new setpoint."""
-        if self._driving is None or self.contribution(cycle)[1] == 0.0:
+        """Cycles for which the axis has been moving on without a new setpoint, in the cycle of the last `at`."""
+        if self._driving is None or self._velocity == 0.0:
             return 0
         return cycle - self._driving.cycle
 
@@ -174,6 +176,7 @@ class ExternalSetpoints:
         self._advance(cycle)
         position, velocity, acceleration, jerk = base
         p, v, a, j = self.contribution(cycle)
+        self._velocity = v
         return position + p, velocity + v, acceleration + a, jerk + j
 
     def contribution(self, cycle: int) -> State:
