@@ -36,7 +36,7 @@ class FlyingSaw(Coupling):
         master_position: float,
         slave_position: float,
         limits: Limits,
-        unit: str = "mm",
+        unit: str,
     ) -> None:
         """Synchronous from `master_position` and `slave_position` (in `unit`) on; `limits` of the run-up."""
         super().__init__(master, factor)
