@@ -44,7 +44,7 @@ class Axis:
 
     The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints and a
     flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time
-    P-AXIS-00196), or on that of the motion in work where this is stronger.
+    P-AXIS-00196), or on that of the active motion where this is stronger.
     """
 
     def __init__(
@@ -379,7 +379,7 @@ class Axis:
         return not driven and self.ptp.withholds(self.ptp.state(cycle)[1])
 
     def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """The channel brakes its path; what is added to that must not drive the axis the withheld way."""
+        """The channel brakes its path; what is added to that must not drive the axis in a withheld direction."""
         added = self.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
         if self.ptp.withholds(velocity - added):
             self.path_direction = copysign(1.0, velocity - added)

@@ -97,7 +97,7 @@ class PtpGenerator:
 
     @property
     def withheld(self) -> bool:
-        """The job in work waits, or comes to rest, until its direction is released."""
+        """The active job waits, or comes to rest, until its direction is released."""
         return self.job is not None and self._waits_for_release
 
     def withholds(self, direction: float) -> bool:
@@ -122,7 +122,7 @@ class PtpGenerator:
         return self.withholds(job.target - plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0])
 
     def _lead(self, cycle: int, job: Job, table: Profile) -> None:
-        """Puts a table of the job in work, or the ramp to standstill where it must wait."""
+        """Puts a table of the active job, or the ramp to standstill where it must wait."""
         self._waits_for_release = self._must_wait(cycle, job)
         if self._waits_for_release:
             table = plan_to_velocity(*self.state(cycle)[:3], 0.0, job.limits)
@@ -394,7 +394,7 @@ class PtpGenerator:
         return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
 
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
-        """The table in work leads to the target, and the new one does not reach its level.
+        """The active table leads to the target, and the new one does not reach its level.
 
         Override types 3 and 4 take what can be reached instead, unless the axis would have to come down to the level:
         it would brake for the level and then for the target, later and rougher than with the table that it has.

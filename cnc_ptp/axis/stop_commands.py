@@ -103,7 +103,7 @@ class StopCommands:
         return ramp, "; ".join(filter(None, (warning, rescaled))) or None
 
     def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:
-        """The value given, or that of the start where it is no use or less, and what to say then."""
+        """The value given, or that of the start where it is invalid or less, and what to say then."""
         value = number(given)
         if value >= least:
             return value, ""

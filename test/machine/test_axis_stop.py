@@ -180,11 +180,11 @@ def correction(name: str, value: object, used: float) -> str:
 
 
 WARNING = "P-WARN-23016 axis x: emergency_stop: "
-NO_USE = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast", [1.0]]
+WEAK_OR_INVALID = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast", [1.0]]
 
 
 @pytest.mark.parametrize("jerk", [50_000.0, 500_000.0, 1.0, 0.0, nan, None])
-@pytest.mark.parametrize("deceleration", [5000.0, 10_000.0, *NO_USE])
+@pytest.mark.parametrize("deceleration", [5000.0, 10_000.0, *WEAK_OR_INVALID])
 def test_an_emergency_stop_stops_with_the_larger_of_what_is_given_and_the_start(
     deceleration: object, jerk: object
 ) -> None:
