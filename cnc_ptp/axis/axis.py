@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
@@ -16,10 +16,6 @@ from cnc_ptp.axis.faults import (
     GANTRY_DIFFERENCE,
     GROUP_ERROR,
     JOG_AT_LIMIT,
-    SETPOINT_TOO_FAR,
-    SETPOINTS_STOPPED,
-    SUM_TOO_FAST,
-    TARGET_MISSED,
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator, State
@@ -84,14 +80,11 @@ class Axis:
         self.has_been_stopped = False
         self.path_direction = 0.0
         """-1 or +1: the direction in which the path of a channel waits for the feed release."""
-        self._before: tuple[int, State] | None = None
-        """The last cycle with a superposition, and its setpoint."""
         self.override_percent = 100.0
         self._master_velocity = 0.0
         self._master_has_job = False
         self._propagation_delay = round(parameters.error_propagation_delay / cycle_time)
         self._propagated_at = 0
-        self._longest_silence = round(parameters.external_timeout / cycle_time)
         self._report_error = report_error
         self._report_warning = report_warning
 
@@ -151,6 +144,16 @@ class Axis:
         most = max(self.own_limits[1:3] + limits[1:3])
         bearable = min(most, sqrt(2.0 * jerk * left) * (1.0 + ROUNDING))
         return acceleration if abs(acceleration) <= bearable else copysign(bearable, acceleration)
+
+    def brake(self, cycle: int, setpoint: State) -> None:
+        """The own ramp begins at `setpoint`, without what is added; the acceleration of that ends at once."""
+        position, velocity, acceleration, _ = setpoint
+        if self.superposed:
+            own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(cycle)[2]
+            acceleration = self._bearable(velocity, own)
+        self.ptp.take_over(cycle, position, velocity, acceleration)
+        self._end_superposition()
+        self.ptp.stop(cycle, self.own_limits, at_least=True)
 
     def leave_master(self, cycle: int) -> None:
         """The own generator goes on where the coupling has led the axis, with what it can bear of the acceleration."""
@@ -272,7 +275,7 @@ class Axis:
         self.compensation.end()
         if self.compensation.moving:
             return
-        if self._jogs_to_limit:
+        if self.jogs_to_limit:
             self._tell_limit(cycle)
         if self.superposed and self.external.mode is not None:
             self._finish(S.CONTINUOUS_MOTION)
@@ -282,7 +285,7 @@ class Axis:
             self._finish(self.rest_state())
 
     @property
-    def _jogs_to_limit(self) -> bool:
+    def jogs_to_limit(self) -> bool:
         """Only a jog has a job with an end in ContinuousMotion: to stand at the soft limit, as far as it is let."""
         return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
 
@@ -328,134 +331,6 @@ class Axis:
             return IN_TARGET_POSITION
         return 0
 
-    # monitoring
-
-    def undisturbed(self, first_cycle: int, setpoints: Sequence[State]) -> bool:
-        """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
-
-        The state of the first cycle has been advanced already.
-        """
-        if self.superposed or self.error_id or (self.ptp.restricted and self.state == S.SYNCHRONIZED_MOTION):
-            return False
-        last_cycle = first_cycle + len(setpoints) - 1
-        if self.state in (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION) and self.ptp.arrived(last_cycle):
-            return False
-        if self.coupling is not None or self.state == S.CONTINUOUS_MOTION:
-            positions = [setpoint[0] for setpoint in setpoints]
-            low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
-            if min(positions) < low or max(positions) > high:
-                return False
-        if self.ptp.job is not None or all(setpoint[1] for setpoint in setpoints):
-            self.target_window.moves()
-            return True
-        return not self.target_window.watching
-
-    def watch(self, cycle: int, setpoint: State) -> State:
-        """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
-
-        Returns the setpoint to be used, which is another one where a fault prevents it.
-        """
-        if self.error_id:
-            return setpoint
-        if self.ptp.withholds(setpoint[1]) and not self._stops_in_time(cycle, setpoint[1]):
-            where = "forward" if setpoint[1] > 0.0 else "backward"
-            reason = f"it is moved {where}, which is not released (set_feed_release)"
-            return self._fault_before(cycle, FEED_WITHHELD, reason, setpoint)
-        if self.superposed:
-            return self._watch_superposition(cycle, setpoint)
-        if self.coupling is not None or (self.state == S.CONTINUOUS_MOTION and not self._jogs_to_limit):
-            self._watch_soft_limits(cycle, setpoint)
-        return setpoint
-
-    def _stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """For a motion in a withheld direction: its own generator or its channel brakes it already, or will."""
-        if self.on_path:
-            return self._path_stops_in_time(cycle, velocity)
-        if self.coupled:
-            return False
-        if not self.superposed or self.state == S.STOPPING:
-            return True
-        driven = self.external.mode is not None and self.ptp.withholds(self.external.contribution(cycle)[1])
-        return not driven and self.ptp.withholds(self.ptp.state(cycle)[1])
-
-    def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """The channel brakes its path; what is added to that must not drive the axis in a withheld direction."""
-        added = self.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
-        if self.ptp.withholds(velocity - added):
-            self.path_direction = copysign(1.0, velocity - added)
-        driven = self.carried is not None or self.external.mode is not None
-        return not (driven and self.ptp.withholds(added))
-
-    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: State) -> State:
-        """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
-
-        Without a superposition there, it begins at `setpoint`. The acceleration of a superposition ends at once.
-        The slave of a gantry pair goes on with its master.
-        """
-        if self._pair_in(error_id) is not None:
-            self.fault(cycle, error_id, reason)
-            return setpoint
-        begin = cycle
-        if self._before is not None and self._before[0] == cycle - 1:
-            begin, setpoint = self._before
-        position, velocity, acceleration, _ = setpoint
-        if self.superposed:
-            own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(begin)[2]
-            acceleration = self._bearable(velocity, own)
-        self.ptp.take_over(begin, position, velocity, acceleration)
-        self._end_superposition()
-        self.ptp.stop(begin, self.own_limits, at_least=True)
-        self.fault(cycle, error_id, reason)
-        return self.ptp.state(cycle)
-
-    def _watch_superposition(self, cycle: int, setpoint: State) -> State:
-        if self.coupled and not self._master_has_job and setpoint[1] == 0.0:
-            self.compensation.end()
-        rejected, silence = self.external.rejected, self.external.silence(cycle)
-        if rejected is not None:
-            packet, way = rejected
-            reason = (
-                f"external setpoint {packet.position} {self.unit} is {abs(way):g} {self.unit} away, farther than the "
-                f"axis gets at {self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
-            )
-            self.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
-        elif silence > self._longest_silence:
-            timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
-            self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
-        elif abs(setpoint[1]) > self.parameters.max_velocity * (1.0 + ROUNDING):
-            limit = f"{self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
-            total = f"{abs(setpoint[1]):g} {self.unit}/s"
-            reason = f"the superposed motions would add up to {total}, above the maximum {limit}"
-            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
-        else:
-            self._watch_soft_limits(cycle, setpoint)
-        self._before = cycle, setpoint
-        return setpoint
-
-    def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
-        position, velocity = setpoint[:2]
-        limit = self.checks.soft_limit(velocity)
-        outside = position > limit.position if velocity > 0.0 else position < limit.position
-        if outside and velocity != 0.0:
-            reason = f"set position {position} {self.unit} is beyond the {limit.text}"
-            self.fault(cycle, limit.error_id, reason, setpoint)
-
-    def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
-        set_position, velocity, _, _ = setpoint
-        if velocity != 0.0 or self.ptp.job is not None:
-            self.target_window.moves()
-            return
-        if not self.target_window.overdue(cycle, set_position, actual_position):
-            return
-        distance = abs(self.target_window.error(set_position, actual_position))
-        self._report_warning(
-            cycle,
-            TARGET_MISSED,
-            f"axis {self.name}: {self.parameters.target_time:g} s after its end the motion is {distance:g} {self.unit} "
-            f"away from its target, more than the position window {self.parameters.position_window:g} {self.unit} "
-            "(P-AXIS-00236)",
-        )
-
     # refusals and faults
 
     def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
@@ -468,7 +343,7 @@ class Axis:
         `setpoint` within a block, where another source than the own generator has given it.
         """
         self.error_id = error_id
-        pair = self._pair_in(error_id)
+        pair = self.pair_in(error_id)
         if pair is not None:
             self._note_propagation(cycle, error_id)
             text = f"axis {self.name}: {reason}; the axis stops with its master {pair.master} (ErrorStop)"
@@ -487,7 +362,7 @@ class Axis:
         self.state = S.ERROR_STOP
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
 
-    def _pair_in(self, error_id: int) -> Coupling | None:
+    def pair_in(self, error_id: int) -> Coupling | None:
         """The coupling on which the slave of a gantry pair stays in this error."""
         keeps = self.coupled and self.coupling is not None and self.coupling.keeps_pair
         return self.coupling if keeps and error_id in PAIR_ERRORS else None
