@@ -139,8 +139,8 @@ def evaluation(effort: Effort, peer: RuckigPeer) -> Iterator[Figure]:
 
 def path(effort: Effort) -> Iterator[Figure]:
     """Geometry and path interpolation."""
-    line = Line((0.0, 0.0, 0.0), (10.0, 20.0, 30.0))
-    arc = Arc((10.0, 0.0, 0.0), (0.0, 10.0, 1.0), (0.0, 0.0), (0, 1), 10.0, 90.0)
+    line = Line((0.0, 0.0, 0.0), (10.0, 20.0, 30.0), (0, 1, 2))
+    arc = Arc((10.0, 0.0, 0.0), (0.0, 10.0, 1.0), (0.0, 0.0), (0, 1), 10.0, 90.0, (0, 1, 2))
     states = [(0.01 * n, 100.0, 5.0, 7.0) for n in range(1000)]
     axes = [AxisLimits(500.0, 3000.0, 3000.0, 30000.0)] * 3
     of_line = line.limits(50.0, axes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
@@ -16,12 +16,6 @@ from cnc_ptp.axis.faults import (
     GANTRY_DIFFERENCE,
     GROUP_ERROR,
     JOG_AT_LIMIT,
-    SETPOINT_TOO_FAR,
-    SETPOINTS_STOPPED,
-    SOFT_LIMIT_NEGATIVE,
-    SOFT_LIMIT_POSITIVE,
-    SUM_TOO_FAST,
-    TARGET_MISSED,
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator, State
@@ -32,7 +26,7 @@ from cnc_ptp.parameters import AxisParameters
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
-PAIR_ERRORS = (GANTRY_DIFFERENCE, GROUP_ERROR)
+PAIR_ERRORS = (FEED_WITHHELD, GANTRY_DIFFERENCE, GROUP_ERROR)
 """Errors in which the slave of a gantry pair stops with its master."""
 ROUNDING = 1e-9
 """Part of a velocity limit."""
@@ -46,7 +40,7 @@ class Axis:
 
     The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints and a
     flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time
-    P-AXIS-00196), or on that of the motion in work where this is stronger.
+    P-AXIS-00196), or on that of the active motion where this is stronger.
     """
 
     def __init__(
@@ -86,14 +80,11 @@ class Axis:
         self.has_been_stopped = False
         self.path_direction = 0.0
         """-1 or +1: the direction in which the path of a channel waits for the feed release."""
-        self._before: tuple[int, State] | None = None
-        """The last cycle with a superposition, and its setpoint."""
         self.override_percent = 100.0
         self._master_velocity = 0.0
         self._master_has_job = False
         self._propagation_delay = round(parameters.error_propagation_delay / cycle_time)
         self._propagated_at = 0
-        self._longest_silence = round(parameters.external_timeout / cycle_time)
         self._report_error = report_error
         self._report_warning = report_warning
 
@@ -125,8 +116,11 @@ class Axis:
         return self.compensation.offset + self.external.zero(cycle)
 
     def moving(self, cycle: int) -> bool:
-        added = self.superposed and (self.compensation.moving or self.external.moving(cycle))
-        return added or not self.ptp.finished(cycle)
+        return self.superposition_moves(cycle) or not self.ptp.finished(cycle)
+
+    def superposition_moves(self, cycle: int) -> bool:
+        """Compensation or external setpoints move the axis on top of its basic motion."""
+        return self.superposed and (self.compensation.moving or self.external.moving(cycle))
 
     def absorb(self, cycle: int) -> None:
         """The basic motion takes over what compensation and external setpoints have added; both are over.
@@ -150,6 +144,16 @@ class Axis:
         most = max(self.own_limits[1:3] + limits[1:3])
         bearable = min(most, sqrt(2.0 * jerk * left) * (1.0 + ROUNDING))
         return acceleration if abs(acceleration) <= bearable else copysign(bearable, acceleration)
+
+    def brake(self, cycle: int, setpoint: State) -> None:
+        """The own ramp begins at `setpoint`, without what is added; the acceleration of that ends at once."""
+        position, velocity, acceleration, _ = setpoint
+        if self.superposed:
+            own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(cycle)[2]
+            acceleration = self._bearable(velocity, own)
+        self.ptp.take_over(cycle, position, velocity, acceleration)
+        self._end_superposition()
+        self.ptp.stop(cycle, self.own_limits, at_least=True)
 
     def leave_master(self, cycle: int) -> None:
         """The own generator goes on where the coupling has led the axis, with what it can bear of the acceleration."""
@@ -268,11 +272,10 @@ class Axis:
             self.has_been_stopped = False
         if not self.ptp.arrived(cycle):
             return
-        if self.state in (S.DISCRETE_MOTION, S.STOPPING):
-            self.compensation.end()
-            if self.compensation.moving:
-                return
-        if self._jogs_to_limit:
+        self.compensation.end()
+        if self.compensation.moving:
+            return
+        if self.jogs_to_limit:
             self._tell_limit(cycle)
         if self.superposed and self.external.mode is not None:
             self._finish(S.CONTINUOUS_MOTION)
@@ -282,19 +285,21 @@ class Axis:
             self._finish(self.rest_state())
 
     @property
-    def _jogs_to_limit(self) -> bool:
+    def jogs_to_limit(self) -> bool:
         """Only a jog has a job with an end in ContinuousMotion: to stand at the soft limit, as far as it is let."""
         return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
 
     def _tell_limit(self, cycle: int) -> None:
-        position, parameters = self.ptp.state(cycle)[0], self.parameters
-        positive = position == parameters.soft_limit_positive
-        name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
-        text = f"axis {self.name}: the jog has come to the {name} soft limit {position} {self.unit} ({parameter})"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"{text}; the axis stands")
+        position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
+        limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
+        now = "the axis stands" if rest == position else f"the axis stands at {rest:g} {self.unit}"
+        if self.external.mode is not None or self.superposition_moves(cycle):
+            now = "external setpoints have the axis now"
+        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has come to the {limit.text}; {now}")
 
     def _finish(self, state: S) -> None:
-        if state != self.state:
+        """A stop whose table is through, while external setpoints come to rest, may still be led to a new target."""
+        if state != self.state or self.ptp.job is not None:
             self.ptp.finish()
         self.state = state
 
@@ -326,133 +331,6 @@ class Axis:
             return IN_TARGET_POSITION
         return 0
 
-    # monitoring
-
-    def undisturbed(self, first_cycle: int, setpoints: Sequence[State]) -> bool:
-        """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
-
-        The state of the first cycle has been advanced already.
-        """
-        if self.superposed or self.error_id or (self.ptp.restricted and self.state == S.SYNCHRONIZED_MOTION):
-            return False
-        last_cycle = first_cycle + len(setpoints) - 1
-        if self.state in (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION) and self.ptp.arrived(last_cycle):
-            return False
-        if self.coupling is not None or self.state == S.CONTINUOUS_MOTION:
-            positions = [setpoint[0] for setpoint in setpoints]
-            low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
-            if min(positions) < low or max(positions) > high:
-                return False
-        if self.ptp.job is not None or all(setpoint[1] for setpoint in setpoints):
-            self.target_window.moves()
-            return True
-        return not self.target_window.watching
-
-    def watch(self, cycle: int, setpoint: State) -> State:
-        """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
-
-        Returns the setpoint to be used, which is another one where a fault prevents it.
-        """
-        if self.error_id:
-            return setpoint
-        if self.ptp.withholds(setpoint[1]) and not self._stops_in_time(cycle, setpoint[1]):
-            where = "forwards" if setpoint[1] > 0.0 else "backwards"
-            reason = f"it is moved {where}, which is not released (set_feed_release)"
-            return self._fault_before(cycle, FEED_WITHHELD, reason, setpoint)
-        if self.superposed:
-            return self._watch_superposition(cycle, setpoint)
-        if self.coupling is not None or (self.state == S.CONTINUOUS_MOTION and not self._jogs_to_limit):
-            self._watch_soft_limits(cycle, setpoint)
-        return setpoint
-
-    def _stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """For a motion in a withheld direction: its own generator or its channel brakes it already, or will."""
-        if self.on_path:
-            return self._path_stops_in_time(cycle, velocity)
-        if self.coupled:
-            return False
-        if not self.superposed or self.state == S.STOPPING:
-            return True
-        driven = self.external.mode is not None and self.ptp.withholds(self.external.contribution(cycle)[1])
-        return not driven and self.ptp.withholds(self.ptp.state(cycle)[1])
-
-    def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """The channel brakes its path; what is added to that must not drive the axis the withheld way."""
-        added = self.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
-        if self.ptp.withholds(velocity - added):
-            self.path_direction = copysign(1.0, velocity - added)
-        driven = self.carried is not None or self.external.mode is not None
-        return not (driven and self.ptp.withholds(added))
-
-    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: State) -> State:
-        """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
-
-        Without a superposition there, it begins at `setpoint`. The acceleration of a superposition ends at once.
-        """
-        begin = cycle
-        if self._before is not None and self._before[0] == cycle - 1:
-            begin, setpoint = self._before
-        position, velocity, acceleration, _ = setpoint
-        if self.superposed:
-            own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(begin)[2]
-            acceleration = self._bearable(velocity, own)
-        self.ptp.take_over(begin, position, velocity, acceleration)
-        self._end_superposition()
-        self.ptp.stop(begin, self.own_limits, at_least=True)
-        self.fault(cycle, error_id, reason)
-        return self.ptp.state(cycle)
-
-    def _watch_superposition(self, cycle: int, setpoint: State) -> State:
-        if self.coupled and not self._master_has_job and setpoint[1] == 0.0:
-            self.compensation.end()
-        rejected, silence = self.external.rejected, self.external.silence(cycle)
-        if rejected is not None:
-            packet, way = rejected
-            reason = (
-                f"external setpoint {packet.position} {self.unit} is {abs(way):g} {self.unit} away, farther than the "
-                f"axis gets at {self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
-            )
-            self.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
-        elif silence > self._longest_silence:
-            timeout = f"{self.parameters.external_timeout * 1000.0:g} ms"
-            self.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
-        elif abs(setpoint[1]) > self.parameters.max_velocity * (1.0 + ROUNDING):
-            limit = f"{self.parameters.max_velocity} {self.unit}/s (P-AXIS-00212)"
-            total = f"{abs(setpoint[1]):g} {self.unit}/s"
-            reason = f"the superposed motions would add up to {total}, above the maximum {limit}"
-            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
-        else:
-            self._watch_soft_limits(cycle, setpoint)
-        self._before = cycle, setpoint
-        return setpoint
-
-    def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
-        position, velocity = setpoint[:2]
-        low, high = self.parameters.soft_limit_negative, self.parameters.soft_limit_positive
-        where = f"set position {position} {self.unit} is beyond the"
-        if position > high and velocity > 0.0:
-            reason = f"{where} positive soft limit {high} {self.unit} (P-AXIS-00178)"
-            self.fault(cycle, SOFT_LIMIT_POSITIVE, reason, setpoint)
-        elif position < low and velocity < 0.0:
-            reason = f"{where} negative soft limit {low} {self.unit} (P-AXIS-00177)"
-            self.fault(cycle, SOFT_LIMIT_NEGATIVE, reason, setpoint)
-
-    def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
-        set_position, velocity, _, _ = setpoint
-        if velocity != 0.0 or self.ptp.job is not None:
-            self.target_window.moves()
-            return
-        if not self.target_window.overdue(cycle, set_position, actual_position):
-            return
-        distance = abs(self.target_window.error(set_position, actual_position))
-        self._report_warning(
-            cycle,
-            TARGET_MISSED,
-            f"axis {self.name}: {self.parameters.target_time:g} s after its end the motion is {distance:g} {self.unit} "
-            f"away from its target, more than the position window {self.parameters.position_window:g} {self.unit} "
-            "(P-AXIS-00236)",
-        )
-
     # refusals and faults
 
     def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
@@ -465,9 +343,10 @@ class Axis:
         `setpoint` within a block, where another source than the own generator has given it.
         """
         self.error_id = error_id
-        if error_id in PAIR_ERRORS and self.coupled and self.coupling is not None and self.coupling.keeps_pair:
+        pair = self.pair_in(error_id)
+        if pair is not None:
             self._note_propagation(cycle, error_id)
-            text = f"axis {self.name}: {reason}; the axis stops with its master {self.coupling.master} (ErrorStop)"
+            text = f"axis {self.name}: {reason}; the axis stops with its master {pair.master} (ErrorStop)"
             self._report_error(cycle, error_id, text)
             return
         if setpoint is not None and self.state == S.SYNCHRONIZED_MOTION:
@@ -482,6 +361,11 @@ class Axis:
         self.target_window.forget()
         self.state = S.ERROR_STOP
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
+
+    def pair_in(self, error_id: int) -> Coupling | None:
+        """The coupling on which the slave of a gantry pair stays in this error."""
+        keeps = self.coupled and self.coupling is not None and self.coupling.keeps_pair
+        return self.coupling if keeps and error_id in PAIR_ERRORS else None
 
     def _note_propagation(self, cycle: int, error_id: int) -> None:
         if self.parameters.error_propagation_delayed and error_id != GROUP_ERROR and (self.coupling or self.slaves):

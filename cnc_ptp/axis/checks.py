@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from cnc_ptp.axis.faults import (
     ABOVE_REFERENCE_VELOCITY,
@@ -20,6 +21,14 @@ from cnc_ptp.motion.limits import LARGEST_STATE, SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
 
 
+class SoftLimit(NamedTuple):
+    """The soft limit of one direction; its `text` names it with position, unit and parameter."""
+
+    position: float
+    error_id: int
+    text: str
+
+
 class MotionChecks:
     """Limits of one axis; each check raises CncError with who, where, value and limit, or gives what is to be used."""
 
@@ -28,6 +37,11 @@ class MotionChecks:
         self._parameters = parameters
         self._cycle_time = cycle_time
         self._unit = "deg" if parameters.rotary else "mm"
+        positive, negative = parameters.soft_limit_positive, parameters.soft_limit_negative
+        positive_text = f"positive soft limit {positive} {self._unit} (P-AXIS-00178)"
+        negative_text = f"negative soft limit {negative} {self._unit} (P-AXIS-00177)"
+        self._positive_limit = SoftLimit(positive, SOFT_LIMIT_POSITIVE, positive_text)
+        self._negative_limit = SoftLimit(negative, SOFT_LIMIT_NEGATIVE, negative_text)
 
     def refusal(self, command: str, error_id: int, reason: str) -> CncError:
         return CncError(error_id, f"axis {self._parameters.name}: {command} refused: {reason}; nothing was changed")
@@ -89,16 +103,17 @@ class MotionChecks:
         )
         return limits._replace(jerk=highest), warning
 
+    def soft_limit(self, direction: float) -> SoftLimit:
+        """The one to which a motion in this direction (> 0: positive) leads."""
+        return self._positive_limit if direction > 0.0 else self._negative_limit
+
     def soft_limits(self, command: str, target: float) -> None:
         """Raises 120002 and 120003 for a target outside, 23002 for one out of all range; the start may be anywhere."""
-        low, high = self._parameters.soft_limit_negative, self._parameters.soft_limit_positive
         unit = self._unit
-        if target > high:
-            reason = f"target {target} {unit} lies beyond the positive soft limit {high} {unit} (P-AXIS-00178)"
-            raise self.refusal(command, SOFT_LIMIT_POSITIVE, reason)
-        if target < low:
-            reason = f"target {target} {unit} lies beyond the negative soft limit {low} {unit} (P-AXIS-00177)"
-            raise self.refusal(command, SOFT_LIMIT_NEGATIVE, reason)
+        for direction in (1.0, -1.0):
+            limit = self.soft_limit(direction)
+            if direction * target > direction * limit.position:
+                raise self.refusal(command, limit.error_id, f"target {target} {unit} lies beyond the {limit.text}")
         if abs(target) > LARGEST_STATE:
             reason = f"target {target} {unit} is not within ±{LARGEST_STATE:g} {unit}"
             raise self.refusal(command, OUT_OF_RANGE, reason)

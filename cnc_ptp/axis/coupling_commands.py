@@ -258,7 +258,7 @@ class CouplingCommands:
         """Ends the coupling. A moving slave goes on as a master with its velocity, or to `target`, or at `velocity`.
 
         `target` in mm (deg), in or against the direction of travel; `velocity` > 0 in mm/s (deg/s).
-        Refusals: 23003, 23004, 23011, 23047, 120002, 120003.
+        Refusals: 23003, 23004, 23011, 23047, 23054 (an argument on the path of a channel), 120002, 120003.
         """
         axis, command = self._axis, "decouple"
         coupling = axis.coupling

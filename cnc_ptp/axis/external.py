@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable
 from itertools import pairwise
-from math import ulp
 from typing import NamedTuple
 
 from cnc_ptp.axis.tables import standing
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
-from cnc_ptp.motion.limits import LARGEST_STATE
+from cnc_ptp.motion.limits import LARGEST_STATE, rounding
 from cnc_ptp.motion.profile import State
 
 LONGEST_PERIOD = 0.02
 """Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
-PLACES = 4
-"""Units in the last place of a position that are rounding."""
 NEGLIGIBLE_VELOCITY = 1e-9
 """mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
 ABSOLUTE = "absolute"
@@ -90,6 +87,8 @@ class ExternalSetpoints:
         self._rest = standing(0.0)
         self._rest_cycle = 0
         self._reference = 0.0
+        self._velocity = 0.0
+        """What was contributed in the cycle of the last `at`."""
         self.mode: str | None = None
         """absolute, relative, or None while disabled."""
         self.rejected: tuple[Setpoint, float] | None = None
@@ -160,8 +159,8 @@ class ExternalSetpoints:
         return self._driving is not None or (cycle - self._rest_cycle) * self._cycle_time < self._rest.duration
 
     def silence(self, cycle: int) -> int:
-        """Cycles for which the axis has been moving on without a new setpoint."""
-        if self._driving is None or self.contribution(cycle)[1] == 0.0:
+        """Cycles for which the axis has been moving on without a new setpoint, in the cycle of the last `at`."""
+        if self._driving is None or self._velocity == 0.0:
             return 0
         return cycle - self._driving.cycle
 
@@ -177,6 +176,7 @@ class ExternalSetpoints:
         self._advance(cycle)
         position, velocity, acceleration, jerk = base
         p, v, a, j = self.contribution(cycle)
+        self._velocity = v
         return position + p, velocity + v, acceleration + a, jerk + j
 
     def contribution(self, cycle: int) -> State:
@@ -214,7 +214,7 @@ class ExternalSetpoints:
             driving = setpoint._replace(position=setpoint.position - self._reference)
             way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
             farthest = self._limits.velocity * self._cycle_time * (1.0 + 1e-9)
-            if abs(way) > farthest + PLACES * ulp(max(abs(setpoint.position), abs(self._reference))):
+            if abs(way) > farthest + rounding(setpoint.position, self._reference):
                 self.rejected = setpoint, way
                 self._waiting.clear()
                 return

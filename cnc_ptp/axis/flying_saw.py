@@ -9,18 +9,20 @@ While the slave still waits, a master with another velocity has the run-up plann
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import copysign, ulp
+from math import copysign
 
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
 from cnc_ptp.axis.faults import SAW_TOO_LATE
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
+from cnc_ptp.motion.limits import rounding
 from cnc_ptp.motion.profile import State
 
 ROUNDING = 1e-12
-"""s; what a run-up may be late or long: it can be planned anew in the very moment of its begin …"""
-PLACES = 4
-"""… and so many units in the last place of the positions besides, which are seconds where the axes are slow."""
+"""s; what a run-up may be late or long, as it can be planned anew in the very moment of its begin.
+
+The rounding of the positions comes on top, which is seconds where the axes are slow.
+"""
 
 
 class FlyingSaw(Coupling):
@@ -34,7 +36,7 @@ class FlyingSaw(Coupling):
         master_position: float,
         slave_position: float,
         limits: Limits,
-        unit: str = "mm",
+        unit: str,
     ) -> None:
         """Synchronous from `master_position` and `slave_position` (in `unit`) on; `limits` of the run-up."""
         super().__init__(master, factor)
@@ -84,12 +86,12 @@ class FlyingSaw(Coupling):
         meeting = (self._master_position - self._begin) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
         self._wait = meeting - ramp.duration - cruise
-        if cruise < -ROUNDING - PLACES * ulp(max(abs(position), abs(self._slave_position))) / abs(velocity):
+        if cruise < -ROUNDING - rounding(position, self._slave_position) / abs(velocity):
             distance = (self._slave_position - position) * copysign(1.0, velocity)
             where = f"{distance:g} {unit} away" if distance >= 0.0 else f"{-distance:g} {unit} behind the axis"
             needed = f"the run-up takes {abs(ramp.end[0] - position):g} {unit}"
             raise CncError(SAW_TOO_LATE, f"{needed}, the synchronous position is {where}")
-        if self._wait < -ROUNDING - PLACES * ulp(max(abs(self._begin), abs(self._master_position))) / abs(self._speed):
+        if self._wait < -ROUNDING - rounding(self._begin, self._master_position) / abs(self._speed):
             when = f"is there in {meeting:g} s" if meeting >= 0.0 else f"was there {-meeting:g} s ago"
             raise CncError(SAW_TOO_LATE, f"the run-up takes {ramp.duration + cruise:g} s, the master {when}")
         self._wait = max(0.0, self._wait)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from math import copysign
 
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.faults import COMPENSATION_RUNS, NOT_READY, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.axis.faults import COMPENSATION_RUNS, NOT_READY
 from cnc_ptp.axis.ptp import Job
 from cnc_ptp.axis.ptp_commands import refuse_other_source
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import state_name
+from cnc_ptp.motion.limits import rounding
 
 JOG = "jog"
 
@@ -33,8 +34,8 @@ class JogCommands:
         axis = self._axis
         self._check_state()
         limits, warning = axis.checks.rescaled_jerk(JOG, axis.checks.dynamics(JOG, {"velocity": abs(velocity)}))
-        end = self._end_of_range(velocity)
-        self._check_room(cycle, end, velocity)
+        end = axis.checks.soft_limit(velocity).position
+        self._check_room(cycle, velocity)
         if axis.ptp.brakes_to(cycle, end):
             return f"axis {axis.name}: {JOG} changes nothing: the axis brakes to its soft limit {end} {axis.unit}"
         axis.absorb(cycle)
@@ -67,16 +68,13 @@ class JogCommands:
         if axis.compensation.active and axis.state != S.STANDSTILL:
             axis.refuse(JOG, COMPENSATION_RUNS, "a position compensation is active")
 
-    def _end_of_range(self, velocity: float) -> float:
-        parameters = self._axis.parameters
-        return parameters.soft_limit_positive if velocity > 0.0 else parameters.soft_limit_negative
-
-    def _check_room(self, cycle: int, end: float, velocity: float) -> None:
-        """Raises 120002 and 120003 where the axis stands at its soft limit, or beyond it, and is to go on outwards."""
-        axis = self._axis
-        room = copysign(1.0, velocity) * (end - axis.setpoint(cycle)[0])
+    def _check_room(self, cycle: int, velocity: float) -> None:
+        """Raises 120002 and 120003 outwards from the soft limit at which the axis stands, or beyond which it is."""
+        axis, limit = self._axis, self._axis.checks.soft_limit(velocity)
+        position = axis.setpoint(cycle)[0]
+        room = copysign(1.0, velocity) * (limit.position - position)
+        if room < -rounding(limit.position, position):
+            reason = f"the axis is at {position} {axis.unit}, beyond its {limit.text}"
+            axis.refuse(JOG, limit.error_id, reason)
         if room <= axis.parameters.encoder_increment and axis.state == S.STANDSTILL:
-            positive = velocity > 0.0
-            name, parameter = ("positive", "P-AXIS-00178") if positive else ("negative", "P-AXIS-00177")
-            reason = f"the axis is at its {name} soft limit {end} {axis.unit} ({parameter})"
-            axis.refuse(JOG, SOFT_LIMIT_POSITIVE if positive else SOFT_LIMIT_NEGATIVE, reason)
+            axis.refuse(JOG, limit.error_id, f"the axis is at its {limit.text}")

@@ -6,7 +6,7 @@ import sys
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import ceil, copysign, inf, isinf, ulp
+from math import ceil, copysign, inf, isinf
 
 from cnc_ptp.axis.tables import last_leg, peak_velocity, reaches, standing
 from cnc_ptp.axis.two_stage import Request, Stage, velocity_stage
@@ -17,7 +17,7 @@ from cnc_ptp.motion import (
     plan_to_position,
     plan_to_velocity,
 )
-from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state
+from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
 from cnc_ptp.motion.profile import Row
 
 State = tuple[float, float, float, float]
@@ -34,9 +34,7 @@ SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
 
 INSTANT = 1e-9
-"""s; a stop that misses the target by what the axis moves in it, or by rounding (`PLACES`), ends there."""
-PLACES = 8
-"""Units in the last place of a position that are rounding."""
+"""s; a stop that misses the target by what the axis moves in it, or by rounding, ends there."""
 
 REDUCTIONS = 8
 """Steps in which a new velocity that cannot be reached is brought nearer to the old one (TX1250 2.4)."""
@@ -99,7 +97,7 @@ class PtpGenerator:
 
     @property
     def withheld(self) -> bool:
-        """The job in work waits, or comes to rest, until its direction is released."""
+        """The active job waits, or comes to rest, until its direction is released."""
         return self.job is not None and self._waits_for_release
 
     def withholds(self, direction: float) -> bool:
@@ -124,7 +122,7 @@ class PtpGenerator:
         return self.withholds(job.target - plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0])
 
     def _lead(self, cycle: int, job: Job, table: Profile) -> None:
-        """Puts a table of the job in work, or the ramp to standstill where it must wait."""
+        """Puts a table of the active job, or the ramp to standstill where it must wait."""
         self._waits_for_release = self._must_wait(cycle, job)
         if self._waits_for_release:
             table = plan_to_velocity(*self.state(cycle)[:3], 0.0, job.limits)
@@ -346,9 +344,8 @@ class PtpGenerator:
         """How far (mm, deg) behind the target of `job`, seen in the direction of motion, a stop would end; 0 at it."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
-        rounding = abs(velocity) * INSTANT + PLACES * ulp(max(abs(position), abs(job.target)))
         behind = copysign(1.0, velocity) * (ahead - job.target)
-        return 0.0 if abs(behind) <= rounding else behind
+        return 0.0 if abs(behind) <= abs(velocity) * INSTANT + rounding(position, job.target) else behind
 
     def _in_brake_phase(self, cycle: int, job: Job) -> bool:
         """True when the table leads to the target and a stop would do the same: nothing can be changed any more.
@@ -397,7 +394,7 @@ class PtpGenerator:
         return plan_to_position(position, velocity, acceleration, job.target, self._level(job))
 
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
-        """The table in work leads to the target, and the new one does not reach its level.
+        """The active table leads to the target, and the new one does not reach its level.
 
         Override types 3 and 4 take what can be reached instead, unless the axis would have to come down to the level:
         it would brake for the level and then for the target, later and rougher than with the table that it has.

@@ -18,6 +18,10 @@ class AxisStateCode(IntEnum):
     ERROR_STOP = 7
 
 
+REST_STATES = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
+"""In which nothing is to move; in ErrorStop the error ramp may still run."""
+
+
 class StatusBit(IntEnum):
     """Bits of AxisState.status_bits, numbered as in TwinCAT's axis status word."""
 

@@ -30,13 +30,21 @@ class StopCommands:
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
         self._refuse_synchronous(command)
-        if axis.state == S.STOPPING and axis.ptp.drop_suspended():
-            return f"axis {axis.name}: {command} takes the new target back; the axis stops"
+        taken_back = self._take_target_back(command)
+        if taken_back is not None:
+            return taken_back
         if axis.state not in MOVING:
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
         axis.stop(cycle, locks=locks)
         self._stopped(locks)
         return None
+
+    def _take_target_back(self, command: str) -> str | None:
+        """Drops a new target that waits for the end of a stop; says so if there is one."""
+        axis = self._axis
+        if axis.state != S.STOPPING or not axis.ptp.drop_suspended():
+            return None
+        return f"axis {axis.name}: {command} takes the new target back; the axis stops"
 
     def _refuse_synchronous(self, command: str) -> None:
         """What follows a channel or a master is stopped there."""
@@ -57,22 +65,27 @@ class StopCommands:
         """Stops with a deceleration (mm/s²) and a jerk (mm/s³), which are at least those of the start.
 
         No value keeps the axis from stopping; warning 23016 says what was corrected. The ramp of a stop or halt
-        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase).
+        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing on top of it), 23040 (a
+        slave, also one that follows as a flying saw on a path).
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
             return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
-        if axis.state == S.STOPPING and axis.ptp.drop_suspended():
-            return f"axis {axis.name}: {command} takes the new target back; the axis stops"
-        brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
-        if brakes and not axis.compensation.moving:
+        if self._ends_by_itself(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
+        taken_back = self._take_target_back(command)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
-        return warning
+        return "; ".join(filter(None, (warning, taken_back))) or None
+
+    def _ends_by_itself(self, cycle: int) -> bool:
+        """In the natural brake phase, and nothing on top moves the axis or may do so: external setpoints may come."""
+        axis = self._axis
+        brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
+        return brakes and axis.external.mode is None and not axis.superposition_moves(cycle)
 
     def _emergency_ramp(self, command: str, deceleration: object, jerk: object) -> tuple[Limits, str | None]:
         """The ramp that comes nearest to the two values without being weaker than the start, and what was corrected."""
@@ -90,7 +103,7 @@ class StopCommands:
         return ramp, "; ".join(filter(None, (warning, rescaled))) or None
 
     def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:
-        """The value given, or that of the start where it is no use or less, and what to say then."""
+        """The value given, or that of the start where it is invalid or less, and what to say then."""
         value = number(given)
         if value >= least:
             return value, ""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from cnc_ptp.axis.faults import GANTRY_DIFFERENCE
+from cnc_ptp.axis.states import REST_STATES
 from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
 from cnc_ptp.machine.commands import COUPLINGS
 from cnc_ptp.parameters import AxisParameters
 
-STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
 STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
+CHANGES_OF_COUPLINGS = COUPLINGS | {"decouple", "set_coupling_factor", "set_cyclic_factor", "change_cam"}
 
 
 class AxisGroups:
@@ -46,9 +46,10 @@ class AxisGroups:
                 yield from self._spread(name)
 
     def _delay(self, name: str) -> int:
+        """None for the slave of a gantry pair, which in error goes on with its master until that stops."""
         parameters = self._axes[name]
-        torn = self._blocks[name].error_id[-1] == GANTRY_DIFFERENCE
-        if torn or not parameters.error_propagation_delayed:
+        waits = self._blocks[name].state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
+        if waits or not parameters.error_propagation_delayed:
             return 0
         return round(parameters.error_propagation_delay / self._cycle_time)
 
@@ -97,7 +98,7 @@ class AxisGroups:
         slave = bool(block.master) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
         still = block.set_velocity[-1] == 0.0 and block.set_acceleration[-1] == 0.0
         still = still and not block.status_bits[-1] & StatusBit.HAS_JOB  # held by override 0, or in its first cycle
-        return still and (slave or block.state[-1] in STANDING)
+        return still and (slave or block.state[-1] in REST_STATES)
 
     def _lead_commands(self) -> Iterator[Command]:
         """Tells masters whom they have got and lost."""
@@ -133,25 +134,31 @@ class CommandsOfBlock:
     def must_wait(self, command: Command) -> bool:
         """Keeps back a coupling that runs in a circle only if others of this block are carried out, or refused.
 
-        What comes after it for these axes waits as well, so that the order stays; stops go out at once.
+        Starts of these axes and changes of their couplings wait behind it, so that the order stays. All else goes out
+        at once, stops above all, unless a start of the same axis waits.
         """
         axis, master = command.target, master_in(command)
-        waits = any(axis == before.target for before in self.waiting)
+        waits = self._is_behind(command)
         if master is not None:
             undecided = axis in self.above(master) and axis not in reachable(self._certain, master)
             waits = waits or undecided or bool({axis, master} & self._waiting_axes)
-        elif command.command in STARTS:
+        elif starts(command):
             waits = waits or axis in self._waiting_axes
         if waits:
             self.waiting.append(command)
             self._waiting_axes |= set() if master is None else {axis, master, *self.above(master)}
         return waits
 
+    def _is_behind(self, command: Command) -> bool:
+        """Something for the same axis waits that it must not overtake."""
+        ordered = starts(command) or command.command in CHANGES_OF_COUPLINGS
+        return any(before.target == command.target and (ordered or starts(before)) for before in self.waiting)
+
     def add(self, command: Command) -> None:
         """A command that goes out with this block."""
         axis, master = command.target, master_in(command)
         self.completed.append(command)
-        if command.command in STARTS:
+        if starts(command):
             self.started.add(axis)
         elif master is not None and axis not in (master, *self.above(master)):
             self._possible.setdefault(axis, []).append(master)
@@ -161,6 +168,12 @@ class CommandsOfBlock:
             self._certain.pop(axis, None)
             if not command.arguments:  # what has arguments may be refused for them
                 self._possible.pop(axis, None)
+
+
+def starts(command: Command) -> bool:
+    """It may move a standing axis; a jog with velocity 0 ends one."""
+    ends_jog = command.command == "jog" and command.arguments.get("velocity") == 0.0
+    return command.command in STARTS and not ends_jog
 
 
 def master_in(command: Command) -> str | None:

@@ -15,6 +15,7 @@ from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.axis.states import StatusBit, state_name
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock
+from cnc_ptp.machine.path_motion import begins_element
 from cnc_ptp.machine.unit import UPSTREAM_LOST
 from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.parameters import AxisParameters
@@ -34,6 +35,9 @@ class PathSource:
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
+        self._first_cycle = 0
+        self._to_go = [0.0]
+        """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
         """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
@@ -52,11 +56,21 @@ class PathSource:
                 strict=True,
             )
         )
+        self._first_cycle, self._to_go = first_cycle, [self._to_go[-1], *channel.distance_to_go]
         self._enter(first_cycle, setpoints[0][0])
         if self._axis.state != S.SYNCHRONIZED_MOTION:
             return []
         self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
         return setpoints
+
+    def watch(self, cycle: int, velocity: float) -> None:
+        """A path that waits in a direction waits no more when it turns round, or another element begins."""
+        axis, n = self._axis, cycle - self._first_cycle
+        if not axis.path_direction:
+            return
+        turns = axis.path_direction * velocity < -NEGLIGIBLE_VELOCITY
+        if turns or (n + 1 < len(self._to_go) and begins_element(*self._to_go[n : n + 2])):
+            axis.path_direction = 0.0
 
     def put_down(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Where the path of the channel has ended below a flying saw, the axis is an ordinary slave from now on."""

@@ -11,6 +11,7 @@ from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.faults import FOLLOWING_ERROR
 from cnc_ptp.axis.jog_commands import JogCommands
+from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
@@ -25,9 +26,6 @@ from cnc_ptp.machine.axis_sources import MasterSource, PathSource
 from cnc_ptp.machine.blocks import AxisBlock, Block, CycleTick, Severity
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import AxisParameters
-
-MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
-"""States that can end by themselves."""
 
 Row = tuple[float | int, ...]
 """One cycle: the fields of AxisBlock with a value per cycle."""
@@ -59,6 +57,7 @@ class AxisUnit(Unit):
         self._axis = Axis(
             parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
         )
+        self._monitoring = Monitoring(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
         self._loop = ControlLoop(
             parameters.control,
             cycle_time=cycle_time,
@@ -163,7 +162,7 @@ class AxisUnit(Unit):
         if setpoints and not self._master.watches_gantry:
             if axis.state in MOVING_ALONE:
                 axis.advance_state(first_cycle)
-            if axis.undisturbed(first_cycle, setpoints):
+            if self._monitoring.undisturbed(first_cycle, setpoints):
                 done = self._undisturbed_cycles(first_cycle, setpoints, columns)
         error_id = axis.error_id
         for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
@@ -209,9 +208,10 @@ class AxisUnit(Unit):
         actual_position = loop.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)
-        setpoint = axis.watch(cycle, setpoint)
+        self._path.watch(cycle, base[1])
+        setpoint = self._monitoring.watch(cycle, setpoint)
         self._master.watch_gantry(cycle, setpoint, actual_position)
-        axis.watch_target(cycle, setpoint, actual_position)
+        self._monitoring.watch_target(cycle, setpoint, actual_position)
         closed = axis.powered or axis.moving(cycle)
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
             axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)

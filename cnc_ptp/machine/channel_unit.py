@@ -25,7 +25,7 @@ from cnc_ptp.machine.blocks import (
 )
 from cnc_ptp.machine.channel_rows import Prepared, Rows
 from cnc_ptp.machine.function_output import FunctionOutput
-from cnc_ptp.machine.path_motion import PathMotion, PathPoint
+from cnc_ptp.machine.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.machine.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.machine.unit import UPSTREAM_LOST, Unit
@@ -110,6 +110,8 @@ class ChannelUnit(Unit):
         self._feed_hold = False
         self._withheld: list[str] = []
         """Axes whose feed release the path waits for."""
+        self._element_begins = False
+        """The running element begins with the next block: what axes report is about the one before."""
         self._held: Sequence[str] = ()
         """What the program waited for because of override 0, in the block before."""
         self._error_id = 0
@@ -225,6 +227,7 @@ class ChannelUnit(Unit):
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
         self._had_axes, self._given = has_axes, rows.axes[count - 1]
+        self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         if self._sequence.through and self._modal_at_end is not None:
             self._modal, self._modal_at_end = self._modal_at_end, None
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
@@ -355,8 +358,13 @@ class ChannelUnit(Unit):
         self._motion.set_factor(0.0 if self._feed_hold or self._withheld else self._override_percent / 100.0)
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, Block]) -> None:
-        """An axis on the path that may not go on in its direction holds the path, and is told of once."""
+        """An axis on the path that may not go on in its direction holds the path, and is told of once an element.
+
+        An element that brakes for its end runs on; the next one is held if it goes in that direction, too.
+        """
         withheld = [node for node in self._axis_nodes if self._had_axes and lacks_release(inputs.get(node))]
+        if withheld and (self._element_begins or not self._motion.can_be_held):
+            withheld = []
         if withheld == self._withheld:
             return
         line = self._sequence.source.line

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
-from cnc_ptp.path.geometry import Arc, AxisLimits, AxisState, Line
+from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, AxisState, Line
 from cnc_ptp.path.interpolator import PathInterpolator, PathRow
 from cnc_ptp.path.planner import JERK_LIMITED, STEPS
 
@@ -57,6 +57,11 @@ class PathMotion:
     def held(self) -> bool:
         """Feed hold or override 0 act; the path stands, or is on its ramp to standstill."""
         return self._element is not None and self._interpolator.factor == 0.0
+
+    @property
+    def can_be_held(self) -> bool:
+        """An element runs that a feed hold would stop before its end."""
+        return self._element is not None and not self._interpolator.ends_by_itself
 
     @property
     def stopped(self) -> bool:
@@ -145,6 +150,11 @@ def path_axes(channel: ChannelParameters) -> frozenset[int]:
     """Indices of the axes whose path the feed is for: X, Y and Z in whatever order, or all where there are none."""
     cartesian = frozenset(n for n, axis in enumerate(channel.axes) if axis.name in CARTESIAN)
     return cartesian or frozenset(range(len(channel.axes)))
+
+
+def begins_element(before: float, now: float) -> bool:
+    """From the distances to go (mm) of two cycles: within an element they only fall, but for rounding."""
+    return now > before + NEGLIGIBLE_MM
 
 
 def standing(position: Sequence[float]) -> AxisStates:

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
+from cnc_ptp.axis.states import REST_STATES
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.axis_groups import AxisGroups
 from cnc_ptp.machine.blocks import (
@@ -33,7 +34,6 @@ CANNOT_GO_ON = 22014
 SETTLING_TIME = 0.2
 """Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
 
-STANDING_STATES = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
 SPINDLE_AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
 STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
 
@@ -239,7 +239,7 @@ def at_rest(block: Block) -> bool:
         if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
             return block.set_velocity[-1] == 0.0  # a slave: its master says whether there is more to come
         waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))
-        return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in STANDING_STATES)
+        return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in REST_STATES)
     if isinstance(block, SpindleBlock):
         open_orders = block.plc_commands != block.plc_acknowledged
         busy = block.state[-1] in SPINDLE_AT_WORK or block.gear_change_active[-1] or open_orders

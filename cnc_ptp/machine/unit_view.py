@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.axis.states import AxisStateCode, state_name
+from cnc_ptp.axis.states import REST_STATES, AxisStateCode, state_name
 from cnc_ptp.machine.blocks import ChannelStateCode
-
-STANDING = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +52,7 @@ def view_of(name: str, kind: str, block: Any, *, rotary: bool = False) -> UnitVi
 
 def _axis_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
     state, speed = AxisStateCode(block.state[-1]), block.set_velocity[-1]
-    busy = speed != 0.0 or state not in STANDING
+    busy = speed != 0.0 or state not in REST_STATES
     return UnitView(
         **common,
         state=state_name(state),
@@ -70,7 +68,7 @@ def _axis_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
 
 def _spindle_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
     state, speed = AxisStateCode(block.state[-1]), block.set_speed_rpm[-1]
-    busy = speed != 0.0 or state not in STANDING
+    busy = speed != 0.0 or state not in REST_STATES
     turns = state == AxisStateCode.CONTINUOUS_MOTION and block.speed_reached[-1]
     return UnitView(
         **common,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ulp
 from typing import NamedTuple
 
 from cnc_ptp.errors import CncError
@@ -11,6 +12,15 @@ LARGEST_LIMIT = 1e12
 LARGEST_STATE = 1e12
 NEGLIGIBLE_WAY = 1e-30
 """mm; a way below this is none (its powers would leave the range of the numbers)."""
+
+
+PLACES = 8
+"""Units in the last place of a position that are rounding."""
+
+
+def rounding(*positions: float) -> float:
+    """How far apart (mm, deg) positions of this size may be by rounding alone."""
+    return PLACES * ulp(max(map(abs, positions)))
 
 
 class Limits(NamedTuple):

@@ -44,10 +44,6 @@ NEGLIGIBLE_MM = 1e-9
 """Motion of the path axes below this is rounding: the path is then that of all axes."""
 
 
-LEADING_AXES = (0, 1, 2)
-"""Path axes of an element that is not told its own: X, Y and Z first."""
-
-
 class AxisLimits(NamedTuple):
     """Largest velocity, acceleration (growth of |v|), deceleration (its reduction) and jerk of one axis; mm or deg."""
 
@@ -73,9 +69,7 @@ class Line:
 
     __slots__ = ("_axes", "length", "start", "target")
 
-    def __init__(
-        self, start: Sequence[float], target: Sequence[float], path_axes: Collection[int] = LEADING_AXES
-    ) -> None:
+    def __init__(self, start: Sequence[float], target: Sequence[float], path_axes: Collection[int]) -> None:
         _check_points(start, target)
         self.start = tuple(start)
         self.target = tuple(target)
@@ -131,7 +125,7 @@ class Arc:
         plane: Sequence[int],
         radius: float,
         sweep_deg: float,
-        path_axes: Collection[int] = LEADING_AXES,
+        path_axes: Collection[int],
     ) -> None:
         _check_points(start, target)
         self.start = tuple(start)

@@ -76,6 +76,11 @@ class PathInterpolator:
         return self._stopping and (self.done or (not self._reaches_end and self._now() >= self._profile.duration))
 
     @property
+    def ends_by_itself(self) -> bool:
+        """The factor acts no more: the element has ended or brakes for its end, or `stop` was called."""
+        return self.done or self._stopping or (self._limits is not None and self._brakes(self._limits))
+
+    @property
     def distance_to_go(self) -> float:
         """Path length (mm) from the last cycle given out to the end of the element."""
         return 0.0 if self.done else self._length - self.state[0]
@@ -198,13 +203,10 @@ class PathInterpolator:
     def _plan_anew(self) -> None:
         """A new profile from the state of the last cycle given out, unless the element already brakes for its end."""
         limits = self._limits
-        if self.done or limits is None:
+        if self.done or limits is None or self._brakes(limits):
             return
         now = self._now()
         s, v, a, _ = self._profile.state_at(now)
-        to_brake = self._length - s - self._planner.stop_way(v, a, limits)
-        if self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length:
-            return
         velocity = 0.0 if self._stopping else min(self._feed * self.factor, limits.velocity)
         if velocity < SMALLEST_LIMIT:
             self._profile, self._reaches_end = self._planner.to_rest(s, v, a, limits), False
@@ -212,6 +214,12 @@ class PathInterpolator:
             limits = limits._replace(velocity=velocity)
             self._profile, self._reaches_end = self._planner.to_position(s, v, a, self._length, limits), True
         self._offset, self._cycles = min(now, 0.0), 0
+
+    def _brakes(self, limits: Limits) -> bool:
+        """In the last cycle given out a stop would end no earlier than the element."""
+        s, v, a, _ = self.state
+        to_brake = self._length - s - self._planner.stop_way(v, a, limits)
+        return self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length
 
 
 def _standing(s: float) -> Profile:

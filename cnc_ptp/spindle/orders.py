@@ -74,7 +74,7 @@ class Orders:
             self._spindle.refuse(command, AT_WORK, reason)
 
     def must_wait(self, command: str, source: str) -> bool:
-        """For what is finished first; those of the PLC for whatever is in work. A stop never waits."""
+        """For what is finished first; those of the PLC for whatever is active. A stop never waits."""
         if command == "stop":
             return False
         if self._finished_before(command) or (self.waiting and source != PLC and self.waiting[0].source != PLC):

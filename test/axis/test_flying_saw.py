@@ -35,7 +35,8 @@ def varying(accelerations: list[tuple[float, float]], velocity: float) -> list[S
 
 
 def saw(factor: float, master_position: float, slave_position: float) -> FlyingSaw:
-    return FlyingSaw("x", factor, master_position=master_position, slave_position=slave_position, limits=LIMITS)
+    positions = {"master_position": master_position, "slave_position": slave_position}
+    return FlyingSaw("x", factor, **positions, limits=LIMITS, unit="mm")
 
 
 def follow(coupling: FlyingSaw, states: list[State], position: float = 0.0) -> np.ndarray:

@@ -21,7 +21,7 @@ from axis_control_support import (
 from loop_support import KV, PLANT, TA, feedforward
 from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
-from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.monitoring import Monitoring
 from cnc_ptp.axis.states import StatusBit
 from cnc_ptp.machine.axis_unit import AxisUnit
 from cnc_ptp.machine.blocks import AxisStateCode as S
@@ -292,7 +292,7 @@ def test_the_fast_way_is_the_slow_way(name: str, monkeypatch: pytest.MonkeyPatch
     """`_undisturbed_cycles` against `_cycle`, in states in which the one or the other is taken."""
     control = CONTROLS[name]()
     fast = scripted(control, 10)
-    monkeypatch.setattr(Axis, "undisturbed", lambda *_: False)
+    monkeypatch.setattr(Monitoring, "undisturbed", lambda *_: False)
     assert differing(fast, scripted(control, 10)) == []
     assert np.abs(fast["following_error"]).max() > 0.01
 

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from axis_motion_support import motion, ramp_time, ramp_way, run_to_standstill
 from axis_states_support import A, J
-from machine_support import CYCLE_TIME, PTP, MachineBench, UnitBench, assert_axis_smooth, axis_bench
+from machine_support import CYCLE_TIME, PTP, MachineBench, UnitBench, assert_axis_smooth, axis_bench, seven_phases
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
+from superposition_support import feed, generator
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import StatusBit
@@ -180,10 +181,113 @@ def test_in_the_brake_phase_to_the_limit_only_the_other_direction_counts() -> No
 @pytest.mark.parametrize(("start", "back"), [(350.0, -20.0), (-1020.0, 20.0)])
 def test_an_axis_beyond_its_limit_may_jog_back_only(start: float, back: float) -> None:
     bench = limited(-1000.0, 300.0, start_position=start)
-    assert "is at its" in bench.refused("jog", velocity=-back)
+    name, limit = ("positive", "300.0 mm (P-AXIS-00178)") if start > 0.0 else ("negative", "-1000.0 mm (P-AXIS-00177)")
+    assert bench.refused("jog", velocity=-back).endswith(
+        f"jog refused: the axis is at {start} mm, beyond its {name} soft limit {limit}; nothing was changed"
+    )
     bench.accepted("jog", velocity=back)
     bench.run(1000)
     assert bench.state == S.CONTINUOUS_MOTION and len(bench.events) == 1  # that refusal
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("cycles", [1, 5, 100, 1000])
+def test_from_beyond_the_limit_only_the_other_direction_is_taken_in_motion_too(sign: float, cycles: int) -> None:
+    """At 600 mm, limit 500 mm: a jog outwards would drive back to the limit with the velocity asked for."""
+    benches = [limited(-500.0, 500.0, start_position=sign * 600.0) for _ in range(2)]
+    for bench in benches:
+        bench.accepted("jog", velocity=sign * -10.0)
+        bench.run(cycles)
+    name, number, parameter = (
+        ("positive", 120002, "P-AXIS-00178") if sign > 0.0 else ("negative", 120003, "P-AXIS-00177")
+    )
+    position = benches[0].unit._axis.setpoint(benches[0].cycle)[0]
+    assert benches[0].refused("jog", velocity=sign * 50.0) == (
+        f"P-ERR-{number} axis x: jog refused: the axis is at {position} mm, beyond its {name} soft limit "
+        f"{sign * 500.0} mm ({parameter}); nothing was changed"
+    )
+    assert benches[1].accepted("jog", velocity=sign * -20.0) == ""
+    benches[1].accepted("jog", velocity=0.0)
+    benches[1].run(500)
+    assert benches[1].refused("jog", velocity=sign * 50.0)[:12] == f"P-ERR-{number}"
+    benches[0].run(500)
+    assert motion(benches[0])[-1][1] == pytest.approx(sign * -10.0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_compensation_comes_to_rest_after_the_jog_has_come_to_the_limit(sign: float) -> None:
+    """It turns the axis round with 50 mm/s² and is let out with 300 mm/s², in closed form; only then the axis stands."""
+    bench = limited(-1000.0, 1000.0)
+    bench.accepted("jog", velocity=sign * 500.0)
+    bench.run(500)
+    values = {"process_velocity": 400.0, "velocity_increase": 200.0, "acceleration": 300.0, "deceleration": 50.0}
+    bench.accepted("compensation_start", length=5000.0, difference=-300.0, **values)
+    basic = seven_phases(1000.0, 500.0, A, A, J)
+    end = math.ceil(sum(duration for duration, _ in basic) / CYCLE_TIME)
+    bench.run(end + 1 - 500)
+    p, v, _ = motion(bench)[end]
+    assert sign * v < -30.0 and bench.state == S.CONTINUOUS_MOTION and bench.event_texts() == []
+    bench.run(500)
+    rest = p + sign * -(v * v) / 600.0
+    assert motion(bench)[-1] == (pytest.approx(rest, abs=1e-3), 0.0, 0.0)
+    stands = bench.column("state").index(S.STANDSTILL)
+    assert stands == pytest.approx(end + abs(v) / 300.0 / CYCLE_TIME, abs=1.1) and not any(
+        bench.column("set_velocity")[stands:]
+    )
+    assert not bench.last.status_bits[-1] & (StatusBit.COMPENSATING | StatusBit.HAS_JOB)
+    name, parameter = ("positive", "P-AXIS-00178") if sign > 0.0 else ("negative", "P-AXIS-00177")
+    (text,) = bench.event_texts()
+    assert text == (
+        f"P-ERR-23070 axis x: the jog has come to the {name} soft limit {sign * 1000.0} mm ({parameter}); the axis "
+        f"stands at {motion(bench)[-1][0]:g} mm"
+    )
+    assert bench.accepted("jog", velocity=sign * 20.0) == "" and bench.accepted("stop") == ""
+
+
+@pytest.mark.parametrize("command", ["stop", "emergency_stop", "jog"])
+def test_a_stop_acts_while_the_compensation_of_a_jog_comes_to_rest(command: str) -> None:
+    bench = limited(-1000.0, 1000.0)
+    bench.accepted("jog", velocity=500.0)
+    bench.run(500)
+    values = {"process_velocity": 400.0, "velocity_increase": 200.0, "acceleration": 300.0, "deceleration": 50.0}
+    bench.accepted("compensation_start", length=5000.0, difference=-300.0, **values)
+    bench.run(1730)
+    given = {"emergency_stop": {"deceleration": 20_000.0, "jerk": 5e6}, "jog": {"velocity": 0.0}}
+    assert bench.state == S.CONTINUOUS_MOTION
+    assert bench.accepted(command, **given.get(command, {})) == ""
+    bench.run(500)
+    assert bench.state == S.STANDSTILL and bench.last.set_velocity[-1] == 0.0
+    assert bench.last.status_bits[-1] & StatusBit.HAS_BEEN_STOPPED and bench.event_texts() == []
+
+
+def test_a_jog_below_external_setpoints_ends_once_at_the_limit() -> None:
+    """They go on alone: one event, no job, and the limit is watched for them."""
+    bench = limited(-1000.0, 300.0)
+    bench.accepted("jog", velocity=200.0)
+    bench.run(200)
+    bench.accepted("external_enable", mode="relative")
+    bench.run(2500)
+    assert bench.event_texts() == [
+        "P-ERR-23070 axis x: the jog has come to the positive soft limit 300.0 mm (P-AXIS-00178); external "
+        "setpoints have the axis now"
+    ]
+    assert bench.state == S.CONTINUOUS_MOTION and motion(bench)[-1] == (300.0, 0.0, 0.0)
+    assert bench.last.status_bits[-1] & (StatusBit.HAS_JOB | StatusBit.EXT_SETPOINT) == StatusBit.EXT_SETPOINT
+    feed(bench, generator(-100.0, first_cycle=bench.cycle + 10, velocity=200.0), 700)
+    assert motion(bench)[-1] == (pytest.approx(200.0), 0.0, 0.0)
+    feed(bench, generator(150.0, first_cycle=bench.cycle + 10, velocity=200.0, start=-100.0), 700)
+    assert [text[:12] for text in bench.event_texts()] == ["P-ERR-23070 ", "P-ERR-120002"]
+
+
+def test_a_jog_comes_to_the_limit_while_disabled_external_setpoints_come_to_rest() -> None:
+    bench = limited(-1000.0, 300.0)
+    bench.accepted("jog", velocity=200.0)
+    bench.run(200)
+    bench.accepted("external_enable", mode="relative")
+    feed(bench, generator(-2000.0, first_cycle=bench.cycle, velocity=900.0), 1320)
+    bench.accepted("external_disable")
+    bench.run(1000)
+    assert bench.state == S.STANDSTILL and len(bench.event_texts()) == 1
 
 
 def test_random_jogs_stay_within_all_limits() -> None:

@@ -10,6 +10,7 @@ import pytest
 from axis_motion_support import expected, motion, ramp_way, run_to_standstill, start, started, to_rest
 from axis_states_support import A, J, V, error_ramp, held
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
+from superposition_support import feed, generator
 
 from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import StatusBit
@@ -179,11 +180,11 @@ def correction(name: str, value: object, used: float) -> str:
 
 
 WARNING = "P-WARN-23016 axis x: emergency_stop: "
-NO_USE = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast", [1.0]]
+WEAK_OR_INVALID = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast", [1.0]]
 
 
 @pytest.mark.parametrize("jerk", [50_000.0, 500_000.0, 1.0, 0.0, nan, None])
-@pytest.mark.parametrize("deceleration", [5000.0, 10_000.0, *NO_USE])
+@pytest.mark.parametrize("deceleration", [5000.0, 10_000.0, *WEAK_OR_INVALID])
 def test_an_emergency_stop_stops_with_the_larger_of_what_is_given_and_the_start(
     deceleration: object, jerk: object
 ) -> None:
@@ -284,6 +285,33 @@ def test_an_emergency_stop_makes_the_ramp_of_a_stop_or_halt_stronger(command: st
     assert_axis_smooth(bench, acceleration=strong, jerk=500_000.0)
 
 
+def test_an_emergency_stop_takes_a_waiting_target_back_and_makes_the_ramp_stronger() -> None:
+    """In one command: 40,000 mm/s² from where the ramp of the stop has led, in closed form, and both remarks."""
+    bench = started(5000.0, 800, count=10)
+    bench.accepted("stop")
+    bench.accepted("new_target", target=0.0)
+    bench.run(200)
+    taken_back = "axis x: emergency_stop takes the new target back; the axis stops"
+    p, v, a = motion(bench)[-1]
+    p, v = p + v * CYCLE_TIME + 0.5 * a * CYCLE_TIME**2, v + a * CYCLE_TIME
+    assert bench.accepted("emergency_stop", deceleration=40_000.0, jerk=1e7) == taken_back
+    run_to_standstill(bench)
+    stop = to_rest((p, v, a), 40_000.0, 1e7)
+    assert bench.column("set_position")[-1] == pytest.approx(stop.at_time(stop.duration)[0][0], abs=1e-6)
+    assert bench.column("state").index(S.STANDSTILL) == pytest.approx(1000 + stop.duration / CYCLE_TIME, abs=1.1)
+    assert S.DISCRETE_MOTION not in bench.column("state")[800:]
+
+
+def test_what_was_corrected_is_told_with_the_target_that_was_taken_back() -> None:
+    bench = started(5000.0, 800, count=10)
+    bench.accepted("stop")
+    bench.accepted("new_target", target=0.0)
+    assert bench.accepted("emergency_stop", deceleration=4000.0, jerk=1e6) == (
+        WARNING + correction("deceleration", 4000.0, A) + "; "
+        "axis x: emergency_stop takes the new target back; the axis stops"
+    )
+
+
 def test_no_emergency_stop_in_the_natural_brake_phase() -> None:
     bench, undisturbed = started(1000.0, 501), started(1000.0, 501)
     assert bench.refused("emergency_stop", **STRONG) == (
@@ -292,6 +320,26 @@ def test_no_emergency_stop_in_the_natural_brake_phase() -> None:
     for each in (bench, undisturbed):
         each.run(1000)
     assert bench.columns() == undisturbed.columns()
+
+
+@pytest.mark.parametrize("mode", ["they move", "they are still to come", "they come to rest"])
+def test_an_emergency_stop_in_the_brake_phase_below_external_setpoints(mode: str) -> None:
+    """The positioning brakes to 1000 mm; external setpoints at 500 mm/s on top would move the axis on."""
+    bench = started(1000.0, 400, count=10)
+    bench.accepted("external_enable", mode="relative")
+    rows = generator(2000.0, first_cycle=410, velocity=500.0)
+    feed(bench, [] if mode == "they are still to come" else rows, 300)
+    if mode == "they come to rest":
+        bench.accepted("external_disable")
+        bench.run(10)
+    cycle, (_, v, _) = bench.cycle, motion(bench)[-1]
+    assert bench.column("set_acceleration")[-1] < 0.0 and v > 500.0
+    assert bench.accepted("emergency_stop", **STRONG) == ""
+    feed(bench, rows, 400)
+    states, velocity = bench.column("state"), bench.column("set_velocity")
+    assert states[cycle] == S.STOPPING and states[-1] == S.STANDSTILL
+    assert not any(velocity[cycle + round((v / 20_000.0 + 0.04 + 0.001) / CYCLE_TIME) + 1 :])
+    assert bench.column("set_position")[-1] < motion(bench)[cycle][0] + ramp_way(v, 0.0, 20_000.0, 500_000.0) + 1.0
 
 
 def test_the_brake_phase_begins_where_the_velocity_falls() -> None:

@@ -94,6 +94,50 @@ def test_a_stop_does_not_wait_with_the_coupling() -> None:
     assert [record.cycle - cycle for record in records] == [0, 10, 0]
 
 
+CIRCLE = [couple("y", "x", 0.0), couple("x", "y")]
+"""The second one waits for what becomes of the first."""
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        ("emergency_stop", {"deceleration": 20_000.0, "jerk": 500_000.0}),
+        ("stop", {}),
+        ("halt", {}),
+        ("jog", {"velocity": 0.0}),
+        ("power", {"enabled": False}),
+        ("group_error", {"source": "z", "error": 23010}),
+        ("set_feed_release", {"forward": False, "backward": True}),
+        ("set_override", {"percent": 0.0}),
+    ],
+)
+def test_a_stop_of_the_axis_whose_coupling_waits_goes_out_at_once(command: str, arguments: dict[str, Any]) -> None:
+    bench = SlaveBench()
+    bench.do("x", "jog", velocity=500.0)
+    bench.run(0.5)
+    cycle = bench.cycle
+    records = bench.send_all([*CIRCLE, ("x", command, arguments)])
+    assert [record.cycle - cycle for record in records] == [0, 10, 0]
+    assert [record.accepted for record in records] == [False, False, True]
+    assert bench.values("x", "set_velocity")[cycle + 9] < 500.0
+    bench.settle()
+
+
+def test_the_end_of_a_jog_is_no_start() -> None:
+    """A slave may be coupled to the axis in the same block."""
+    bench = SlaveBench()
+    records = bench.send_all([("x", "jog", {"velocity": 0.0}), couple("y", "x")])
+    assert [record.accepted for record in records] == [True, True]
+
+
+def test_a_factor_and_a_decoupling_do_not_overtake_the_coupling_that_waits() -> None:
+    bench = SlaveBench()
+    factor = ("x", "set_coupling_factor", {"factor": 2.0})
+    records = bench.send_all([*CIRCLE, factor, ("x", "decouple", {})])
+    assert [record.cycle for record in records] == [0, 10, 10, 10]
+    assert [record.accepted for record in records] == [False, True, True, True]
+
+
 def test_a_stop_does_not_overtake_what_waits_for_its_axis() -> None:
     bench = SlaveBench()
     start = ("x", "move_absolute", {"target": 5000.0})

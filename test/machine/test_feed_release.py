@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -214,7 +215,7 @@ def test_external_setpoints_in_a_withheld_direction_are_a_fault_before_they_move
     withhold(bench, sign)
     feed(bench, generator(sign * 300.0, first_cycle=20), 300)
     (text,) = bench.event_texts()
-    where = "forwards" if sign > 0.0 else "backwards"
+    where = "forward" if sign > 0.0 else "backward"
     reason = f"it is moved {where}, which is not released (set_feed_release)"
     assert text == f"P-ERR-23058 axis x: {reason}; the axis stops on its own ramp (ErrorStop)"
     assert not column(bench, "set_position").any()
@@ -342,6 +343,85 @@ def test_a_path_that_starts_in_a_withheld_direction_stops_after_one_block() -> N
     bench.give("channel", "reset")
     bench.run(0.5)
     assert bench.last("x").state[-1] == S.STANDSTILL and not bench.last("x").status_bits[-1] & WITHHELD
+
+
+def brakes_for_the_end(bench: MachineBench) -> None:
+    """On to where the first element of the path brakes for its end, at most 2 mm before it."""
+    while not 0.0 < bench.last("channel").distance_to_go[-1] < 2.0:
+        bench.run(0.01)
+
+
+@pytest.mark.parametrize("block_cycles", [1, 10])
+@pytest.mark.parametrize("node", ["x", "y"])
+@pytest.mark.parametrize("way_on", ["G01 X0", "M07\nG01 X0", "G01 X100 Y20", "G04 X0.1\nG01 X0", "G02 X80 Y50 I-10 J0"])
+def test_an_element_that_brakes_for_its_end_leaves_the_next_one_to_its_direction(
+    way_on: str, node: str, block_cycles: int
+) -> None:
+    """Both axes have gone forward to X100 Y50; what goes on backward, or stands, is not touched at all."""
+    program = f"%P\nG01 X100 Y50 F6000\n{way_on}\nM30"
+    mill = replace(MILL, block_cycles=block_cycles)
+    free, other = (MachineBench(program, machine=mill, end_when_idle=False).run(0.3) for _ in range(2))
+    for bench in (free, other):
+        brakes_for_the_end(bench)
+    moved_forward = node == "y" and "G02" in way_on
+    other.give(node, "set_feed_release", forward=False, backward=True)
+    for bench in (free, other):
+        bench.run(3.0)
+    if moved_forward:
+        assert [event.text for event in other.events] == [
+            "channel channel: the path stops in line 3 and waits for the feed release of axis y"
+        ]
+        return
+    assert other.events == [] and other.last("channel").done
+    for unit, name in (("x", "set_position"), ("y", "set_position"), ("channel", "line"), ("channel", "state")):
+        assert other.column(unit, name) == free.column(unit, name), (unit, name)
+    assert not other.last(node).status_bits[-1] & WITHHELD
+
+
+def test_the_next_element_in_the_withheld_direction_is_held_in_its_own_line() -> None:
+    """It has moved for a block at most before it brakes (2·J·t³), and goes on after the release."""
+    program = "%P\nG01 X100 Y50 F6000\nG01 X200\nG01 X0\nM30"
+    bench = MachineBench(program, end_when_idle=False).run(0.3)
+    brakes_for_the_end(bench)
+    bench.give("x", "set_feed_release", forward=False, backward=True)
+    bench.run(2.0)
+    texts = ["channel channel: the path stops in line 3 and waits for the feed release of axis x"]
+    assert [event.text for event in bench.events] == texts and bench.last("channel").state[-1] == C.HOLD
+    assert 100.0 < bench.position("x") <= 100.0 + 2.0 * 1e5 * 0.011**3 and bench.last("x").status_bits[-1] & WITHHELD
+    bench.give("x", "set_feed_release", forward=True, backward=True)
+    bench.run(6.0)
+    assert bench.last("channel").done and bench.position("x") == 0.0 and len(bench.events) == 1
+    assert_axis_smooth(bench.blocks["x"], acceleration=5000.0, jerk=1e5)
+
+
+@pytest.mark.parametrize("late", [20, 60])
+def test_a_circle_whose_axis_turns_round_while_it_brakes_goes_on(late: int) -> None:
+    """x goes backward to X-20, and forward from there: withheld shortly before, the path stops behind the turning."""
+    program = "%P\nG01 X20 Y0 F6000\nG02 X20 Y0 I-20 J0 F6000\nM30"
+    free, other = (MachineBench(program, machine=MILL, end_when_idle=False) for _ in range(2))
+    free.run(4.0)
+    turning = int(np.argmin(free.column("x", "set_position")))
+    other.run((turning // 10 - late // 10) * 0.01)
+    other.give("x", "set_feed_release", forward=True, backward=False)
+    other.run(4.0)
+    assert [event.error_id for event in other.events] == [22026]
+    assert other.last("channel").done and other.position("x") == free.position("x") == 20.0
+    for axis in ("x", "y"):
+        assert_axis_smooth(other.blocks[axis], acceleration=5000.0, jerk=1e5)
+
+
+def test_a_path_that_waits_turns_where_a_new_direction_is_free() -> None:
+    """After a reset the next program goes back at once."""
+    bench = MachineBench(PROGRAM, machine=MILL, end_when_idle=False).run(0.5)
+    bench.give("x", "set_feed_release", forward=False, backward=True)
+    bench.run(1.0)
+    bench.give("channel", "reset")
+    bench.run(0.5)
+    begin = bench.position("x")
+    assert begin > 1.0
+    assert bench.give("channel", "mdi", text="G01 X0 F6000").accepted
+    bench.run(2.0)
+    assert bench.position("x") == 0.0 and bench.last("channel").done and len(bench.events) == 1
 
 
 # the run

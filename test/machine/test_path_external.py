@@ -320,7 +320,7 @@ def test_external_setpoints_in_a_withheld_direction_are_a_fault_on_a_path_too() 
     bench.run(1.0)
     assert bench.give("x", "set_feed_release", forward=False, backward=True).accepted
     bench.run(0.1)
-    text = "it is moved forwards, which is not released (set_feed_release)"
+    text = "it is moved forward, which is not released (set_feed_release)"
     assert_stops(bench, text, 23058)
 
 

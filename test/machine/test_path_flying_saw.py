@@ -241,7 +241,7 @@ def test_a_withheld_direction_of_the_workpiece_is_a_fault() -> None:
     bench = on_workpiece()
     assert bench.give("x", "set_feed_release", forward=False, backward=True).accepted
     bench.run(2.0)
-    text = "it is moved forwards, which is not released (set_feed_release)"
+    text = "it is moved forward, which is not released (set_feed_release)"
     assert bench.errors()[0] == f"P-ERR-23058 axis x: {text}{OWN_RAMP}"
     assert_no_jump(bench, acceleration=ACCELERATION)
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from machine_support import CYCLE_TIME, PTP, machine
-from slave_support import DELAYED, DYNAMICS, ERROR, SlaveBench
+from slave_support import DELAYED, DYNAMICS, ERROR, SlaveBench, assert_linear
 
 from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.machine.axis_unit import AxisUnit
@@ -283,6 +283,42 @@ def test_fault_of_the_gantry_master_stops_the_slave() -> None:
     assert spread == f"P-ERR-23056 {text}"
     assert np.abs(bench.values("y") - bench.values("x") - 5.0)[-600:].max() <= 1e-9
     assert bench.state("y") == S.ERROR_STOP
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("delayed", [False, True])
+def test_a_gantry_slave_without_feed_release_stops_with_its_master(sign: float, delayed: bool) -> None:
+    """At 1000 mm/s, whatever the delay of errors: a ramp of its own, weaker than its master's, would tear the pair."""
+    late = {"error_propagation_delayed": True, "error_propagation_delay": 5.0} if delayed else {}
+    bench = SlaveBench(machine=machine(PTP, x=late, y={"deceleration": 1000.0, **late}))
+    bench.do("y", "couple_gantry", master="x", difference_limit=5.0)
+    bench.do("x", "move_absolute", target=sign * 5000.0, **(DYNAMICS | {"velocity": 1000.0}))
+    bench.run(1.0)
+    withdrawn = bench.cycle
+    bench.do("y", "set_feed_release", forward=sign < 0.0, backward=sign > 0.0)
+    bench.settle()
+    where = "forward" if sign > 0.0 else "backward"
+    assert bench.errors() == [
+        f"P-ERR-23058 axis y: it is moved {where}, which is not released (set_feed_release); the axis stops with its "
+        "master x (ErrorStop)",
+        "P-ERR-23056 axis x: axis y of its group has error 23058; the axis stops on its own ramp (ErrorStop)",
+    ]
+    fault = int(np.flatnonzero(bench.values("y", "error_id"))[0])
+    assert fault == withdrawn and np.flatnonzero(bench.values("x", "error_id"))[0] - fault <= 20
+    assert_linear(bench, "x", "y", 1.0)
+    assert bench.state("x") == bench.state("y") == S.ERROR_STOP
+    assert abs(bench.values("x")[-1] - bench.values("x")[fault]) <= 1000.0 * 0.02 + 150.0 + 1e-6  # V²/2A- + V·A-/2J
+
+
+def test_a_gantry_slave_that_is_to_start_without_its_release_keeps_its_place() -> None:
+    bench = SlaveBench()
+    bench.do("y", "couple_gantry", master="x", difference_limit=5.0)
+    bench.do("y", "set_feed_release", forward=False, backward=True)
+    bench.do("x", "move_absolute", target=1000.0, **DYNAMICS)
+    bench.settle()
+    assert [text[:11] for text in bench.errors()] == ["P-ERR-23058", "P-ERR-23056"]
+    assert_linear(bench, "x", "y", 1.0)
+    assert 0.0 < bench.values("x")[-1] < 1.0 and bench.state("x") == bench.state("y") == S.ERROR_STOP
 
 
 @pytest.mark.parametrize("limit", [0.0, -1.0])

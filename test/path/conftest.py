@@ -28,12 +28,12 @@ def random_arc(draw: random.Random, radius: float, axes: int = 3) -> Arc:
     target = [value + draw.choice([0.0, draw.uniform(-2.0, 2.0) * radius]) for value in start]
     target[first] = center[0] + radius * math.cos(begin + math.radians(sweep))
     target[second] = center[1] + radius * math.sin(begin + math.radians(sweep))
-    return Arc(start, target, center, (first, second), radius, sweep)
+    return Arc(start, target, center, (first, second), radius, sweep, range(3))
 
 
 def random_line(draw: random.Random, axes: int = 3) -> Line:
     start = [draw.uniform(-100, 100) for _ in range(axes)]
-    return Line(start, [value + draw.choice([0.0, draw.uniform(-50, 50)]) for value in start])
+    return Line(start, [value + draw.choice([0.0, draw.uniform(-50, 50)]) for value in start], range(3))
 
 
 @pytest.fixture(scope="session")

@@ -13,10 +13,12 @@ from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_to_position
 from cnc_ptp.path import Arc, AxisLimits, Line
 
 AXES = [AxisLimits(500.0, 3000.0, 2000.0, 30000.0)] * 3
+XYZ = (0, 1, 2)
+"""The axes of the feed."""
 
 
 def test_line_by_hand():
-    line = Line((1.0, 2.0, 3.0), (4.0, 6.0, 3.0))
+    line = Line((1.0, 2.0, 3.0), (4.0, 6.0, 3.0), XYZ)
     assert line.length == 5.0
     states = line.evaluate(2.5, 10.0, -5.0, 1.0)
     assert states[0] == pytest.approx((2.5, 6.0, -3.0, 0.6), rel=1e-15)
@@ -25,18 +27,18 @@ def test_line_by_hand():
     assert line.evaluate(0.0, 0.0, 0.0, 0.0) == ((1.0, 0, 0, 0), (2.0, 0, 0, 0), (3.0, 0, 0, 0))
 
 
-def test_the_feed_belongs_to_the_leading_axes_and_others_travel_along():
-    line = Line((0.0, 0.0, 0.0, 0.0), (3.0, 4.0, 0.0, 90.0))
+def test_the_feed_belongs_to_the_path_axes_and_others_travel_along():
+    line = Line((0.0, 0.0, 0.0, 0.0), (3.0, 4.0, 0.0, 90.0), XYZ)
     assert line.length == 5.0
     assert line.evaluate(2.5, 10.0, 0.0, 0.0)[3] == (45.0, 180.0, 0.0, 0.0)
-    turning = Line((0.0, 0.0, 0.0, 0.0), (0.0, 1e-12, 0.0, 90.0))
+    turning = Line((0.0, 0.0, 0.0, 0.0), (0.0, 1e-12, 0.0, 90.0), XYZ)
     assert turning.length == 90.0
     flat = Line((0.0, 0.0), (0.0, 7.0), path_axes=(0,))
     assert flat.length == 7.0
 
 
 def test_quarter_circle_by_hand():
-    arc = Arc((10.0, 0.0, 5.0), (0.0, 10.0, 5.0), (0.0, 0.0), (0, 1), 10.0, 90.0)
+    arc = Arc((10.0, 0.0, 5.0), (0.0, 10.0, 5.0), (0.0, 0.0), (0, 1), 10.0, 90.0, XYZ)
     assert arc.length == pytest.approx(5.0 * math.pi, rel=1e-15)
     middle = arc.evaluate(arc.length / 2.0, 100.0, 0.0, 0.0)
     root = math.sqrt(0.5)
@@ -46,14 +48,14 @@ def test_quarter_circle_by_hand():
 
 
 def test_helix_by_hand():
-    arc = Arc((10.0, 0.0, 0.0), (10.0, 0.0, 15.0), (0.0, 0.0), (0, 1), 10.0, -360.0)
+    arc = Arc((10.0, 0.0, 0.0), (10.0, 0.0, 15.0), (0.0, 0.0), (0, 1), 10.0, -360.0, XYZ)
     assert arc.length == pytest.approx(math.hypot(20.0 * math.pi, 15.0), rel=1e-15)
     quarter = arc.evaluate(arc.length / 4.0, 0.0, 0.0, 0.0)
     assert [state[0] for state in quarter] == pytest.approx([0.0, -10.0, 3.75], abs=1e-13)
 
 
 def test_arc_of_axes_beyond_the_path_axes():
-    arc = Arc((10.0, 0.0, 0.0, 0.0), (-10.0, 0.0, 0.0, 180.0), (0.0, 0.0), (0, 1), 10.0, 180.0)
+    arc = Arc((10.0, 0.0, 0.0, 0.0), (-10.0, 0.0, 0.0, 180.0), (0.0, 0.0), (0, 1), 10.0, 180.0, XYZ)
     assert arc.length == pytest.approx(10.0 * math.pi, rel=1e-15)
     assert arc.evaluate(arc.length / 2.0, 10.0, 0.0, 0.0)[3] == pytest.approx((90.0, 1800.0 / arc.length, 0.0, 0.0))
 
@@ -70,7 +72,7 @@ def test_ends_are_exact(draw_arc, draw_line):
 
 
 def test_rounded_centre_is_spread_over_the_path():
-    arc = Arc((10.0, 0.0, 0.0), (0.004, 10.003, 0.0), (0.0, 0.0), (0, 1), 10.0, 90.0)
+    arc = Arc((10.0, 0.0, 0.0), (0.004, 10.003, 0.0), (0.0, 0.0), (0, 1), 10.0, 90.0, XYZ)
     halfway = arc.evaluate(arc.length / 2.0, 0.0, 0.0, 0.0)
     assert halfway[0][0] == pytest.approx(10.0 * math.sqrt(0.5) + 0.002, abs=1e-12)
     assert halfway[1][0] == pytest.approx(10.0 * math.sqrt(0.5) + 0.0015, abs=1e-12)
@@ -106,27 +108,27 @@ def test_line_limits_are_projections():
         AxisLimits(80.0, 3000.0, 2000.0, 90000.0),
         AxisLimits(1.0, 1.0, 1.0, 1.0),
     ]
-    limits = Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0)).limits(math.inf, axes)
+    limits = Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), XYZ).limits(math.inf, axes)
     assert limits == pytest.approx((100.0, 1000.0 / 0.6, 500.0 / 0.6, 15000.0), rel=1e-14)
-    assert Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0)).limits(50.0, axes).velocity == 50.0
-    assert Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0)).limits(50.0, axes, override_max=1.5).velocity == 75.0
+    assert Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), XYZ).limits(50.0, axes).velocity == 50.0
+    assert Line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), XYZ).limits(50.0, axes, override_max=1.5).velocity == 75.0
 
 
 def test_element_without_length():
-    line = Line((1.0, 2.0), (1.0, 2.0))
+    line = Line((1.0, 2.0), (1.0, 2.0), XYZ)
     assert line.length == 0.0
     assert line.evaluate(0.0, 0.0, 0.0, 0.0) == ((1.0, 0.0, 0.0, 0.0), (2.0, 0.0, 0.0, 0.0))
     assert line.limits(math.inf, AXES[:2]) == Limits(1e12, 1e12, 1e12, 1e12)
 
 
 def test_arc_limits_tend_to_those_of_a_line_where_the_curvature_is_low():
-    arc = Arc((1e6, 0.0), (0.0, 1e6), (0.0, 0.0), (0, 1), 1e6, 90.0)
+    arc = Arc((1e6, 0.0), (0.0, 1e6), (0.0, 0.0), (0, 1), 1e6, 90.0, XYZ)
     assert arc.limits(50.0, AXES[:2]) == pytest.approx((50.0, 3000.0, 2000.0, 30000.0), rel=1e-2)
 
 
 def test_arc_velocity_by_centripetal_acceleration_and_by_jerk():
     soft = [AxisLimits(1e4, 2000.0, 3000.0, 1e9)] * 2
-    arc = Arc((10.0, 0.0), (0.0, 10.0), (0.0, 0.0), (0, 1), 10.0, 90.0)
+    arc = Arc((10.0, 0.0), (0.0, 10.0), (0.0, 0.0), (0, 1), 10.0, 90.0, XYZ)
     assert arc.limits(1e4, soft) == pytest.approx(
         (math.sqrt(0.8 * 2000.0 * 10.0), 0.6 * 2000.0, math.sqrt(3000.0**2 - 1600.0**2), 1e9), rel=1e-3
     )
@@ -170,36 +172,36 @@ def test_no_axis_exceeds_its_limits_also_after_a_change_of_override(kind, draw_a
 @pytest.mark.parametrize(
     ("build", "message"),
     [
-        (lambda: Line((0.0,), (1.0, 2.0)), "P-ERR-22100 path from 1 to 2 axes; the motion is refused"),
+        (lambda: Line((0.0,), (1.0, 2.0), XYZ), "P-ERR-22100 path from 1 to 2 axes; the motion is refused"),
         (
-            lambda: Line((0.0, math.nan), (1.0, 2.0)),
+            lambda: Line((0.0, math.nan), (1.0, 2.0), XYZ),
             "P-ERR-22100 path start of axis 1 = nan must be a finite number; the motion is refused",
         ),
         (
-            lambda: Arc((0.0, 1.0), (math.inf, 2.0), (0.0, 0.0), (0, 1), 1.0, 90.0),
+            lambda: Arc((0.0, 1.0), (math.inf, 2.0), (0.0, 0.0), (0, 1), 1.0, 90.0, XYZ),
             "P-ERR-22100 path target of axis 0 = inf must be a finite number; the motion is refused",
         ),
         (
-            lambda: Arc((10.0, 0.0), (0.0, 10.1), (0.0, 0.0), (0, 1), 10.0, 90.0),
+            lambda: Arc((10.0, 0.0), (0.0, 10.1), (0.0, 0.0), (0, 1), 10.0, 90.0, XYZ),
             "P-ERR-22101 arc around (0.0, 0.0) with radius 10 mm (programmed 10 mm) ends 0.1 mm beside its target; "
             "the limit is 0.011 mm; the motion is refused",
         ),
         (
-            lambda: Arc((0.0, 0.0), (1.0, 1.0), (0.0, 0.0), (0, 1), 1.0, 90.0),
+            lambda: Arc((0.0, 0.0), (1.0, 1.0), (0.0, 0.0), (0, 1), 1.0, 90.0, XYZ),
             "P-ERR-22102 arc with radius 0.0 mm and sweep 90.0 deg: both must be finite and not 0; "
             "the motion is refused",
         ),
         (
-            lambda: Arc((1.0, 0.0), (1.0, 0.0), (0.0, 0.0), (0, 1), 1.0, math.nan),
+            lambda: Arc((1.0, 0.0), (1.0, 0.0), (0.0, 0.0), (0, 1), 1.0, math.nan, XYZ),
             "P-ERR-22102 arc with radius 1.0 mm and sweep nan deg: both must be finite and not 0; "
             "the motion is refused",
         ),
         (
-            lambda: Line((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)).limits(0.0, AXES),
+            lambda: Line((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), XYZ).limits(0.0, AXES),
             "P-ERR-22103 path feed 0.0 mm/s must be greater than 0; the motion is refused",
         ),
         (
-            lambda: Arc((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0), (0, 1), 1.0, 90.0).limits(math.nan, AXES),
+            lambda: Arc((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0), (0, 1), 1.0, 90.0, XYZ).limits(math.nan, AXES),
             "P-ERR-22103 path feed nan mm/s must be greater than 0; the motion is refused",
         ),
     ],

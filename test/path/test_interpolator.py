@@ -18,7 +18,7 @@ LIMITS = Limits(100.0, 2000.0, 3000.0, 50000.0)
 
 
 def line_of(length: float) -> Line:
-    return Line((0.0,), (length,))
+    return Line((0.0,), (length,), (0,))
 
 
 def run_alone(interpolator: PathInterpolator, at_block=lambda block: None, blocks: int = 5000) -> list[tuple]:

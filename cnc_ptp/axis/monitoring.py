@@ -1,0 +1,148 @@
+"""What is watched of an axis while it moves: feed releases, soft limits, what is superposed, its target window."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import copysign
+
+from cnc_ptp.axis.axis import ROUNDING, Axis, Report
+from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST, TARGET_MISSED
+from cnc_ptp.axis.ptp import State
+from cnc_ptp.axis.states import AxisStateCode as S
+
+MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
+"""States that can end by themselves."""
+
+
+class Monitoring:
+    """Looks at the setpoints of an axis cycle by cycle, and at where it comes to rest; a fault changes the setpoint."""
+
+    def __init__(self, axis: Axis, *, cycle_time: float, report_warning: Report) -> None:
+        """`cycle_time` in s."""
+        self._axis = axis
+        self._report_warning = report_warning
+        self._longest_silence = round(axis.parameters.external_timeout / cycle_time)
+        self._before: tuple[int, State] | None = None
+        """The last cycle with a superposition, and its setpoint."""
+
+    def undisturbed(self, first_cycle: int, setpoints: Sequence[State]) -> bool:
+        """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
+
+        The state of the first cycle has been advanced already.
+        """
+        axis = self._axis
+        if axis.superposed or axis.error_id or (axis.ptp.restricted and axis.state == S.SYNCHRONIZED_MOTION):
+            return False
+        last_cycle = first_cycle + len(setpoints) - 1
+        if axis.state in MOVING_ALONE and axis.ptp.arrived(last_cycle):
+            return False
+        if axis.coupling is not None or axis.state == S.CONTINUOUS_MOTION:
+            positions = [setpoint[0] for setpoint in setpoints]
+            low, high = axis.parameters.soft_limit_negative, axis.parameters.soft_limit_positive
+            if min(positions) < low or max(positions) > high:
+                return False
+        if axis.ptp.job is not None or all(setpoint[1] for setpoint in setpoints):
+            axis.target_window.moves()
+            return True
+        return not axis.target_window.watching
+
+    def watch(self, cycle: int, setpoint: State) -> State:
+        """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
+
+        Returns the setpoint to be used, which is another one where a fault prevents it.
+        """
+        axis = self._axis
+        if axis.error_id:
+            return setpoint
+        if axis.ptp.withholds(setpoint[1]) and not self._stops_in_time(cycle, setpoint[1]):
+            where = "forward" if setpoint[1] > 0.0 else "backward"
+            reason = f"it is moved {where}, which is not released (set_feed_release)"
+            return self._fault_before(cycle, FEED_WITHHELD, reason, setpoint)
+        if axis.superposed:
+            return self._watch_superposition(cycle, setpoint)
+        if axis.coupling is not None or (axis.state == S.CONTINUOUS_MOTION and not axis.jogs_to_limit):
+            self._watch_soft_limits(cycle, setpoint)
+        return setpoint
+
+    def _stops_in_time(self, cycle: int, velocity: float) -> bool:
+        """For a motion in a withheld direction: its own generator or its channel brakes it already, or will."""
+        axis = self._axis
+        if axis.on_path:
+            return self._path_stops_in_time(cycle, velocity)
+        if axis.coupled:
+            return False
+        if not axis.superposed or axis.state == S.STOPPING:
+            return True
+        driven = axis.external.mode is not None and axis.ptp.withholds(axis.external.contribution(cycle)[1])
+        return not driven and axis.ptp.withholds(axis.ptp.state(cycle)[1])
+
+    def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
+        """The channel brakes its path; what is added to that must not drive the axis in a withheld direction."""
+        axis = self._axis
+        added = axis.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
+        if axis.ptp.withholds(velocity - added):
+            axis.path_direction = copysign(1.0, velocity - added)
+        driven = axis.carried is not None or axis.external.mode is not None
+        return not (driven and axis.ptp.withholds(added))
+
+    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: State) -> State:
+        """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
+
+        Without a superposition there, it begins at `setpoint`. The slave of a gantry pair goes on with its master.
+        """
+        axis = self._axis
+        if axis.pair_in(error_id) is not None:
+            axis.fault(cycle, error_id, reason)
+            return setpoint
+        before = self._before if self._before is not None and self._before[0] == cycle - 1 else (cycle, setpoint)
+        axis.brake(*before)
+        axis.fault(cycle, error_id, reason)
+        return axis.ptp.state(cycle)
+
+    def _watch_superposition(self, cycle: int, setpoint: State) -> State:
+        axis, unit, most = self._axis, self._axis.unit, self._axis.parameters.max_velocity
+        if axis.coupled and not axis.has_job and setpoint[1] == 0.0:
+            axis.compensation.end()
+        if axis.external.rejected is not None:
+            packet, way = axis.external.rejected
+            reason = (
+                f"external setpoint {packet.position} {unit} is {abs(way):g} {unit} away, farther than the axis gets "
+                f"at {most} {unit}/s (P-AXIS-00212)"
+            )
+            axis.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
+        elif axis.external.silence(cycle) > self._longest_silence:
+            timeout = f"{axis.parameters.external_timeout * 1000.0:g} ms"
+            axis.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
+        elif abs(setpoint[1]) > most * (1.0 + ROUNDING):
+            total = f"the superposed motions would add up to {abs(setpoint[1]):g} {unit}/s"
+            reason = f"{total}, above the maximum {most} {unit}/s (P-AXIS-00212)"
+            return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
+        else:
+            self._watch_soft_limits(cycle, setpoint)
+        self._before = cycle, setpoint
+        return setpoint
+
+    def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
+        axis, (position, velocity, _, _) = self._axis, setpoint
+        limit = axis.checks.soft_limit(velocity)
+        outside = position > limit.position if velocity > 0.0 else position < limit.position
+        if outside and velocity != 0.0:
+            reason = f"set position {position} {axis.unit} is beyond the {limit.text}"
+            axis.fault(cycle, limit.error_id, reason, setpoint)
+
+    def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
+        """Warns once of an axis that has not come into its target window in time."""
+        axis, window = self._axis, self._axis.target_window
+        if setpoint[1] != 0.0 or axis.ptp.job is not None:
+            window.moves()
+            return
+        if not window.overdue(cycle, setpoint[0], actual_position):
+            return
+        distance = abs(window.error(setpoint[0], actual_position))
+        self._report_warning(
+            cycle,
+            TARGET_MISSED,
+            f"axis {axis.name}: {axis.parameters.target_time:g} s after its end the motion is {distance:g} {axis.unit} "
+            f"away from its target, more than the position window {axis.parameters.position_window:g} {axis.unit} "
+            "(P-AXIS-00236)",
+        )
