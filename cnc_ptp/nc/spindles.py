@@ -13,11 +13,11 @@ from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Pair, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
-REVERSED: dict[int | None, int] = {3: 4, 4: 3}
-REVERSED_DIRECTIONS = {"cw": "ccw", "ccw": "cw"}
+M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
 FUNCTION_WORDS = frozenset("STD")
 LARGEST_POSITION = 214748.3647
 """deg: a position of the lists, 32 bits of 0.0001°."""
@@ -173,15 +173,14 @@ def _parallel(state: ModalState, function: Function) -> list[Function]:
 
 def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> SpindleFunction | SpindleCommand:
     """The function of a master as its slave has it: speed and position times the ratio, which may turn it round."""
-    if isinstance(function, SpindleCommand) or pair.num == pair.den:
+    if isinstance(function, SpindleCommand):
         return function._replace(spindle=pair.slave)
-    ratio = pair.num / pair.den
-    speed = None if function.speed_rpm is None else abs(ratio) * function.speed_rpm
-    position = None if function.position_deg is None else ratio * function.position_deg
-    m, direction = function.m, function.direction
-    if ratio < 0.0:
-        m, direction = REVERSED.get(m, m), REVERSED_DIRECTIONS.get(direction, direction)
-    return function._replace(spindle=pair.slave, m=m, speed_rpm=speed, position_deg=position, direction=direction)
+    ratio, m = pair.num / pair.den, function.m
+    if ratio < 0.0 and m in DIRECTIONS:
+        m = M_OF_DIRECTION[OPPOSITE[DIRECTIONS[m]]]
+    names = ("speed_rpm", "position_deg", "direction")
+    values = scaled({name: getattr(function, name) for name in names}, ratio)
+    return function._replace(spindle=pair.slave, m=m, **values)
 
 
 def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, function: Function) -> None:
