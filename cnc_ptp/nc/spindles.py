@@ -13,14 +13,13 @@ from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Pair, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.parameters.units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
 M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
 FUNCTION_WORDS = frozenset("STD")
-LARGEST_POSITION = 214748.3647
-"""deg: a position of the lists, 32 bits of 0.0001°."""
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
