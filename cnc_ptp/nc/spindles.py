@@ -81,6 +81,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list
             together = [function, *_parallel(state, function)]
             for each in together:
                 _check_speed(channel, state, block, place, each)
+                _check_position(channel, state, block, words, place, each)
             functions += together
     return functions
 
@@ -196,6 +197,18 @@ def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, 
         raise faults.SPEED_ABOVE_GEAR.at(block.source, column, spindle=name, **values)
 
 
+def _check_position(
+    channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, function: Function
+) -> None:
+    """Raises ProgramError 21083 for a position beyond the range of the lists, at its word where the block has one."""
+    if not isinstance(function, SpindleFunction) or abs(function.position_deg or 0.0) <= LARGEST_POSITION:
+        return
+    column = column_of(block.source, f"{words.name}.POS" if words.din else place)
+    values = {"value": number(function.position_deg or 0.0), "limit": number(LARGEST_POSITION)}
+    name = name_of(channel, state, function.spindle)
+    raise spindle_faults.POSITION_RANGE.at(block.source, column, spindle=name, **values)
+
+
 def _note(state: ModalState, key: str, function: SpindleFunction | SpindleCommand) -> None:
     """Keeps what counts for later blocks: speed, position, rotation."""
     if isinstance(function, SpindleCommand):
@@ -308,18 +321,8 @@ class _SpindleBlock:
         speed = self.state.speeds.get(self.key)
         if speed == 0.0:
             raise self._fault(spindle_faults.SPEED_ZERO, value=0)
-        if abs(position) > LARGEST_POSITION:
-            raise self._position_fault(position)
         direction = DIRECTIONS[words.m] if words.m else ""
         return SpindleFunction(self.key, 19, speed, position, direction, words.full_override)
-
-    def _position_fault(self, position: float) -> faults.ProgramError:
-        """The error for a position beyond the range of the lists, at its word where the block has one."""
-        source, name = self.block.source, self.words.name
-        column = column_of(source, f"{name}.POS" if self.words.din else self.place)
-        return spindle_faults.POSITION_RANGE.at(
-            source, column, spindle=name, value=number(position), limit=number(LARGEST_POSITION)
-        )
 
     # gears
 
