@@ -240,8 +240,8 @@ class SpindleUnit(Unit):
         loop = self.spindle.loop
         if not isinstance(block, SpindleBlock) or not loop.watches(on=self.spindle.powered) or block.error_id[-1]:
             return 0.0
-        speeds = [rpm * DEG_S_PER_RPM for rpm in block.set_speed_rpm]
-        return loop.control.lag_share(block.set_position_deg, speeds, block.actual_position_deg[-1])
+        set_values = block.set_position_deg, block.set_speed_rpm
+        return loop.control.lag_share(*set_values, block.actual_position_deg[-1], unit=DEG_S_PER_RPM)
 
     # one block
 
@@ -254,7 +254,7 @@ class SpindleUnit(Unit):
         self._take_turns(first_cycle)
         columns = self._cycles.block(first_cycle, count)
         block = SpindleBlock(first_cycle, count, *columns)
-        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "°")
+        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
         if warning is not None:
             self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
         block.gear_request = self.spindle.work.gear_request

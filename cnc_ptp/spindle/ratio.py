@@ -1,4 +1,4 @@
-"""Synchronous operation: what a slave spindle does of its master's command by the ratio of both (TF5200 spindle 2.8.3)."""
+"""Synchronous operation: a master's command as its slave carries it out, by their ratio (TF5200 spindle 2.8.3)."""
 
 from __future__ import annotations
 
