@@ -65,8 +65,9 @@ class InertiaFit:
 
 @dataclass(frozen=True, slots=True)
 class _Windows:
-    """Rows (change of velocity, ± time, way, time, change of torque) (n, 5) and impulses (n,) of windows that begin in
-    cycles (n,); `instruments` (n, 5) are the rows of the velocity that was wanted.
+    """Rows (change of velocity, ± time, distance, time, change of torque) (n, 5) and impulses (n,) of windows.
+
+    They begin in cycles (n,); `instruments` (n, 5) are the rows of the velocity that was wanted.
     """
 
     cycles: Array
@@ -138,10 +139,10 @@ def _ripple(age: float, spread: float, trace: AxisTrace, time_constant: float) -
 def _contradiction(windows: _Windows) -> float:
     """Half the difference of k between speeding up and slowing down, and between slow and fast, both together."""
     rows, instruments = windows.rows, windows.instruments
-    change, way = instruments[:, 0], np.abs(instruments[:, 2])
+    change, distance = instruments[:, 0], np.abs(instruments[:, 2])
     changing = np.abs(change) >= CHANGING * np.max(np.abs(change))
     faster = np.where(change * instruments[:, 1] > 0.0, 1.0, -1.0)
-    fast = np.where(way > np.median(way[changing]), 1.0, -1.0)
+    fast = np.where(distance > np.median(distance[changing]), 1.0, -1.0)
     sides = [side for side in (faster, fast) if np.ptp(side[changing]) > 0.0]
     columns, wanted = (
         np.column_stack([values, *(values[:, 0] * side for side in sides)]) for values in (rows, instruments)
@@ -166,9 +167,9 @@ def _windows(trace: AxisTrace, torque: Array) -> _Windows:
         changed: Array = values[end] - values[first]
         return changed
 
-    impulse, way = np.cumsum(torque) * trace.cycle_time, np.cumsum(wanted) * trace.cycle_time
+    impulse, distance = np.cumsum(torque) * trace.cycle_time, np.cumsum(wanted) * trace.cycle_time
     rows = [change(trace.actual_velocity), direction, change(position), constant, change(torque)]
-    instruments = [change(wanted), direction, change(way), constant, change(np.gradient(wanted))]
+    instruments = [change(wanted), direction, change(distance), constant, change(np.gradient(wanted))]
     return _Windows(
         trace.cycle[first].astype(np.float64), np.column_stack(rows), np.column_stack(instruments), change(impulse)
     )

@@ -202,7 +202,7 @@ class PathInterpolator:
             return
         now = self._now()
         s, v, a, _ = self._profile.state_at(now)
-        to_brake = self._length - s - self._planner.stop_way(v, a, limits)
+        to_brake = self._length - s - self._planner.stopping_distance(v, a, limits)
         if self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length:
             return
         velocity = 0.0 if self._stopping else min(self._feed * self.factor, limits.velocity)
