@@ -98,7 +98,7 @@ def identify_dynamics(
             return RUN_FAILED
         trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
     fit = fit_drive(trace)
-    gain, inertia = propose_gain(fit), fit_inertia(trace)
+    gain, inertia = propose_gain(fit), fit_inertia(trace, time_constant=fit.time_constant)
     console = Console(highlight=False, soft_wrap=True)
     for line in found_lines(data, fit, gain, inertia):
         console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)

@@ -166,20 +166,20 @@ def _nothing_steady(trace: AxisTrace, settling: Seconds) -> CncError:
 def stands(trace: AxisTrace, phase: SteadyPhase) -> bool:
     """Whether the axis does not move in a phase, or hardly."""
     position = trace.actual_position[phase.first : phase.end]
-    set_way = abs(phase.velocity) * (len(phase) - 1) * trace.cycle_time
-    return float(np.ptp(position)) < LARGEST_DEVIATION * set_way
+    set_distance = abs(phase.velocity) * (len(phase) - 1) * trace.cycle_time
+    return float(np.ptp(position)) < LARGEST_DEVIATION * set_distance
 
 
 def moves_evenly(trace: AxisTrace, phase: SteadyPhase) -> bool:
     """Whether the axis moves in a phase as it was set to, without sticking."""
     speed, position = abs(phase.velocity), trace.actual_position[phase.first : phase.end]
-    way = float(position[-1] - position[0])
-    mean = way / ((len(phase) - 1) * trace.cycle_time) if len(phase) > 1 else float(trace.actual_velocity[phase.first])
+    distance, time = float(position[-1] - position[0]), (len(phase) - 1) * trace.cycle_time
+    mean = distance / time if len(phase) > 1 else float(trace.actual_velocity[phase.first])
     return abs(mean - phase.velocity) <= LARGEST_DEVIATION * speed and _ripple(trace, phase) <= LARGEST_RIPPLE * speed
 
 
 def _ripple(trace: AxisTrace, phase: SteadyPhase) -> float:
-    """Standard deviation of the velocity, or of the way of EVEN seconds by its time where that is steadier.
+    """Standard deviation of the velocity, or of the distance of EVEN seconds by its time where that is steadier.
 
     Noise of a measured velocity is no motion, digits of a position are none either; sticking shows in both.
     """

@@ -139,11 +139,16 @@ class ControlLoop:
         limit = f"{round(self.monitor.limit(velocity), 4)} {unit} ({self.monitor.source(velocity)})"
         return f"following error {following_error:.4f} {unit} exceeds {limit}"
 
-    def lag_share(self, positions: Sequence[float], velocities: Sequence[float], actual_position: float) -> float:
-        """Following error after cycles with these set values as a part of its limit, from 0; 1 and more is too far."""
+    def lag_share(
+        self, positions: Sequence[float], velocities: Sequence[float], actual_position: float, *, unit: float = 1.0
+    ) -> float:
+        """Following error after cycles with these set values as a part of its limit, from 0; 1 and more is too far.
+
+        `velocities` in multiples of `unit`, mm/s or deg/s.
+        """
         behind = min(self.delay_cycles, len(positions) - 1)
         lag = abs(positions[-1 - behind] - actual_position)
-        limit = self.monitor.limit(velocities[-1 - behind])
+        limit = self.monitor.limit(velocities[-1 - behind] * unit)
         return lag / limit if limit else float(lag > 0.0)
 
     def step(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> ControlCycle:

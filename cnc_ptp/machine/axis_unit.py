@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar, cast
 
 from cnc_ptp.axis.axis import Axis
@@ -63,6 +64,10 @@ class AxisUnit(Unit):
             cycle_time=cycle_time,
             limits=CouplingLimits(parameters.max_velocity, parameters.max_acceleration, parameters.jerk),
             drive=drive or make_drive(parameters.control, cycle_time),
+        )
+        begin, length = self._axis.modulo_range
+        self._make_block = partial(
+            AxisBlock, modulo_begin=begin, modulo_length=length, torque_digits=self._loop.torque_digits
         )
         known = axes or {parameters.name: parameters}
         self._path = PathSource(self._axis)
@@ -132,13 +137,11 @@ class AxisUnit(Unit):
             cycle = first_cycle + len(columns[0])
             axis.advance(cycle)
             self._follow(cycle, axis.basic_motion(cycle, count - len(columns[0])), columns)
-        block = AxisBlock(first_cycle, count, *cast(Any, columns))
+        block = self._make_block(first_cycle, count, *cast(Any, columns))
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
         if warning is not None:
             self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
         block.master = axis.coupling.master if axis.coupling is not None else ""
-        block.modulo_begin, block.modulo_length = axis.modulo_range
-        block.torque_digits = self._loop.torque_digits
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
         return block
 

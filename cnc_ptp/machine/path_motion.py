@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, AxisState, Line
-from cnc_ptp.path.interpolator import PathInterpolator, PathRow
+from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.planner import JERK_LIMITED, STEPS
 
 CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
+Evaluation = Callable[[float, float, float, float], AxisStates]
+"""States of the axes from path length, velocity, acceleration and jerk."""
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
 
@@ -36,8 +38,8 @@ class PathMotion:
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
         self._element: Line | Arc | None = None
-        self._steps = False
-        """The acceleration of the running element steps; its axes show no jerk."""
+        self._evaluate: Evaluation | None = None
+        """States of the axes on the running element."""
         self.states = standing([a.start_position for a in axes])
         self.velocity = 0.0
         self.distance_to_go = 0.0
@@ -95,7 +97,8 @@ class PathMotion:
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_factor)
         feed = limits.velocity if rapid else motion.feed
         self._interpolator.start(element, limits, feed, planner=STEPS if steps else JERK_LIMITED)
-        self._element, self._steps, self.feed, self.distance_to_go = element, steps, feed, element.length
+        self._element, self.feed, self.distance_to_go = element, feed, element.length
+        self._evaluate = evaluation(element, steps=steps)
 
     def _make_element(self, motion: LinearMove | CircularMove) -> Line | Arc:
         start = self.position
@@ -106,18 +109,13 @@ class PathMotion:
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the running motion; fewer when it ends before."""
         rows = self._interpolator.step(count, self._cycle_time)
-        element = self._element
-        if element is None:
+        element, evaluate = self._element, self._evaluate
+        if element is None or evaluate is None:
             return [(self.states, 0.0, 0.0)] * len(rows)
-        points = [(self._states(element, row), row[1], element.length - row[0]) for row in rows]
+        points = [(evaluate(*row[:4]), row[1], element.length - row[0]) for row in rows]
         if points:
             self.states, self.velocity, self.distance_to_go = points[-1]
         return points
-
-    def _states(self, element: Line | Arc, row: PathRow) -> AxisStates:
-        """Of the axes; without a limit of the jerk there is none that could be fed forward (P-AXIS-00337)."""
-        states = element.evaluate(*row[:4])
-        return tuple([(p, v, a, 0.0) for p, v, a, _ in states]) if self._steps else states
 
     def stand(self) -> None:
         """A cycle passes in which no motion runs."""
@@ -144,6 +142,20 @@ class PathMotion:
         factor = self._interpolator.factor
         self._interpolator = PathInterpolator()
         self._interpolator.set_velocity_factor(factor)
+
+
+def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:
+    """States of the axes on an element; without a limit of the jerk none is fed forward (P-AXIS-00337).
+
+    On a line the axes have none then by themselves.
+    """
+    if not steps or isinstance(element, Line):
+        return element.evaluate
+
+    def without_jerk(s: float, v: float, a: float, j: float) -> AxisStates:
+        return tuple([(p, v, a, 0.0) for p, v, a, _ in element.evaluate(s, v, a, j)])
+
+    return without_jerk
 
 
 def path_axes(channel: ChannelParameters) -> frozenset[int]:

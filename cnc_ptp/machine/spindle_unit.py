@@ -17,7 +17,7 @@ from cnc_ptp.machine.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
-from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
@@ -122,12 +122,18 @@ class SpindleUnit(Unit):
         self.next_order += 1
         if self._orders.must_wait(command, source):
             self.spindle.require_ready(command)
+            message = self._waiting(order)
             self._orders.add(order)
-            message: str | None = f"spindle {self.name}: {command} waits until what is in work is done"
         else:
             message = self._carry_out(cycle, order)
         self._orders.taken += source == PLC
         return message
+
+    def _waiting(self, order: Order) -> str | None:
+        """PLC and people hear what their order waits for; in a program it is the order of things."""
+        if order.source not in ("", PLC):
+            return None
+        return f"P-WARN-{ORDER_WAITS} spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
         work = self.spindle.work
@@ -234,8 +240,8 @@ class SpindleUnit(Unit):
         loop = self.spindle.loop
         if not isinstance(block, SpindleBlock) or not loop.watches(on=self.spindle.powered) or block.error_id[-1]:
             return 0.0
-        speeds = [rpm * DEG_S_PER_RPM for rpm in block.set_speed_rpm]
-        return loop.control.lag_share(block.set_position_deg, speeds, block.actual_position_deg[-1])
+        set_values = block.set_position_deg, block.set_speed_rpm
+        return loop.control.lag_share(*set_values, block.actual_position_deg[-1], unit=DEG_S_PER_RPM)
 
     # one block
 
@@ -248,7 +254,7 @@ class SpindleUnit(Unit):
         self._take_turns(first_cycle)
         columns = self._cycles.block(first_cycle, count)
         block = SpindleBlock(first_cycle, count, *columns)
-        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "°")
+        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
         if warning is not None:
             self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
         block.gear_request = self.spindle.work.gear_request

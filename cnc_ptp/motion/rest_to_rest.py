@@ -1,8 +1,8 @@
 """Rest to rest: the seven-phase profile of an axis start, closed form.
 
 Source: TX1250 2.1. Where V cannot be reached, it is reduced to the largest velocity that is reachable with
-A = min(A+, A-) on both sides; the ramps then use A+ and A-, and a short cruise fills what is left of the way. Near the
-way L0 that A+ and A- themselves need for V this would be a jump; there V·L/L0 is more and counts.
+A = min(A+, A-) on both sides; the ramps then use A+ and A-, and a short cruise fills what is left of the distance.
+Near the distance L0 that A+ and A- themselves need for V this would be a jump; there V·L/L0 is more and counts.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Motions without a limit of the jerk: the acceleration steps between A+, 0 and -A-, the jerk is 0. Closed forms.
 
-Forward along a path: v >= 0, and the target is no nearer than the stop way v²/(2A-). From v over the peak u to rest the
-way is (u² - v²)/(2A+) + u²/(2A-), what is left of it is run at u.
+Forward along a path: v >= 0, and the target is no nearer than the stopping distance v²/(2A-). From v over the peak u to
+rest the distance is (u² - v²)/(2A+) + u²/(2A-), what is left of it is run at u.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_st
 from cnc_ptp.motion.profile import Piece, Profile, integrate, integrate_back
 
 
-def step_stop_way(v: float, deceleration: float) -> float:
-    """Way (mm) of the fastest stop from the velocity v >= 0."""
+def step_stopping_distance(v: float, deceleration: float) -> float:
+    """Distance (mm) of the fastest stop from the velocity v >= 0."""
     return v * v / (2.0 * deceleration)
 
 
@@ -35,14 +35,14 @@ def step_to_position(p: float, v: float, target: float, limits: Limits) -> Profi
     """
     check_limits(limits)
     check_state(position=p, velocity=v, target=target)
-    way = target - p
-    if way < NEGLIGIBLE_WAY:
+    distance = target - p
+    if distance < NEGLIGIBLE_WAY:
         return Profile(((0.0, target, 0.0, 0.0, 0.0),))
     velocity, acceleration, deceleration, _ = limits
-    peak_squared = deceleration * (2.0 * way * acceleration + v * v) / (acceleration + deceleration)
+    peak_squared = deceleration * (2.0 * distance * acceleration + v * v) / (acceleration + deceleration)
     peak = velocity if peak_squared >= velocity * velocity else sqrt(peak_squared)
     ramp = _ramp(v, peak, limits)
-    cruise = way - 0.5 * (v + peak) * ramp[0] - step_stop_way(peak, deceleration)
+    cruise = distance - 0.5 * (v + peak) * ramp[0] - step_stopping_distance(peak, deceleration)
     head, t, _, _ = integrate(0.0, p, v, [ramp, (max(0.0, cruise) / peak, 0.0, 0.0)])
     tail, t = integrate_back(t, [_ramp(peak, 0.0, limits)])
     rows = [*head, *((t0, target + x, v0, a, j) for t0, x, v0, a, j in tail)]

@@ -48,7 +48,11 @@ MAIN_WITHOUT_NAME = Fault(
 )
 LINK_GROUP = Fault(21077, "coupling group {group} must be a number from {first} to {last}")
 LINK_GROUP_DEFAULT = Fault(21078, "coupling group 0 is defined by P-CHAN-00037 and P-CHAN-00038 and by nothing else")
-LINK_RATIO = Fault(21084, "ratio {num} / {den} of spindle {spindle}: both must be numbers other than 0")
+LINK_RATIO = Fault(
+    21084,
+    "ratio {num} / {den} of spindle {spindle}: both must be numbers other than 0, their ratio within"
+    " ±{smallest} ... ±{largest}",
+)
 LINK_EMPTY = Fault(21079, "coupling group {group} has no coupled pair")
 LINK_NOT_ACTIVE = Fault(21080, "{what} active")
 LINK_ACTIVE = Fault(20472, "coupling group {group} is active and cannot be defined anew")

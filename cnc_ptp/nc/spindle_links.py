@@ -13,6 +13,7 @@ from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState, Pair, Pairs, Spindle
 from cnc_ptp.nc.spindles import current_main, name_of, names
+from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted
 
 DEFINITION = "[group, slave=master, ...] or [group, slave=master, num, den, ...]"
 _NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
@@ -65,9 +66,14 @@ class _Command:
             raise self.syntax(DEFINITION)
         num, den = rest.pop(0), rest.pop(0)
         ratio = [float(text) for text in (num, den) if _NUMBER.fullmatch(text)]
-        if len(ratio) < 2 or 0.0 in ratio:
+        if len(ratio) < 2 or 0.0 in ratio or not is_permitted(ratio[0] / ratio[1]):
             raise self.fault(
-                spindle_faults.LINK_RATIO, num=num or "nothing", den=den or "nothing", spindle=self.called(pair.slave)
+                spindle_faults.LINK_RATIO,
+                num=num or "nothing",
+                den=den or "nothing",
+                spindle=self.called(pair.slave),
+                smallest=f"{SMALLEST_RATIO:g}",
+                largest=f"{LARGEST_RATIO:g}",
             )
         return pair._replace(num=ratio[0], den=ratio[1])
 

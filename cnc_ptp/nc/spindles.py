@@ -13,14 +13,13 @@ from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Pair, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.parameters.units import LARGEST_POSITION
+from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
-REVERSED: dict[int | None, int] = {3: 4, 4: 3}
-REVERSED_DIRECTIONS = {"cw": "ccw", "ccw": "cw"}
+M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
 FUNCTION_WORDS = frozenset("STD")
-LARGEST_POSITION = 214748.3647
-"""deg: a position of the lists, 32 bits of 0.0001°."""
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
@@ -82,6 +81,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list
             together = [function, *_parallel(state, function)]
             for each in together:
                 _check_speed(channel, state, block, place, each)
+                _check_position(channel, state, block, words, place, each)
             functions += together
     return functions
 
@@ -173,15 +173,14 @@ def _parallel(state: ModalState, function: Function) -> list[Function]:
 
 def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> SpindleFunction | SpindleCommand:
     """The function of a master as its slave has it: speed and position times the ratio, which may turn it round."""
-    if isinstance(function, SpindleCommand) or pair.num == pair.den:
+    if isinstance(function, SpindleCommand):
         return function._replace(spindle=pair.slave)
-    ratio = pair.num / pair.den
-    speed = None if function.speed_rpm is None else abs(ratio) * function.speed_rpm
-    position = None if function.position_deg is None else ratio * function.position_deg
-    m, direction = function.m, function.direction
-    if ratio < 0.0:
-        m, direction = REVERSED.get(m, m), REVERSED_DIRECTIONS.get(direction, direction)
-    return function._replace(spindle=pair.slave, m=m, speed_rpm=speed, position_deg=position, direction=direction)
+    ratio, m = pair.num / pair.den, function.m
+    if ratio < 0.0 and m in DIRECTIONS:
+        m = M_OF_DIRECTION[OPPOSITE[DIRECTIONS[m]]]
+    names = ("speed_rpm", "position_deg", "direction")
+    values = scaled({name: getattr(function, name) for name in names}, ratio)
+    return function._replace(spindle=pair.slave, m=m, **values)
 
 
 def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, function: Function) -> None:
@@ -196,6 +195,18 @@ def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, 
         values = {"speed": f"{function.speed_rpm:g}", "limit": f"{limit:g}", "gear": gear}
         name, column = name_of(channel, state, spindle.key), column_of(block.source, place)
         raise faults.SPEED_ABOVE_GEAR.at(block.source, column, spindle=name, **values)
+
+
+def _check_position(
+    channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, function: Function
+) -> None:
+    """Raises ProgramError 21083 for a position beyond the range of the lists, at its word where the block has one."""
+    if not isinstance(function, SpindleFunction) or abs(function.position_deg or 0.0) <= LARGEST_POSITION:
+        return
+    column = column_of(block.source, f"{words.name}.POS" if words.din else place)
+    values = {"value": number(function.position_deg or 0.0), "limit": number(LARGEST_POSITION)}
+    name = name_of(channel, state, function.spindle)
+    raise spindle_faults.POSITION_RANGE.at(block.source, column, spindle=name, **values)
 
 
 def _note(state: ModalState, key: str, function: SpindleFunction | SpindleCommand) -> None:
@@ -310,18 +321,8 @@ class _SpindleBlock:
         speed = self.state.speeds.get(self.key)
         if speed == 0.0:
             raise self._fault(spindle_faults.SPEED_ZERO, value=0)
-        if abs(position) > LARGEST_POSITION:
-            raise self._position_fault(position)
         direction = DIRECTIONS[words.m] if words.m else ""
         return SpindleFunction(self.key, 19, speed, position, direction, words.full_override)
-
-    def _position_fault(self, position: float) -> faults.ProgramError:
-        """The error for a position beyond the range of the lists, at its word where the block has one."""
-        source, name = self.block.source, self.words.name
-        column = column_of(source, f"{name}.POS" if self.words.din else self.place)
-        return spindle_faults.POSITION_RANGE.at(
-            source, column, spindle=name, value=number(position), limit=number(LARGEST_POSITION)
-        )
 
     # gears
 

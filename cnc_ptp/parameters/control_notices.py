@@ -116,7 +116,7 @@ def following_error(parameters: ParameterSet) -> Iterator[Notice]:
     expected = parameters.kernel("P-AXIS-00212", *gear) / parameters.kernel("P-AXIS-00099", *gear)
     limit = parameters.kernel("P-AXIS-00168", *gear)
     if expected >= limit and parameters.number("P-AXIS-00172", *gear) != 2:  # the linear one grows with the velocity
-        unit = "mm" if parameters.axis_type == "T" else "°"
+        unit = "mm" if parameters.axis_type == "T" else "deg"
         text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
         yield line(parameters, "P-AXIS-00168", gear, text)
 
@@ -153,7 +153,7 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
     limit = largest_digit(bits) / scale if scale else 0.0
     largest = parameters.kernel("P-AXIS-00212", gear)
     if largest > limit:
-        unit = "mm/s" if parameters.axis_type == "T" else "°/s"
+        unit = "mm/s" if parameters.axis_type == "T" else "deg/s"
         text = (
             f"the {bits} bits of the command carry {limit:g} {unit}, less than the {largest:g} {unit} of P-AXIS-00212"
         )

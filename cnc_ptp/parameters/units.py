@@ -6,6 +6,8 @@ nearest to the exact one.
 
 DEG_S_PER_RPM = 6.0
 """Speeds of spindles are rpm for people, °/s in the kernel."""
+LARGEST_POSITION = 214748.3647
+"""°: a position of the lists, 32 bits of 0.0001°."""
 DIVISORS: dict[str, int] = {
     "0.1 µm": 10_000,
     "0.0001°": 10_000,

@@ -218,7 +218,7 @@ class PathInterpolator:
     def _brakes(self, limits: Limits) -> bool:
         """In the last cycle given out a stop would end no earlier than the element."""
         s, v, a, _ = self.state
-        to_brake = self._length - s - self._planner.stop_way(v, a, limits)
+        to_brake = self._length - s - self._planner.stopping_distance(v, a, limits)
         return self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length
 
 

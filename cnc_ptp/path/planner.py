@@ -11,7 +11,7 @@ from cnc_ptp.motion import (
     plan_rest_to_rest,
     plan_to_position,
     plan_to_velocity,
-    step_stop_way,
+    step_stopping_distance,
     step_to_position,
     step_to_velocity,
     stop_way,
@@ -27,7 +27,7 @@ class Planner(NamedTuple):
     """s, v, a, target."""
     to_rest: Callable[[float, float, float, Limits], Profile]
     """s, v, a."""
-    stop_way: Callable[[float, float, Limits], float]
+    stopping_distance: Callable[[float, float, Limits], float]
     """v, a."""
 
 
@@ -35,12 +35,12 @@ JERK_LIMITED = Planner(
     from_rest=plan_rest_to_rest,
     to_position=plan_to_position,
     to_rest=lambda s, v, a, limits: plan_to_velocity(s, v, a, 0.0, limits),
-    stop_way=lambda v, a, limits: stop_way(v, a, limits.deceleration, limits.jerk),
+    stopping_distance=lambda v, a, limits: stop_way(v, a, limits.deceleration, limits.jerk),
 )
 STEPS = Planner(
     from_rest=lambda start, target, limits: step_to_position(start, 0.0, target, limits),
     to_position=lambda s, v, a, target, limits: step_to_position(s, v, target, limits),
     to_rest=lambda s, v, a, limits: step_to_velocity(s, v, 0.0, limits),
-    stop_way=lambda v, a, limits: step_stop_way(v, limits.deceleration),
+    stopping_distance=lambda v, a, limits: step_stopping_distance(v, limits.deceleration),
 )
 """The acceleration steps, so the one before does not count."""

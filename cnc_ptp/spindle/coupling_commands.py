@@ -19,12 +19,11 @@ from cnc_ptp.spindle.faults import (
     NOT_COUPLED,
     UNKNOWN_MASTER,
 )
+from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted, scaled
 from cnc_ptp.spindle.spindle import Spindle
 
 PASSED_ON = ("start", "set_speed", "stop", "orient", "home")
 """Commands of a master that its slaves carry out too."""
-OPPOSITE = {"cw": "ccw", "ccw": "cw"}
-SMALLEST_RATIO, LARGEST_RATIO = 1e-6, 1e6
 
 
 class CouplingCommands:
@@ -58,7 +57,7 @@ class CouplingCommands:
             if value == 0.0:
                 spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0")
         ratio = factor_num / factor_den
-        if not SMALLEST_RATIO <= abs(ratio) <= LARGEST_RATIO:
+        if not is_permitted(ratio):
             bounds = f"within ±{SMALLEST_RATIO:g} ... ±{LARGEST_RATIO:g}"
             spindle.refuse("couple", BAD_RATIO, f"factor_num / factor_den = {ratio:g} is not {bounds}")
         if self.master or self.wanted:
@@ -88,13 +87,7 @@ class CouplingCommands:
 
     def of_slave(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
         """Arguments of the master's command, as they are for this spindle."""
-        scaled = dict(arguments)
-        for name, factor in (("speed_rpm", abs(self._ratio)), ("position_deg", self._ratio)):
-            if scaled.get(name) is not None:
-                scaled[name] *= factor
-        if self._ratio < 0.0 and scaled.get("direction") in OPPOSITE:
-            scaled["direction"] = OPPOSITE[scaled["direction"]]
-        return scaled
+        return scaled(arguments, self._ratio)
 
 
 def can_follow(spindle: Spindle) -> bool:

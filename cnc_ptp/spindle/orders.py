@@ -18,6 +18,11 @@ from cnc_ptp.spindle.spindle import Spindle
 PLC = "plc"
 MOTION = frozenset({"start", "set_speed", "stop", "orient", "home", "select_gear"})
 """Commands that make the spindle work for somebody."""
+AWAITED = {
+    S.HOMING: "the homing is finished",
+    S.DISCRETE_MOTION: "the positioning is finished",
+    S.CONTINUOUS_MOTION: "the speed is reached",
+}
 
 
 class Order(NamedTuple):
@@ -80,6 +85,14 @@ class Orders:
         if self._finished_before(command) or (self.waiting and source != PLC and self.waiting[0].source != PLC):
             return True
         return source == PLC and bool(self.waiting or self.source)
+
+    def awaited(self) -> str:
+        """What an order that is added now waits for."""
+        if self.waiting:
+            return "the orders before it are carried out"
+        if self._spindle.work.changes_gear:
+            return "the gear change is finished"
+        return AWAITED.get(self._spindle.state, "the spindle stands")
 
     def _finished_before(self, command: str) -> bool:
         """A gear change before all commands, a homing before all that act, a positioning before a homing."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.units import DEG_S_PER_RPM, LARGEST_POSITION
 from cnc_ptp.spindle.faults import (
     BAD_POSITION,
     BAD_SPEED,
@@ -22,8 +22,6 @@ from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
 from cnc_ptp.spindle.spindle import Spindle
 
-LARGEST_POSITION = 214748.3647
-"""°: a position of the lists, 32 bit of 0.0001°."""
 NEEDS_REFERENCE = (
     "the spindle has no reference point and does not home by itself (P-AXIS-00015 0x100); home it first (G74)"
 )

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from machine_support import CYCLE_TIME, UnitBench
 
+from cnc_ptp.control.feedforward import Feedforward
 from cnc_ptp.machine.spindle_unit import SpindleUnit
 from cnc_ptp.parameters import load_machine
 
@@ -128,3 +129,15 @@ def test_another_gear_has_it_from_its_first_cycle_on() -> None:
     spindle.accepted("start", direction="cw", speed_rpm=600.0)
     spindle.run(100)
     assert spindle.column("feedforward_percent")[20:] == [100.0] * 100
+
+
+def test_feedforward_without_room_is_told_in_the_unit_of_rotary_axes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """deg/s, as an axis tells it; the wait itself is that of test_axis_control."""
+    spindle = bench()
+    waits = iter([None, 36_000.0])
+    monkeypatch.setattr(Feedforward, "take_wait", lambda _: next(waits, None))
+    spindle.run(30)
+    assert spindle.event_texts() == [
+        "P-ERR-23061 spindle s: feedforward waits: at 0 deg/s there is no room up to 36000 deg/s (P-AXIS-00212) to make "
+        "up the following error; 0 % act, the rest does when the motion is slower"
+    ]

@@ -116,9 +116,11 @@ def test_a_rotation_that_is_too_fast_for_the_new_gear_does_not_go_on() -> None:
 def test_commands_wait_for_the_gear_in_their_order() -> None:
     each = bench()
     each.accepted("select_gear", stage=2)
-    waits = "waits until what is in work is done"
-    assert each.accepted("start", direction="cw", speed_rpm=600.0) == f"spindle s: start {waits}"
-    assert each.accepted("set_speed", speed_rpm=900.0) == f"spindle s: set_speed {waits}"
+    waits = "P-WARN-24030 spindle s: {} waits until {}"
+    told = each.accepted("start", direction="cw", speed_rpm=600.0)
+    assert told == waits.format("start", "the gear change is finished")
+    told = each.accepted("set_speed", speed_rpm=900.0)
+    assert told == waits.format("set_speed", "the orders before it are carried out")
     each.run(500)
     assert each.column("set_speed_rpm")[-1] == 0.0
     each.accepted("gear_changed")

@@ -17,7 +17,8 @@ from cnc_ptp.machine.blocks import AxisStateCode as S
 from cnc_ptp.machine.blocks import SpindleBit
 from cnc_ptp.parameters import MachineParameters, SpindleParameters, read_machine
 
-WAITS = "spindle s: {} waits until what is in work is done"
+WAITS = "P-WARN-24030 spindle s: {} waits until {}"
+HOMED, IN_TURN = "the homing is finished", "the orders before it are carried out"
 NO_REFERENCE, OLD_REFERENCE = "there is no reference point", "the reference point of before counts"
 
 
@@ -50,6 +51,7 @@ def test_g74_and_the_rotation_after_it(machine: str, referenced: bool, between: 
     program = f"%P\nN10 G74 S1\n{between}N20 {words}\nN30 G01 Z1 F1000\nN40 M5\nM30"
     bench = MachineBench(program, machine=machine_of(machine, referenced)).run()
     assert not bench.failed and bench.events == []
+    assert not any(record.message for record in bench.records)
     expected = [S.HOMING, S.STANDSTILL, S.CONTINUOUS_MOTION, S.STOPPING, S.STANDSTILL]
     assert [state for k, state in enumerate(bench.states("s1")) if k or state != S.STANDSTILL] == expected
     assert bench.last("s1").referenced[-1]
@@ -125,7 +127,7 @@ def test_what_comes_during_a_homing_waits(
     by = {"source": source} if source else {}
     bench.accepted("home", **by)
     bench.run(50)
-    assert bench.accepted(command, **arguments, **by) == WAITS.format(command)
+    assert bench.accepted(command, **arguments, **by) == ("" if source == "one" else WAITS.format(command, HOMED))
     bench.run(10)
     assert bench.state == S.HOMING and bench.last.status_bits[-1] & SpindleBit.ORDERS_WAIT
     bench.run(2500)
@@ -138,7 +140,7 @@ def test_a_speed_alone_has_no_effect_on_a_homing_and_counts_behind_the_m3_that_w
     bench.run(10)
     assert bench.accepted("set_speed", speed_rpm=50.0) == "spindle s: set_speed without effect in Homing"
     bench.accepted("start", direction="cw", speed_rpm=300.0)
-    assert bench.accepted("set_speed", speed_rpm=400.0) == WAITS.format("set_speed")
+    assert bench.accepted("set_speed", speed_rpm=400.0) == WAITS.format("set_speed", IN_TURN)
     bench.run(1800)
     assert states(bench) == [S.HOMING, S.STANDSTILL, S.CONTINUOUS_MOTION]
     assert bench.column("set_speed_rpm")[-1] == 400.0
@@ -149,7 +151,7 @@ def test_m3_during_an_automatic_homing_lets_it_find_its_pulse() -> None:
     bench = unreferenced()
     bench.accepted("orient", position_deg=100.0, speed_rpm=200.0)
     bench.run(50)
-    assert bench.accepted("start", direction="cw", speed_rpm=300.0) == WAITS.format("start")
+    assert bench.accepted("start", direction="cw", speed_rpm=300.0) == WAITS.format("start", HOMED)
     bench.run(2000)
     assert states(bench) == [S.HOMING, S.DISCRETE_MOTION, S.CONTINUOUS_MOTION] and bench.last.referenced[-1]
 
@@ -160,7 +162,7 @@ def test_g74_waits_for_a_positioning() -> None:
         bench = spindle_bench(automatic_homing=automatic)
         bench.accepted("orient", position_deg=170.0, speed_rpm=200.0)
         bench.run(30)
-        assert bench.accepted("home") == WAITS.format("home")
+        assert bench.accepted("home") == WAITS.format("home", "the positioning is finished")
         bench.run(2000)
         assert states(bench) == [S.DISCRETE_MOTION, S.STANDSTILL, S.HOMING, S.STANDSTILL]
 

@@ -73,7 +73,7 @@ def test_a_command_of_the_plc_takes_its_turn_after_the_channel() -> None:
     """Page 11: sequentially; the channel has its speed first."""
     bench = spindle_bench()
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
-    waits = "spindle s: orient waits until what is in work is done"
+    waits = "P-WARN-24030 spindle s: orient waits until the speed is reached"
     assert bench.accepted("orient", position_deg=90.0, source="plc") == waits
     assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
     bench.run(800)
@@ -128,9 +128,11 @@ def test_the_plc_is_served_in_order_of_arrival() -> None:
     """Page 11: sequentially, and acknowledged when speed and position are there."""
     bench = spindle_bench()
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="plc")
-    waits = "waits until what is in work is done"
-    assert bench.accepted("orient", position_deg=90.0, source="plc") == f"spindle s: orient {waits}"
-    assert bench.accepted("start", direction="ccw", speed_rpm=500.0, source="plc") == f"spindle s: start {waits}"
+    waits = "P-WARN-24030 spindle s: {} waits until {}"
+    told = bench.accepted("orient", position_deg=90.0, source="plc")
+    assert told == waits.format("orient", "the speed is reached")
+    told = bench.accepted("start", direction="ccw", speed_rpm=500.0, source="plc")
+    assert told == waits.format("start", "the orders before it are carried out")
     bench.run(1200)
     assert acknowledged(bench) == [(3, 0), (3, 1), (3, 2), (3, 3)]
     states = bench.column("state")

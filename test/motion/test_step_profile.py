@@ -10,7 +10,14 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, step_stop_way, step_to_position, step_to_velocity
+from cnc_ptp.motion import (
+    Limits,
+    Profile,
+    plan_rest_to_rest,
+    step_stopping_distance,
+    step_to_position,
+    step_to_velocity,
+)
 
 LIMITS = Limits(100.0, 2000.0, 3000.0, 1.0)
 """The jerk does not count."""
@@ -35,7 +42,7 @@ def test_a_velocity_above_the_limit_is_left_with_the_deceleration() -> None:
     """150 to 100 mm/s with 3000 mm/s²: 1/60 s, then cruise and brake."""
     profile = step_to_position(0.0, 150.0, 20.0, LIMITS)
     assert profile.rows[1][0] == pytest.approx(1.0 / 60.0) and profile.rows[1][2] == pytest.approx(100.0)
-    cruise = (20.0 - 125.0 / 60.0 - step_stop_way(100.0, 3000.0)) / 100.0
+    cruise = (20.0 - 125.0 / 60.0 - step_stopping_distance(100.0, 3000.0)) / 100.0
     assert profile.duration == pytest.approx(1.0 / 60.0 + cruise + 1.0 / 30.0)
 
 
@@ -67,7 +74,7 @@ def test_random_problems_are_sound_and_no_slower_than_with_any_jerk() -> None:
     for _ in range(300):
         limits = Limits(*(10.0 ** draw.uniform(0.0, 4.0) for _ in range(3)), 10.0 ** draw.uniform(3.0, 9.0))
         v = draw.choice([0.0, draw.uniform(0.0, 2.0) * limits.velocity])
-        way = step_stop_way(v, limits.deceleration) * draw.choice([1.0, 1.5]) + 10.0 ** draw.uniform(-3.0, 3.0)
+        way = step_stopping_distance(v, limits.deceleration) * draw.choice([1.0, 1.5]) + 10.0 ** draw.uniform(-3.0, 3.0)
         profile = step_to_position(0.0, v, way, limits)
         assert_sound(profile, v, way, limits)
         if v == 0.0:

@@ -151,3 +151,11 @@ def test_a_slave_gets_its_speed_with_its_master() -> None:
         "line (1, 0, 0) feed 1",
         "end",
     ]
+
+
+@pytest.mark.parametrize("ratio", ["1000000, 1", "-1000000, 1", "1, 1000000", "-1, 1000000"])
+def test_the_ratios_at_the_edge_of_the_range(ratio: str) -> None:
+    state = ModalState()
+    lines(f"#SET AX LINK [1, S2=S, {ratio}]", spindles=three_spindles(), state=state)
+    num, den = map(float, ratio.split(","))
+    assert state.spindle.links[1] == (Pair("S2", "S", num, den),)

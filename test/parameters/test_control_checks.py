@@ -256,8 +256,8 @@ NOTICES = {
         "P-AXIS-00212"
     ),
     'kenngr: {antr_typ: 6, achs_typ: ACHSTYP_ROTATOR}, getriebe: {"0": {dynamik: {vb_max: 300000}}}': (
-        "P-AXIS-00129 getriebe[0].multi_gain_z of /x: the 16 bits of the command carry 273.058 °/s, less than the 300 "
-        "°/s of P-AXIS-00212"
+        "P-AXIS-00129 getriebe[0].multi_gain_z of /x: the 16 bits of the command carry 273.058 deg/s, less than the 300 "
+        "deg/s of P-AXIS-00212"
     ),
     "antr: {operation_mode: OPEN_POSITION_LOOP_MODE}": (
         "P-AXIS-00320 antr.operation_mode of /x: mode OPEN_POSITION_LOOP_MODE is accepted, but the position loop stays "
@@ -346,8 +346,8 @@ def test_all_gears_of_a_spindle_are_looked_at() -> None:
     drive = "kenngr: {antr_typ: 1, achs_mode: 4, ref_ohne_nocken: 1, ref_ohne_rev: 1}"
     speeds = 'getriebe: {"0": {dynamik: {vb_max: 200000}}, "1": {dynamik: {vb_max: 300000}}}'
     assert spindle_notices(f"{drive}, {speeds}") == [
-        "P-AXIS-00129 getriebe[1].multi_gain_z of /s: the 16 bits of the command carry 273.058 °/s, less than the 300 "
-        "°/s of P-AXIS-00212"
+        "P-AXIS-00129 getriebe[1].multi_gain_z of /s: the 16 bits of the command carry 273.058 deg/s, less than the 300 "
+        "deg/s of P-AXIS-00212"
     ]
 
 
@@ -363,7 +363,7 @@ def test_a_gain_of_the_drive_is_told_once() -> None:
 def test_a_bus_has_one_velocity_scale_for_all_gears() -> None:
     speeds = 'getriebe: {"0": {dynamik: {vb_max: 300000}}, "1": {dynamik: {vb_max: 200000}}}'
     assert spindle_notices(f"kenngr: {{antr_typ: 8}}, antr: {{v_reso_num: 0}}, {speeds}") == [
-        "P-AXIS-00206 antr.v_reso_num of /s: the 32 bits of the command carry 0 °/s, less than the 300 °/s of "
+        "P-AXIS-00206 antr.v_reso_num of /s: the 32 bits of the command carry 0 deg/s, less than the 300 deg/s of "
         "P-AXIS-00212"
     ]
 
