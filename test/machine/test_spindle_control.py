@@ -272,3 +272,11 @@ def test_the_block_size_changes_no_bit(name: str) -> None:
         found[count] = repr(bench.columns()), bench.event_texts()
     assert found[1] == found[7] == found[10]
     assert bool(found[1][1]) is ("monitoring" in SPINDLES[name])
+
+
+def test_the_share_of_the_limit_is_reckoned_in_degrees_per_second() -> None:
+    """Type 2: the lag v/Kv under the limit v/Kv · 1024/(1024 - 200)."""
+    bench = spindle_bench(monitoring=2, following_error_limit=1.0, standstill_limit=2.0, dynamic=200)
+    bench.accepted("start", direction="cw", speed_rpm=1000.0)
+    bench.run(2000)
+    assert bench.unit.lag_share(bench.last) == pytest.approx(824.0 / 1024.0, rel=1e-3)
