@@ -68,7 +68,7 @@ def _run(arguments: tuple[str, str | None, str | None, float, str, bool], compos
     watch = Watch(memory_at=0.8 * seconds * 1e6 / parameters.cycle_time_us, own=COMPOSED if composed else SUPERVISOR)
 
     def show(monitor: object) -> None:
-        watch.look(monitor.progress.cycle)  # type: ignore[attr-defined]
+        watch.look(monitor.cycle)  # type: ignore[attr-defined]
 
     if composed:
         monitor, failures = run_composed(parameters, job, show=show)

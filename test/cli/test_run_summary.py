@@ -11,7 +11,6 @@ from cnc_ptp.commands.run import print_summary
 from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.monitor import Progress
 from cnc_ptp.parameters import read_machine
 
 ONE_CHANNEL = {"channel": ProgramReport(40)}
@@ -25,7 +24,7 @@ def reported(more=()):
 def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
     return SimpleNamespace(
         diagnostics=diagnostics,
-        progress=Progress(cycle=70),
+        cycle=70,
         programs=programs,
         ending="",
         lateness=Lateness,
