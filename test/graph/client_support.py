@@ -109,11 +109,11 @@ class Client(Node):
         assert (response.accepted, response.error_id) == (False, error_id)
         return response
 
-    def write(self, topic, message_type, **fields):
+    def write(self, topic, message_type, *, readers=1, **fields):
         """Publishes one message on a PLC topic and waits until it has had the time to act: some PLC blocks."""
         if topic not in self._writers:
-            self._writers[topic] = self.create_publisher(message_type, topic, PLC_INPUT)
-            self.spin_until(self._writers[topic].get_subscription_count, f"a reader of {topic}")
+            writer = self._writers[topic] = self.create_publisher(message_type, topic, PLC_INPUT)
+            self.spin_until(lambda: writer.get_subscription_count() >= readers, f"{readers} readers of {topic}")
         self._writers[topic].publish(message_type(**fields))
         self.wait_blocks("plc", 10)
 

@@ -3,6 +3,7 @@
 import re
 import signal
 import subprocess
+import time
 
 import pytest
 import rclpy
@@ -140,6 +141,7 @@ def test_an_interrupt_ends_the_waiting_and_not_the_motion(machine):
     words = command("do", "y", "move_relative", "distance=30", "velocity=0.5", "--wait")
     waiting = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
     assert "accepted" in waiting.stdout.readline()
+    time.sleep(1.0)  # the signal counts for the waiting from a moment after this line on
     waiting.send_signal(signal.SIGINT)
     told, _ = waiting.communicate(timeout=30.0)
     assert (waiting.returncode, told) == (130, "y: not waited for any more (SIGINT); it goes on\n")

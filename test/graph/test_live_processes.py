@@ -1,5 +1,6 @@
 """A standing machine of separate processes (run --stay): how it ends."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -50,16 +51,17 @@ def test_commands_notice_that_the_machine_is_gone(tmp_path):
     waiting = ["do", "x", "move_absolute", "target=100", "velocity=1", "--wait"]
     try:
         wait_for_machine()
-        clients = [
-            subprocess.Popen([sys.executable, "-m", "cnc_ptp", *words], stderr=subprocess.PIPE, text=True)
-            for words in (
-                waiting,
-                ["jog", "y", "+", "--speed", "1", "--distance", "50"],
-                ["watch", "x", "--rate", "0.1"],
-            )
-        ]
-        time.sleep(6.0)
-        assert [client.poll() for client in clients] == [None] * 3
+        clients = []
+        for words, seen in (
+            (waiting, r"x +DiscreteMotion"),
+            (["jog", "y", "+", "--speed", "1", "--distance", "80"], r"y +ContinuousMotion"),
+            (["watch", "x", "--rate", "0.1"], ""),
+        ):
+            job = [sys.executable, "-m", "cnc_ptp", *words]
+            clients.append(subprocess.Popen(job, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+            while not re.search(seen, call("status").stdout):
+                assert clients[-1].poll() is None
+        assert clients[-1].stdout.readline()
         graph.process.kill()
         errors = [client.communicate(timeout=60.0)[1] for client in clients]
     finally:

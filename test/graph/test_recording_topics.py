@@ -33,10 +33,11 @@ def recording(tmp_path_factory):
     client = Client(read_machine(machine))
     client.start()
     client.wait_blocks("plc", 3)
-    client.write("/x/override", msg.Override, percent=70.0, valid=True, sequence=1)
-    client.write("/x/jog", msg.Jog, velocity=0.0, valid=True)
+    both = 2  # plc and recorder
+    client.write("/x/override", msg.Override, readers=both, percent=70.0, valid=True, sequence=1)
+    client.write("/x/jog", msg.Jog, readers=both, velocity=0.0, valid=True)
     for counter in range(3):
-        client.write("/plc/life_sign", msg.LifeSign, counter=counter)
+        client.write("/plc/life_sign", msg.LifeSign, readers=both, counter=counter)
     client.wait_blocks("plc", 20)
     client.destroy_node()
     rclpy.try_shutdown()
