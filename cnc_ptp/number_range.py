@@ -11,12 +11,12 @@ from cnc_ptp.machine.run_time import LONGEST_RUN
 
 
 class NumberRange(click.FloatRange):
-    """A FloatRange that refuses `nan` too: no comparison with it is true, so click lets it through."""
+    """A FloatRange that refuses what is not finite: no comparison with `nan` is true, so click lets it through."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         number = super().convert(value, param, ctx)
-        if math.isnan(number):
-            self.fail(f"{value} is not a number.", param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a number." if math.isnan(number) else f"{value} is not finite.", param, ctx)
         return number
 
 

@@ -15,13 +15,16 @@ from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 
+ENDINGS = ("stop", "halt", "emergency_stop", "reset")
+"""Commands after which a unit that was stopped has done what it was told."""
+
 
 def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
     """Gives the command and prints the answer. Status 1 when it is refused, or fails while it is waited for."""
     with connected() as client:
         kind = client.require_unit(unit)
         arguments = read_arguments(kind, unit, command, words, arguments_of(kind, unit, command))
-        waiting = Waiting(client, unit) if wait and kind != "plc" else None
+        waiting = Waiting(client, unit, whole=command not in ENDINGS) if wait and kind != "plc" else None
         try:
             answer = client.ask(unit, command, arguments)
         except CncError as error:
@@ -42,7 +45,9 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
 class Waiting:
     """Waits until a unit has done what it was told."""
 
-    def __init__(self, client: MachineClient, unit: str) -> None:
+    def __init__(self, client: MachineClient, unit: str, *, whole: bool) -> None:
+        """`whole`: what was begun is to come to its end; a stop on the way is a failure."""
+        self._whole = whole
         self._client = client
         self._unit = unit
         self._blocks = client.look_at([unit])
@@ -62,7 +67,10 @@ class Waiting:
         view = self._blocks.view(self._unit)
         assert view is not None
         print(line(view))
-        return RUN_FAILED if view.error_id else 0
+        stopped = self._whole and view.stopped
+        if stopped:
+            Console(stderr=True, highlight=False).print(f"{self._unit}: stopped before its end", style="red")
+        return RUN_FAILED if view.error_id or stopped else 0
 
     def _settled_after(self, cycle: int) -> bool:
         view = self._blocks.view(self._unit)

@@ -15,6 +15,7 @@ from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.machine.unit_view import UnitView
+from cnc_ptp.nodes.jog_topics import JOG_IN_FREE_RUN, SECOND_JOG
 from cnc_ptp.nodes.jog_topics import PATIENCE as SILENCE
 from cnc_ptp.nodes.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, connected
@@ -57,7 +58,7 @@ class Jogger:
         self._sequence = 0
         self._blocks = client.look_at([axis])
         self._publisher = client.create_publisher(msg.Jog, jog_topic(axis), PLC_INPUT)
-        self._refused = self._stalled = False
+        self._refused = self._stalled = self._ignored = False
         self._errors = Console(stderr=True, highlight=False, soft_wrap=True)
         client.create_subscription(msg.CommandRecord, COMMAND, self._on_command, PLC_INPUT)
         client.create_subscription(msg.Event, EVENT, self._on_event, PLC_INPUT)
@@ -93,6 +94,8 @@ class Jogger:
 
     def end(self) -> int:
         """Ends the jog, waits until the axis stands, tells where; the exit status."""
+        if self._ignored:
+            return self.told("the jog is ignored: another client jogs the axis, or the machine is in free run")
         cycle = self._place().cycle
         self._send(0.0)
 
@@ -129,6 +132,9 @@ class Jogger:
                 self._errors.print(f"warning: {message.message}", style="yellow", markup=False)
 
     def _on_event(self, message: msg.Event) -> None:
+        if message.error_id in (SECOND_JOG, JOG_IN_FREE_RUN) and jog_topic(self._axis) in message.text:
+            self._ignored = self._ignored or self._client.get_name() in message.text or message.error_id != SECOND_JOG
+            self._refused = self._refused or self._ignored
         if message.source == self._axis and message.severity > Severity.INFO and self._sequence:
             self._errors.print(f"P-ERR-{message.error_id} {message.text}", style="yellow", markup=False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.axis.states import REST_STATES, AxisStateCode, state_name
+from cnc_ptp.axis.states import REST_STATES, AxisStateCode, StatusBit, state_name
 from cnc_ptp.machine.blocks import ChannelStateCode
 
 
@@ -32,6 +32,8 @@ class UnitView:
     speed: float | None = None
     speed_unit: str = ""
     following_error: float | None = None
+    stopped: bool = False
+    """The last motion or program was stopped before its end."""
     line: int = 0
     blocks_done: int = 0
     blocks_total: int = 0
@@ -53,16 +55,18 @@ def view_of(name: str, kind: str, block: Any, *, rotary: bool = False) -> UnitVi
 def _axis_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
     state, speed = AxisStateCode(block.state[-1]), block.set_velocity[-1]
     busy = speed != 0.0 or state not in REST_STATES
+    in_target = bool(block.status_bits[-1] & StatusBit.IN_TARGET_POSITION)
     return UnitView(
         **common,
         state=state_name(state),
         busy=busy,
-        settled=not busy,
+        settled=not busy and (block.actual_velocity[-1] == 0.0 or in_target),
         position=block.actual_position[-1],
         unit=unit,
         speed=block.actual_velocity[-1],
         speed_unit=f"{unit}/s",
         following_error=block.following_error[-1],
+        stopped=bool(block.status_bits[-1] & StatusBit.HAS_BEEN_STOPPED),
     )
 
 
@@ -94,6 +98,7 @@ def _channel_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
         line=block.line[-1],
         blocks_done=block.blocks_done,
         blocks_total=block.blocks_total,
+        stopped=block.done and block.blocks_done < block.blocks_total,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.commands import COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
@@ -29,6 +30,7 @@ PATIENCE = 5.0
 MARGIN = 1.0
 """Seconds that a call waits longer than the PLC does, which takes a coupling back that no axis answers (26143)."""
 UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
+INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
 AXIS_TYPE = "kenngr.achs_typ"
 ROTARY = ("ACHSTYP_ROTATOR", 2)
 
@@ -102,8 +104,9 @@ class MachineClient(Node):
     # commands
 
     def ask(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Any:
-        """The response to a command. Raises CncError 26136 when none comes in time."""
+        """The response to a command. Raises CncError 26136 when none comes in time, 22001 for too large an integer."""
         service = services_of(self.kinds[unit])[command]
+        check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
         client = self.create_client(service, f"{unit}/{command}")
         answer = self._answer(client, request_of(service, arguments), patience)
@@ -155,6 +158,21 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
         raise CncError(UNKNOWN_COMMAND, f"{where}{text}; nothing was sent. Known: {known}")
     fields = service.Request.get_fields_and_field_types()
     return {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
+
+
+def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
+    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it round."""
+    fields = service.Request.get_fields_and_field_types()
+    for name, value in arguments.items():
+        if found := INTEGER_FIELD.fullmatch(fields[name]):
+            low, high = integer_range(found[1] == "u", int(found[2]))
+            if not low <= value <= high:
+                reason = f"{name} = {value} is not within {low} … {high}"
+                raise CncError(BAD_ARGUMENT, f"{where}: {reason}; nothing was sent")
+
+
+def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:
+    return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
 
 
 def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:

@@ -200,3 +200,9 @@ def test_a_machine_that_stays_runs_in_real_time():
     result = call("run", PTP, "--stay", "--free-run")
     assert result.exit_code == 2
     assert "--stay and --free-run exclude each other: a machine is commanded in real time." in result.stderr
+
+
+@pytest.mark.parametrize(("speed", "text"), [("inf", "inf is not finite."), ("nan", "nan is not a number.")])
+def test_a_speed_is_a_finite_number(speed, text):
+    done = call("jog", "x", "+", "--speed", speed)
+    assert done.exit_code == 2 and text in done.stderr

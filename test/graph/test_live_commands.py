@@ -150,6 +150,28 @@ def test_an_interrupt_ends_the_waiting_and_not_the_motion(machine):
     assert call("do", "y", "stop", "--wait").exit_code == 0
 
 
+def test_a_motion_that_is_stopped_on_its_way_is_status_1(machine):
+    words = command("do", "y", "move_relative", "distance=30", "velocity=0.5", "--wait")
+    waiting = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert "accepted" in waiting.stdout.readline()
+    assert call("do", "y", "halt", "--wait").exit_code == 0
+    _, errors = waiting.communicate(timeout=30.0)
+    assert (waiting.returncode, errors) == (1, "y: stopped before its end\n")
+
+
+def test_a_second_jog_is_told_that_it_is_ignored(machine):
+    first = subprocess.Popen(command("jog", "y", "+", "--speed", "0.5"), stdout=subprocess.PIPE, text=True)
+    try:
+        while not re.search(r"y +ContinuousMotion", call("status").stdout):
+            assert first.poll() is None
+        second = call("jog", "y", "-", "--speed", "8", "--time", "5")
+        assert (second.exit_code, second.stdout) == (1, "")
+        assert "y: the jog is ignored: another client jogs the axis, or the machine is in free run" in second.stderr
+    finally:
+        first.send_signal(signal.SIGINT)
+        assert first.wait(timeout=30.0) == 0
+
+
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, folder):
     """Killed, or stalled, which no one but the watcher of the messages could notice."""

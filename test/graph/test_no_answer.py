@@ -9,7 +9,7 @@ from live_support import call
 
 from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
-from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient
+from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, integer_range
 
 
 @pytest.fixture
@@ -39,6 +39,22 @@ def test_a_command_without_an_answer_may_have_been_carried_out(client, words, se
         f"P-ERR-26136 axis x: {words[0]}: no answer within {seconds:g} s; "
         "whether it was carried out is not known, see `cnc_ptp status`\n"
     )
+
+
+@pytest.mark.parametrize("value", [258, -1, 99999999999999999999999])
+def test_an_integer_that_its_field_does_not_hold_is_not_sent(client, value):
+    """ROS would wrap it round: 258 is type 2."""
+    done = call("do", "x", "set_override_type", f"type={value}")
+    text = f"axis x: set_override_type refused: type = {value} is not within 0 … 255; nothing was sent"
+    assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"P-ERR-22001 {text}\n")
+
+
+@pytest.mark.parametrize(
+    ("unsigned", "bits", "limits"),
+    [(True, 8, (0, 255)), (False, 8, (-128, 127)), (True, 64, (0, 18446744073709551615))],
+)
+def test_ranges_of_integers(unsigned, bits, limits):
+    assert integer_range(unsigned, bits) == limits
 
 
 def test_a_unit_without_blocks_has_no_data(client):

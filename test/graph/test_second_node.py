@@ -13,8 +13,11 @@ import rclpy
 from graph_support import TIMEOUT, Running, nodes_of, one_axis_machine, run, verified
 
 from cnc_ptp import msg
+from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import process
-from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS, block_topic
+from cnc_ptp.nodes.clock import ClockNode
+from cnc_ptp.nodes.topics import BLOCKS, REMEMBERED_BLOCKS, REPORT, block_topic
+from cnc_ptp.parameters import read_machine
 
 
 @pytest.fixture
@@ -96,6 +99,19 @@ def test_a_recording_is_not_played_to_nodes_that_nobody_supervises(one_axis, ros
     assert "published" in run("replay", tmp_path / "run.mcap", "--publish").stdout
 
 
+def test_a_second_clock_during_the_run_is_refused(one_axis):
+    graph = Running(one_axis, "--duration", "600", "--composed")
+    try:
+        second = [sys.executable, "-m", "cnc_ptp.nodes.clock", one_axis]
+        done = subprocess.run(second, capture_output=True, text=True, timeout=TIMEOUT, check=False)
+        text = "P-ERR-26109 another clock is on this ROS domain; this one ends, nothing was started\n"
+        assert (done.returncode, done.stderr) == (1, text)
+        graph.process.send_signal(signal.SIGTERM)
+        assert "lost 0, computed twice 0" in graph.finish(expect=1)
+    finally:
+        graph.end()
+
+
 def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path):
     recording = tmp_path / "run.mcap"
     scenario = tmp_path / "move.yaml"
@@ -123,15 +139,25 @@ def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path)
 def test_the_clock_does_not_start_with_two_nodes_of_a_unit_on_two_computers(one_axis):
     """A claim does not reach other computers; their publishers are seen all the same."""
     process.initialise()
-    elsewhere = rclpy.create_node("x", namespace="/elsewhere", enable_rosout=False)
-    elsewhere.create_publisher(msg.AxisBlock, f"/{block_topic('x')}", REMEMBERED_BLOCKS)
+    clock = ClockNode(read_machine(str(one_axis)))
+    nodes = [rclpy.create_node("x", namespace=place, enable_rosout=False) for place in ("/", "/elsewhere")]
+    for one in nodes:
+        one.create_publisher(msg.AxisBlock, f"/{block_topic('x')}", REMEMBERED_BLOCKS)
+    report = nodes[0].create_publisher(msg.BlockReport, REPORT, BLOCKS)
+    executor = process.EventsExecutor()
+    executor.add_node(clock)
     try:
-        done = run("run", one_axis, "--duration", "1", expect=1)
+        with pytest.raises(CncError) as refused:
+            for source in ("x", "plc") * 100:
+                report.publish(msg.BlockReport(source=source, first_cycle=-1))
+                executor.spin_once(timeout_sec=0.05)
+                clock.advance()
     finally:
-        elsewhere.destroy_node()
+        for one in (clock, *nodes):
+            one.destroy_node()
+        executor.shutdown()
         rclpy.try_shutdown()
-    assert (
+    assert str(refused.value) == (
         "P-ERR-26140 2 nodes have the unit 'x' (/elsewhere/x and /x); the clock ends, nothing was started. "
-        "End all but one of them" in done.stderr
+        "End all but one of them"
     )
-    assert "nothing has moved yet" in done.stdout
