@@ -104,10 +104,10 @@ class ClockNode(Node):
         return (self._started_at or 0.0) + self._first_cycle // self._count * self._block_time
 
     def _start_when_ready(self) -> None:
-        if self.count_publishers(self._publisher.topic_name) > 1:
-            raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
         if not self._expected <= self._ready:
             return
+        if self.count_publishers(self._publisher.topic_name) > 1:
+            raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
         self._require_one_node_each()
         if self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR}):
             if not self._free_run:

@@ -99,19 +99,6 @@ def test_a_recording_is_not_played_to_nodes_that_nobody_supervises(one_axis, ros
     assert "published" in run("replay", tmp_path / "run.mcap", "--publish").stdout
 
 
-def test_a_second_clock_during_the_run_is_refused(one_axis):
-    graph = Running(one_axis, "--duration", "600", "--composed")
-    try:
-        second = [sys.executable, "-m", "cnc_ptp.nodes.clock", one_axis]
-        done = subprocess.run(second, capture_output=True, text=True, timeout=TIMEOUT, check=False)
-        text = "P-ERR-26109 another clock is on this ROS domain; this one ends, nothing was started\n"
-        assert (done.returncode, done.stderr) == (1, text)
-        graph.process.send_signal(signal.SIGTERM)
-        assert "lost 0, computed twice 0" in graph.finish(expect=1)
-    finally:
-        graph.end()
-
-
 def test_a_second_node_during_the_run_is_refused(one_axis, ros_domain, tmp_path):
     recording = tmp_path / "run.mcap"
     scenario = tmp_path / "move.yaml"
