@@ -15,8 +15,8 @@ from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 
-ENDINGS = ("stop", "halt", "emergency_stop", "reset")
-"""Commands after which a unit that was stopped has done what it was told."""
+BEGINNINGS = ("move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "start", "mdi")
+"""Commands of which a stop before the end is a failure."""
 
 
 def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
@@ -24,7 +24,7 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
     with connected() as client:
         kind = client.require_unit(unit)
         arguments = read_arguments(kind, unit, command, words, arguments_of(kind, unit, command))
-        waiting = Waiting(client, unit, whole=command not in ENDINGS) if wait and kind != "plc" else None
+        waiting = Waiting(client, unit, whole=command in BEGINNINGS) if wait and kind != "plc" else None
         try:
             answer = client.ask(unit, command, arguments)
         except CncError as error:

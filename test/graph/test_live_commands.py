@@ -157,6 +157,7 @@ def test_a_motion_that_is_stopped_on_its_way_is_status_1(machine):
     assert call("do", "y", "halt", "--wait").exit_code == 0
     _, errors = waiting.communicate(timeout=30.0)
     assert (waiting.returncode, errors) == (1, "y: stopped before its end\n")
+    assert call("do", "y", "set_override", "100", "--wait").exit_code == 0  # which begins nothing
 
 
 def test_a_second_jog_is_told_that_it_is_ignored(machine):
