@@ -19,9 +19,9 @@ from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
 from cnc_ptp.commands.simulate import write
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording.writer import Recording
 
 LONG = 600.0

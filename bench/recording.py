@@ -10,9 +10,9 @@ from pathlib import Path
 from mcap.writer import CompressionType, Writer
 
 from bench.figures import Effort, Figure, Say, median_of, medians_of, stopwatch
-from cnc_ptp.machine.blocks import AxisBlock, Block, ChannelBlock, CycleTick, PlcBlock, SpindleBlock
+from cnc_ptp.plots.report import report_page
+from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
-from cnc_ptp.recording.report import report_page
 from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.verify import verify
 from cnc_ptp.recording.writer import Recording

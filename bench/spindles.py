@@ -14,11 +14,11 @@ import yaml
 from bench.figures import Effort, Figure, Say, stopwatch
 from bench.jobs import MACHINE
 from cnc_ptp.commands.simulate import write
-from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.writer import Recording
 
 CHANNELS = {"one": "x", "two": "z"}

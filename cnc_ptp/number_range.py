@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from cnc_ptp.machine.run_time import LONGEST_RUN
+from cnc_ptp.protocol.run_time import LONGEST_RUN
 
 
 class NumberRange(click.FloatRange):

@@ -21,9 +21,9 @@ from cnc_ptp.commissioning.circle_program import PLANES, CircleProgram, Turn, me
 from cnc_ptp.commissioning.circles import least_squares_circle
 from cnc_ptp.commissioning.roundness import CircleResult, evaluate_circle
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import ChannelBlock
 from cnc_ptp.plots.colours import BLUE, GREEN, GRID, INK, RED, SOFT, YELLOW
 from cnc_ptp.plots.sheet import LEFT, SMALL, Sheet, number
+from cnc_ptp.protocol.blocks import ChannelBlock
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
 

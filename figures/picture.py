@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cnc_ptp.machine.blocks import StatusBit
 from cnc_ptp.plots import over_time
 from cnc_ptp.plots.colours import BAND, BY_AXIS, SOFT
 from cnc_ptp.plots.over_time import (
@@ -32,6 +31,7 @@ from cnc_ptp.plots.sheet import (
     note,
     style_plot,
 )
+from cnc_ptp.protocol.axis_states import StatusBit
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
 

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import CommandRecord, Event, Severity
-from cnc_ptp.machine.commands import INTERNAL
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
@@ -17,6 +15,8 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.parameters.encoder import uses_feed_constant
 from cnc_ptp.plots.over_time import Column, Marker
 from cnc_ptp.plots.panels import UNIT_KINDS
+from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
+from cnc_ptp.protocol.commands import INTERNAL
 from cnc_ptp.recording.command_words import brief
 from cnc_ptp.recording.units import unit_of
 from figures.scenario_head import FigureError, FigureScenario

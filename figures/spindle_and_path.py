@@ -11,9 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cnc_ptp.machine.blocks import ChannelBlock, ChannelStateCode
 from cnc_ptp.plots.colours import BAND, BLUE, FAINT, GREEN
 from cnc_ptp.plots.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot
+from cnc_ptp.protocol.blocks import ChannelBlock
+from cnc_ptp.protocol.channel_states import ChannelStateCode
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
 from figures.spindle_states import stretches

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.plots.colours import BAND, FAINT, GREEN, PURPLE
 from cnc_ptp.plots.over_time import LABEL_LINE, draw_commands
 from cnc_ptp.plots.sheet import GAP, HEADER, SMALL, Sheet, draw_header, note, style_plot
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 from figures.picture import draw_panel, label_rows, shown_cycles
 from figures.run import Column, FigureRun
 from figures.scenario_head import FigureScenario

@@ -19,10 +19,10 @@ from cnc_ptp.axis.faults import (
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator, State
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import StatusBit
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import StatusBit
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 

@@ -16,11 +16,11 @@ from cnc_ptp.axis.faults import (
     VIRTUAL_AXIS,
 )
 from cnc_ptp.axis.ptp import Job
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
 from cnc_ptp.motion.profile import State
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 START = "compensation_start"
 

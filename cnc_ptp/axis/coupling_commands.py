@@ -27,11 +27,11 @@ from cnc_ptp.axis.faults import (
     UNKNOWN_MASTER,
 )
 from cnc_ptp.axis.flying_saw import FlyingSaw
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 GROUP = ("above", "master_stands", "master_lost")
 """What the PLC fills in."""

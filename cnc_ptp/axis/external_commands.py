@@ -16,8 +16,8 @@ from cnc_ptp.axis.faults import (
     EXTERNAL_NOT_ENABLED,
     NOT_READY,
 )
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 ENABLE = "external_enable"
 SETPOINTS = "external_setpoints"

@@ -8,9 +8,9 @@ from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import COMPENSATION_RUNS, NOT_READY
 from cnc_ptp.axis.ptp import Job
 from cnc_ptp.axis.ptp_commands import refuse_other_source
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.motion.limits import rounding
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 JOG = "jog"
 

@@ -8,7 +8,7 @@ from math import copysign
 from cnc_ptp.axis.axis import ROUNDING, Axis, Report
 from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST, TARGET_MISSED
 from cnc_ptp.axis.ptp import State
-from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
 """States that can end by themselves."""

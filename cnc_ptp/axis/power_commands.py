@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import ENABLE_REMOVED, STILL_MOVING
-from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 
 class PowerCommands:

@@ -15,9 +15,9 @@ from cnc_ptp.axis.faults import (
     START_BESIDE_EXTERNAL,
 )
 from cnc_ptp.axis.modulo import modulo_target
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.axis.two_stage import Request
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 REDIRECTABLE = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION, S.STOPPING)
 OVERRIDE_DECIMALS = 4

@@ -6,9 +6,9 @@ from math import inf, nan
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.motion import Limits
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
 
 MOVING = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION)
 

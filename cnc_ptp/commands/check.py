@@ -6,12 +6,12 @@ from pathlib import Path
 
 from rich.console import Console
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.commands.console import WRONG_INPUT, print_error
-from cnc_ptp.machine.blocks import Severity, event_note
 from cnc_ptp.machine.job import read_file
-from cnc_ptp.machine.program_check import ProgramCheck
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.protocol.blocks import Severity, event_note
 
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)

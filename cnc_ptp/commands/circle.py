@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
+from cnc_ptp.channel.program_check import NO_CHANNEL
 from cnc_ptp.commands.circle_page import circle_page
 from cnc_ptp.commands.circle_picture import circle_picture
 from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, circle_lines
@@ -21,11 +22,10 @@ from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_pr
 from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_PLANE, NOTHING_TO_COMPARE
 from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_circle
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Command
 from cnc_ptp.machine.job import check_program, read_file
-from cnc_ptp.machine.program_check import NO_CHANNEL
-from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.parameters import AxisParameters, MachineParameters, load_machine
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command
 
 DIRECTIONS = {"both": (False, True), "ccw": (False,), "cw": (True,)}
 FILE = "circle.nc"

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, current_names
-from cnc_ptp.machine.scenario import SWITCH_WORDS
+from cnc_ptp.plc.scenario import SWITCH_WORDS
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, Argument, Arguments, check_arguments, current_names
 
 SWITCHES = SWITCH_WORDS | {"true": True, "false": False}
 PATHS = ("file", "program")

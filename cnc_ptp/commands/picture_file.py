@@ -13,8 +13,8 @@ from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.colours import BLUE, GREEN, RED, YELLOW
+from cnc_ptp.plots.report import CONFIG, page_head
 from cnc_ptp.plots.svg import svg_text
-from cnc_ptp.recording.report import CONFIG, page_head
 
 KINDS = ("svg", "png", "html")
 COLOURS = (BLUE.set, RED.set, GREEN.set, YELLOW.set)

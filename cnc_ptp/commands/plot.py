@@ -10,10 +10,10 @@ from cnc_ptp.commands.picture_file import check_picture, picture_bytes, picture_
 from cnc_ptp.commands.report import program_of
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.recording_picture import Heading, draw_rows
+from cnc_ptp.plots.report import plots_page
+from cnc_ptp.plots.report_figures import time_range
 from cnc_ptp.recording.fields import chosen_rows, usual_rows
 from cnc_ptp.recording.reader import Recorded, read_recording
-from cnc_ptp.recording.report import plots_page
-from cnc_ptp.recording.report_figures import time_range
 from cnc_ptp.recording.rows import Row
 from cnc_ptp.recording.selection import NOT_RECORDED, selected
 from cnc_ptp.recording.statistics import axis_units, in_machine_order, torque_units

@@ -12,9 +12,9 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
 from cnc_ptp.machine.offline import Outputs
-from cnc_ptp.machine.unit_view import VIEWS, UnitView, view_of
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 
 PERIOD = 0.1
 SMALLEST_BAR = 10

@@ -8,8 +8,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cnc_ptp.commands.output_file import check_page, write_output
+from cnc_ptp.plots.report import report_page
 from cnc_ptp.recording.reader import Recorded, read_recording
-from cnc_ptp.recording.report import report_page
 from cnc_ptp.recording.selection import selected
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from rich.console import Console
 
+from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.machine.job import read_job
-from cnc_ptp.machine.program_report import cut_off_notes, time_lines
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import Job, Supervisor

@@ -9,12 +9,18 @@ from dataclasses import dataclass, field
 
 from rich.console import Console
 
+from cnc_ptp.channel.program_report import ProgramReport, cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.paths import keep_inputs
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.blocks import (
+from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.plc_unit import error_of
+from cnc_ptp.protocol.blocks import (
     AxisBlock,
     ChannelBlock,
     Command,
@@ -26,12 +32,6 @@ from cnc_ptp.machine.blocks import (
     event_note,
     keep_note,
 )
-from cnc_ptp.machine.job import read_file, read_job
-from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.plc_unit import error_of
-from cnc_ptp.machine.program_report import ProgramReport, cut_off_notes, time_lines
-from cnc_ptp.machine.wiring import PLC, build_units
-from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.writer import Recording
 
 

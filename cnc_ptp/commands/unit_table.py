@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from rich.console import Console
 from rich.table import Table
 
-from cnc_ptp.machine.unit_view import UnitView
+from cnc_ptp.protocol.unit_view import UnitView
 
 OLD = 1.0
 """Seconds after which data are marked: a machine in real time has new ones every few milliseconds."""

@@ -21,7 +21,7 @@ from cnc_ptp.commissioning.faults import (
     TOO_FEW_POINTS,
 )
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.csv_table import Fault, table_lines, table_names
+from cnc_ptp.plc.csv_table import Fault, table_lines, table_names
 
 SPEED_UNITS: Mapping[str, float] = {"deg/s": 1.0, "rpm": 6.0}
 """°/s."""

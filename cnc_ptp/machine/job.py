@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Command
-from cnc_ptp.machine.program_check import ProgramCheck
-from cnc_ptp.machine.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
+from cnc_ptp.protocol.blocks import Command
 
 UNREADABLE = 26110
 

@@ -4,25 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from cnc_ptp.machine.blocks import (
-    AxisBlock,
-    AxisStateCode,
-    Block,
-    Command,
-    CommandRecord,
-    CycleTick,
-    Event,
-    PlcBlock,
-    SpindleBlock,
-    StatusBit,
-)
-from cnc_ptp.machine.channel_unit import ChannelUnit
-from cnc_ptp.machine.plc_unit import at_rest
+from cnc_ptp.channel.channel_unit import ChannelUnit
+from cnc_ptp.channel.spindle_reports import held_by_override
 from cnc_ptp.machine.runner import UnitRunner
-from cnc_ptp.machine.spindle_reports import held_by_override
-from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.plc_unit import at_rest
+from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
+from cnc_ptp.protocol.blocks import AxisBlock, Block, Command, CommandRecord, CycleTick, Event, PlcBlock, SpindleBlock
+from cnc_ptp.protocol.unit import Unit
 
 STUCK_TIME = 10.0
 """Seconds for which nothing may happen at all while a program waits for something that nobody will give."""

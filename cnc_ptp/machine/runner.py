@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.axis.states import state_name
-from cnc_ptp.machine.axis_unit import AxisUnit
-from cnc_ptp.machine.blocks import (
-    AxisStateCode,
-    Block,
-    ChannelBlock,
-    ChannelStateCode,
-    Command,
-    CommandRecord,
-    CycleTick,
-    PlcBlock,
-    Severity,
-)
-from cnc_ptp.machine.spindle_unit import SpindleUnit
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.axis.axis_unit import AxisUnit
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
+from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 LIFE_SIGN = "plc"
 CLOCK = "clock"

@@ -6,15 +6,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import count
 
-from cnc_ptp.machine.axis_unit import AxisUnit
-from cnc_ptp.machine.blocks import EventValue, Severity
-from cnc_ptp.machine.channel_unit import ChannelUnit
-from cnc_ptp.machine.commands import sources_of
-from cnc_ptp.machine.plc_unit import PlcUnit
-from cnc_ptp.machine.scenario import Entry
-from cnc_ptp.machine.spindle_unit import SpindleUnit
-from cnc_ptp.machine.unit import Unit
+from cnc_ptp.axis.axis_unit import AxisUnit
+from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import EventValue, Severity
+from cnc_ptp.protocol.commands import sources_of
+from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 PLC = "plc"
 

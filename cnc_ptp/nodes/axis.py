@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from cnc_ptp import action
-from cnc_ptp.machine.axis_unit import AxisUnit
-from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Block, Command, StatusBit
+from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments
 from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
+from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
 
 MOVING = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.STOPPING)
 NOT_DONE = StatusBit.HAS_BEEN_STOPPED | StatusBit.ERROR

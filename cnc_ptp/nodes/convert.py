@@ -10,7 +10,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import (
+from cnc_ptp.protocol.blocks import (
     AxisBlock,
     Block,
     ChannelBlock,

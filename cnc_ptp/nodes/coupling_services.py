@@ -12,13 +12,13 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Command
-from cnc_ptp.machine.cam_file import parse_cam
-from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.machine.job import read_file
-from cnc_ptp.machine.unit import UPSTREAM_LOST
 from cnc_ptp.nodes.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
+from cnc_ptp.plc.cam_file import parse_cam
+from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.commands import COMMANDS
+from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
 NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 NOT_ANSWERED = 26143

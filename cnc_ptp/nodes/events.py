@@ -7,8 +7,8 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_rosout_default
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.nodes.topics import EVENT, EVENTS
+from cnc_ptp.protocol.blocks import Severity
 
 ROSOUT = "/rosout"
 """Absolute, as rcl has it."""

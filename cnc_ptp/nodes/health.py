@@ -6,20 +6,11 @@ from collections.abc import Iterator
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from cnc_ptp.axis.states import state_name
-from cnc_ptp.machine.blocks import (
-    AxisBlock,
-    AxisStateCode,
-    Block,
-    ChannelBlock,
-    ChannelStateCode,
-    Event,
-    PlcBlock,
-    Severity,
-    SpindleBlock,
-)
-from cnc_ptp.machine.unit import Unit
 from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
+from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, Event, PlcBlock, Severity, SpindleBlock
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording import node_figures as figures
 
 NEAR_LIMIT = 0.8

@@ -8,7 +8,7 @@ from typing import Any
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 
-from cnc_ptp.machine.blocks import Block, Command, CommandRecord
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord
 
 FEEDBACK_BLOCKS = 10
 """Blocks between two feedback messages."""

@@ -10,8 +10,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
-from cnc_ptp.machine.unit_view import VIEWS, UnitView, view_of
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
+from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 
 GONE = 5.0
 """Seconds without a block of any unit after which a machine counts as gone."""

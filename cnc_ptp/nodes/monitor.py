@@ -8,9 +8,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import Severity, command_note, error_note, event_note, keep_note
-from cnc_ptp.machine.program_report import ProgramReport
-from cnc_ptp.machine.unit_view import UnitView
+from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.nodes.latest_blocks import LatestBlocks
@@ -27,6 +25,8 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Severity, command_note, error_note, event_note, keep_note
+from cnc_ptp.protocol.unit_view import UnitView
 
 READY_PERIOD = 0.05
 SUPERVISOR = "supervisor"

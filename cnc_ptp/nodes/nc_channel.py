@@ -8,9 +8,8 @@ from typing import Any
 import click
 
 from cnc_ptp import action, msg
+from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
-from cnc_ptp.machine.channel_unit import ChannelUnit
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
@@ -18,6 +17,7 @@ from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
 
 
 class ChannelNode(UnitNode):

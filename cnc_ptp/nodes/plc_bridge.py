@@ -13,10 +13,7 @@ import click
 
 from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
-from cnc_ptp.machine.blocks import Block, Command, Severity
 from cnc_ptp.machine.job import read_job
-from cnc_ptp.machine.plc_unit import PlcUnit
-from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import PLC, build_unit, unit_kinds
 from cnc_ptp.nodes import arguments, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
@@ -28,6 +25,9 @@ from cnc_ptp.nodes.silence import SilentTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Block, Command, Severity
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118

@@ -19,7 +19,6 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
@@ -41,6 +40,7 @@ from cnc_ptp.nodes.topics import (
     recorded_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.recording.writer import Recording
 
 NOT_WRITABLE = 26113

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from cnc_ptp.machine.commands import Argument, Arguments
+from cnc_ptp.protocol.commands import Argument, Arguments
 
 RUN_OVER = 26115
 NOT_GIVEN = 1e300

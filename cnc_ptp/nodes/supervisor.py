@@ -16,7 +16,6 @@ import rclpy
 from cnc_ptp import srv
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
-from cnc_ptp.machine.blocks import Event, Severity
 from cnc_ptp.machine.gate import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
@@ -26,6 +25,7 @@ from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
 

@@ -15,11 +15,8 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
-from cnc_ptp.machine.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.machine.gate import CLOCK, BlockGate
 from cnc_ptp.machine.runner import UnitRunner
-from cnc_ptp.machine.unit import Unit
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.claim import claim_unit
@@ -46,6 +43,9 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
+from cnc_ptp.protocol.unit import Unit
 
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import get_type_hints
 
-from cnc_ptp.machine.blocks import AxisBlock, SpindleBlock
 from cnc_ptp.plots.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
+from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, SpindleBlock
 from cnc_ptp.recording.layout import Layout, Records, fixed_layout
 from cnc_ptp.recording.schemas import PRIMITIVES, Schema, load_schema
 

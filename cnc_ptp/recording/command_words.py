@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from cnc_ptp.machine.blocks import CommandRecord
+from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.units import unit_of, without_unit
 
 MAIN = {

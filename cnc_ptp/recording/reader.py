@@ -14,7 +14,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from cnc_ptp.machine.blocks import CommandRecord, Event, EventValue
+from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue
 from cnc_ptp.recording.bag import QOS
 from cnc_ptp.recording.layout import Layout, Records, fixed_layout
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import ChannelStateCode, Severity
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.node_figures import LATENESS_P50, LATENESS_P99, LOST_BLOCKS
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded

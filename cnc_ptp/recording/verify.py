@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Block, PlcBlock
+from cnc_ptp.protocol.blocks import Block, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import Recorded

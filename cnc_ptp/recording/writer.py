@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import (
+from cnc_ptp.protocol.blocks import (
     AxisBlock,
     Block,
     ChannelBlock,

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import (
     BAD_RATIO,
     COUPLED_ALREADY,

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from math import copysign
 
-from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
 from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
 from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stop_way
 from cnc_ptp.spindle.spindle import Spindle
-from cnc_ptp.spindle.states import SpindleMode
 
 
 class Jobs:

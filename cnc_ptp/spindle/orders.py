@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import AT_WORK, SLAVE_LOCKED
 from cnc_ptp.spindle.spindle import Spindle
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import ENABLE_REMOVED, STILL_TURNING
 from cnc_ptp.spindle.spindle import Spindle
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 
-from cnc_ptp.axis.states import AxisStateCode as S
-from cnc_ptp.axis.states import state_name
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
+from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle.faults import (
     AGAINST_PREFERRED_DIRECTION,
     BAD_OVERRIDE,
@@ -18,7 +19,6 @@ from cnc_ptp.spindle.faults import (
 from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.spindle import Spindle
-from cnc_ptp.spindle.states import SpindleMode
 from cnc_ptp.spindle.tool_limits import ToolLimits
 
 LIMIT_RANGES = {

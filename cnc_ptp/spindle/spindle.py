@@ -6,18 +6,18 @@ from collections.abc import Callable
 from math import copysign, inf
 from typing import NoReturn
 
-from cnc_ptp.axis.states import AxisStateCode as S
 from cnc_ptp.control.control_loop import State
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
 from cnc_ptp.spindle.job import Work
 from cnc_ptp.spindle.position_loop import PositionLoop
 from cnc_ptp.spindle.speed_ramp import plan_speed
 from cnc_ptp.spindle.speed_table import Motion, SpeedTable
-from cnc_ptp.spindle.states import SpindleMode
 from cnc_ptp.spindle.tool_limits import SpindleLimits, ToolLimits
 
 Report = Callable[[int, int, str], None]

@@ -12,10 +12,10 @@ from click.testing import CliRunner
 
 from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
+from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands.simulate import Result, print_summary
-from cnc_ptp.machine.blocks import Severity, command_note, event_note, keep_note
-from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import Severity, command_note, event_note, keep_note
 from cnc_ptp.recording.reader import read_recording
 
 ROOT = Path(__file__).parents[2]

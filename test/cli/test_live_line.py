@@ -6,8 +6,9 @@ import pytest
 from rich.console import Console
 
 from cnc_ptp.commands.progress import LiveLine, clock_text, line_text
-from cnc_ptp.machine.blocks import AxisStateCode, ChannelBlock
-from cnc_ptp.machine.unit_view import UnitView, view_of
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import ChannelBlock
+from cnc_ptp.protocol.unit_view import UnitView, view_of
 
 
 def axis(name, position=0.0, state="Standstill"):

@@ -7,10 +7,10 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
-from cnc_ptp.machine.blocks import Event
 from cnc_ptp.plots.over_time import Marker, label_rows
 from cnc_ptp.plots.panels import AXIS, SPINDLE
 from cnc_ptp.plots.recording_picture import OTHER, Heading, draw_rows, panel_of
+from cnc_ptp.protocol.blocks import Event
 from cnc_ptp.recording.fields import chosen_rows, quantity, usual_rows
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.rows import Line, Row

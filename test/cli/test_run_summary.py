@@ -5,13 +5,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands import run as command
 from cnc_ptp.commands.progress import RunProgress
 from cnc_ptp.commands.run import print_summary
-from cnc_ptp.machine.blocks import ChannelStateCode as C
-from cnc_ptp.machine.program_report import ProgramReport
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
 ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"

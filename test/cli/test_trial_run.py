@@ -10,9 +10,9 @@ import pytest
 from commands_support import MILL, changed_mill
 
 from cnc_ptp.commands.trial_run import run_trial
-from cnc_ptp.machine.blocks import Command
-from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from figure_support import CYCLE_TIME, SCENARIOS, head_and_scenario, run_of
 
-from cnc_ptp.axis.states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from figures.gear_ranges import ranges_of
 from figures.kinds import draw
 from figures.run import run_figure

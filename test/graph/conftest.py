@@ -1,13 +1,9 @@
-"""Makes graph_support importable and gives every test module a ROS domain of its own."""
+"""Gives every test module a ROS domain of its own."""
 
 import os
 import socket
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 FROM_OUTSIDE = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTDDS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS")
 

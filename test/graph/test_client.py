@@ -20,10 +20,11 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 from sensor_msgs.msg import JointState
 
 from cnc_ptp import action, msg
-from cnc_ptp.machine.blocks import AxisStateCode, ChannelStateCode
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.topics import BLOCKS, DIAGNOSTICS, EVENTS, JOINT_STATES, PLC_INPUT
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.channel_states import ChannelStateCode
 
 UNHEARD_DURATION = 300
 """Seconds: longer than all tests need; the last test ends the run."""

@@ -7,7 +7,6 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import PlcBlock, Severity
 from cnc_ptp.nodes import convert, process, supervisor
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
@@ -15,6 +14,7 @@ from cnc_ptp.nodes.recorder import RecorderNode, require_writable
 from cnc_ptp.nodes.supervisor import Job, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import PlcBlock, Severity
 
 UNITS = ("plc", "x", "y", "z", "c")
 """Of ptp.yaml."""

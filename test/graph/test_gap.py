@@ -9,11 +9,12 @@ from graph_support import PTP
 from rclpy.node import Node
 
 from cnc_ptp import msg
-from cnc_ptp.machine.blocks import AxisBlock, AxisStateCode, Command, PlcBlock
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.topics import BLOCKS, COMMAND, EVENT, EVENTS, TICK, block_topic
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import AxisBlock, Command, PlcBlock
 
 WATCHDOG = 0.2
 """s, of ptp.yaml"""

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from cnc_ptp.machine.blocks import Command, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes.health import Health
 from cnc_ptp.nodes.lateness import Lateness
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import Command, CycleTick, Event, PlcBlock, Severity
 
 CONFIG = Path(__file__).parents[2] / "config"
 PTP, MILL = CONFIG / "ptp.yaml", CONFIG / "mill.yaml"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.machine.commands import COMMANDS, INTERNAL
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import COMMANDS, INTERNAL
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "interfaces.md").read_text(encoding="utf-8")
 SPINDLES = (Path(__file__).parents[2] / "docs" / "spindles.md").read_text(encoding="utf-8")

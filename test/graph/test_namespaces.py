@@ -9,9 +9,9 @@ from graph_support import Running, command, one_axis_machine, run, states_equal,
 from rclpy.node import Node
 
 from cnc_ptp import msg, srv
-from cnc_ptp.machine.blocks import Severity
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.topics import BLOCKS, EVENTS
+from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.recording.reader import read_recording
 
 MOVES = {

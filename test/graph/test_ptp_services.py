@@ -7,8 +7,8 @@ from client_support import beside_composed_run
 from graph_support import PTP
 
 from cnc_ptp import msg
-from cnc_ptp.machine.commands import COMMANDS, OF_CHANNELS
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import COMMANDS, OF_CHANNELS
 
 NAN = math.nan
 QUICK = {"velocity": 2000.0, "acceleration": 5000.0, "deceleration": 5000.0, "jerk": 50_000.0}

@@ -4,9 +4,9 @@ import pytest
 import yaml
 
 from cnc_ptp import msg, srv
-from cnc_ptp.machine.commands import COMMANDS
 from cnc_ptp.nodes.requests import contradiction, given_arguments
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import COMMANDS
 
 
 def set_message_fields(message: object, values: dict[str, object]) -> None:

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from cnc_ptp.machine.blocks import ChannelBlock, Command, CycleTick, PlcBlock
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_unit, build_units
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleTick, PlcBlock
 
 CONFIG = Path(__file__).parents[2] / "config"
 PTP, MILL = CONFIG / "ptp.yaml", CONFIG / "mill.yaml"

@@ -10,10 +10,10 @@ import pytest
 from machine_support import MILL, PTP, ROOT, MachineBench
 
 from cnc_ptp.commands.replay import is_refused_coupling
-from cnc_ptp.machine.blocks import Command, CommandRecord
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Command, CommandRecord
 
 BRACKET = (ROOT / "examples" / "bracket.nc").read_text(encoding="utf-8")
 

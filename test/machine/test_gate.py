@@ -5,9 +5,9 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cnc_ptp.machine.blocks import Block, ChannelBlock, CycleTick, PlcBlock
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.wiring import Inputs
+from cnc_ptp.protocol.blocks import Block, ChannelBlock, CycleTick, PlcBlock
 
 INPUTS = Inputs(upstream=("plc",), feedback=("x", "y"))
 

@@ -2,10 +2,10 @@
 
 from machine_support import MILL
 
-from cnc_ptp.machine.blocks import Command, Severity
 from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.scenario import Entry
 from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import Command, Severity
 
 
 def test_state_changes_are_events() -> None:

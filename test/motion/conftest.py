@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import math
 import random
-import sys
 from collections.abc import Callable
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 
 from cnc_ptp.motion import Limits, Profile
 from cnc_ptp.motion.profile import Row
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 Reached = tuple[float, float, float]
 

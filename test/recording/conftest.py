@@ -1,12 +1,6 @@
-"""Makes the helper module of these tests importable (pytest runs in importlib mode)."""
-
-import sys
-from pathlib import Path
+"""Blocks of a machine as test data."""
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 from recording_support import Blocks
 
 

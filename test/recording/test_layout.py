@@ -11,7 +11,7 @@ from mcap.records import Schema as McapSchema
 from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import CommandRecord, Event
+from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.layout import Header, Layout, encode, fixed_layout, header_at, zero
 from cnc_ptp.recording.schemas import load_schema, parse_schema
 

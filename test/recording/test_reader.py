@@ -12,7 +12,7 @@ from mcap.writer import CompressionType, Writer
 from recording_support import MACHINE, Blocks, record
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import CommandRecord, Event
+from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, iter_messages, read_recording
 from cnc_ptp.recording.schemas import load_schema, parse_schema, schema_text

@@ -9,13 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recording_support import smooth_run, time_figure
 
-from cnc_ptp.machine.blocks import CommandRecord
 from cnc_ptp.plots.colours import BY_AXIS, DARK, INK, RED
+from cnc_ptp.plots.report import report_page
+from cnc_ptp.plots.report_figures import colour_of, path_figures
+from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.columns import STEPS, packed
 from cnc_ptp.recording.command_words import argument_words, brief, command_words
 from cnc_ptp.recording.reader import read_recording
-from cnc_ptp.recording.report import report_page
-from cnc_ptp.recording.report_figures import colour_of, path_figures
 from cnc_ptp.recording.rows import standing, time_rows
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cnc_ptp.machine.commands import COMMANDS
+from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.recording.command_words import argument_words
 from cnc_ptp.recording.reader import STATE_TYPES
 from cnc_ptp.recording.schemas import load_schema

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from recording_support import Blocks, record
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import PlcBlock
+from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.verify import Difference, ranges_text, state_topic, verify
 

@@ -13,7 +13,7 @@ from mcap_ros2.decoder import DecoderFactory
 from recording_support import MACHINE, record
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import Command, CommandRecord, CycleTick, Event, PlcBlock
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.schemas import load_schema
@@ -208,7 +208,7 @@ def test_killed_process_leaves_all_flushed_chunks(path):
         "    if (name, block.first_cycle) == ('s', 2290): recording.flush_if_due(0.6)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
-    folders = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
+    folders = os.pathsep.join(filter(None, sys.path))
     done = subprocess.run(
         [sys.executable, "-c", code, str(path)], env=os.environ | {"PYTHONPATH": folders}, check=False
     )

@@ -13,10 +13,10 @@ from machine_support import MachineBench
 from scipy.integrate import quad
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.blocks import AxisStateCode as S
-from cnc_ptp.machine.blocks import ChannelStateCode as C
 from cnc_ptp.machine.job import check_program
 from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
 UP = 18_000.0
 """°/s², up and down, of the example spindles."""

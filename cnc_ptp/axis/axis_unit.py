@@ -1,0 +1,229 @@
+"""The axis: chooses its setpoint source (PTP generator or channel path), closes the position loop, keeps its state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, ClassVar, cast
+
+from cnc_ptp.axis.axis import Axis
+from cnc_ptp.axis.axis_sources import MasterSource, PathSource
+from cnc_ptp.axis.compensation_commands import CompensationCommands
+from cnc_ptp.axis.coupling_commands import CouplingCommands
+from cnc_ptp.axis.external_commands import ExternalCommands
+from cnc_ptp.axis.faults import FOLLOWING_ERROR
+from cnc_ptp.axis.jog_commands import JogCommands
+from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
+from cnc_ptp.axis.power_commands import PowerCommands
+from cnc_ptp.axis.ptp import State
+from cnc_ptp.axis.ptp_commands import PtpCommands
+from cnc_ptp.axis.stop_commands import StopCommands
+from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
+from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.drives import Drive, make_drive
+from cnc_ptp.control.feedforward import CouplingLimits
+from cnc_ptp.parameters import AxisParameters
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import StatusBit
+from cnc_ptp.protocol.blocks import AxisBlock, Block, CycleTick, Severity
+from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
+
+Row = tuple[float | int, ...]
+"""One cycle: the fields of AxisBlock with a value per cycle."""
+FIELDS = 18
+Columns = list[Any]
+"""The same of many cycles, field by field."""
+
+
+class AxisUnit(Unit):
+    """One axis with its functions (cnc_ptp.axis), position controller and drive.
+
+    States (PLCopen): Disabled, Standstill, DiscreteMotion (PTP), ContinuousMotion (jogging, external setpoints, a slave
+    that was decoupled in motion), SynchronizedMotion (channel path, master axis), Stopping, ErrorStop.
+    The position loop is closed while powered or on a ramp.
+    """
+
+    kind: ClassVar[str] = "axis"
+
+    def __init__(
+        self,
+        parameters: AxisParameters,
+        *,
+        cycle_time: float,
+        drive: Drive | None = None,
+        axes: Mapping[str, AxisParameters] | None = None,
+    ) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `axes` of the machine."""
+        super().__init__(parameters.name)
+        self._axis = Axis(
+            parameters, cycle_time=cycle_time, report_error=self._report_error, report_warning=self._report_warning
+        )
+        self._monitoring = Monitoring(self._axis, cycle_time=cycle_time, report_warning=self._report_warning)
+        self._loop = ControlLoop(
+            parameters.control,
+            cycle_time=cycle_time,
+            limits=CouplingLimits(parameters.max_velocity, parameters.max_acceleration, parameters.jerk),
+            drive=drive or make_drive(parameters.control, cycle_time),
+        )
+        begin, length = self._axis.modulo_range
+        self._make_block = partial(
+            AxisBlock, modulo_begin=begin, modulo_length=length, torque_digits=self._loop.torque_digits
+        )
+        known = axes or {parameters.name: parameters}
+        self._path = PathSource(self._axis)
+        self._master = MasterSource(self._axis, axes=known, cycle_time=cycle_time)
+        self._commands = (
+            self,
+            PowerCommands(self._axis, actual_position=lambda: self._loop.position),
+            PtpCommands(self._axis),
+            StopCommands(self._axis),
+            JogCommands(self._axis),
+            CompensationCommands(self._axis),
+            ExternalCommands(self._axis),
+            CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
+            ControlCommands(self._loop, f"axis {parameters.name}"),
+        )
+
+    def _report_error(self, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, Severity.ERROR, error_id, text)
+
+    def _report_warning(self, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, Severity.WARNING, error_id, text)
+
+    @property
+    def master(self) -> str | None:
+        """The axis whose block of the same cycles is needed before this one's can be computed."""
+        return self._axis.coupling.master if self._axis.coupled and self._axis.coupling is not None else None
+
+    # commands
+
+    def handler(self, command: str) -> Handler:
+        """From the group of commands that has it."""
+        group = next(group for group in self._commands if hasattr(group, f"do_{command}"))
+        handler: Handler = getattr(group, f"do_{command}")
+        return handler
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> str | None:
+        """The watchdog: `source` has sent nothing in time; without its channel only an axis on the path stops."""
+        axis = self._axis
+        if axis.state in (S.ERROR_STOP, S.DISABLED):
+            return None
+        leads = axis.on_path or (axis.coupling is not None and axis.coupling.master == source)
+        if source in ("plc", "clock") or leads:
+            axis.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+        return None
+
+    def remaining_distance(self, cycle: int) -> float:
+        """What is left of the positioning in work at `cycle`, mm (deg), with its sign."""
+        job = self._axis.ptp.job
+        return 0.0 if job is None else job.target - self._axis.ptp.state(cycle)[0]
+
+    def lag_share(self, block: Block) -> float:
+        """See Unit."""
+        if not isinstance(block, AxisBlock) or block.state[-1] in (S.DISABLED, S.ERROR_STOP):
+            return 0.0
+        return self._loop.lag_share(block.set_position, block.set_velocity, block.actual_position[-1])
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
+        """Computes one block; follows its master, or the path of the channel among `inputs` that has the axis."""
+        first_cycle, count = tick
+        axis = self._axis
+        columns: Columns = [[] for _ in range(FIELDS)]
+        axis.advance(first_cycle)
+        self._follow(first_cycle, self._led(first_cycle, inputs), columns)
+        while len(columns[0]) < count:
+            cycle = first_cycle + len(columns[0])
+            axis.advance(cycle)
+            self._follow(cycle, axis.basic_motion(cycle, count - len(columns[0])), columns)
+        block = self._make_block(first_cycle, count, *cast(Any, columns))
+        warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
+        if warning is not None:
+            self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
+        block.master = axis.coupling.master if axis.coupling is not None else ""
+        block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
+        return block
+
+    def _led(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+        """Setpoints of a master or of a channel, none where the own generator moves the axis."""
+        axis = self._axis
+        if axis.carried is not None:
+            self._path.put_down(first_cycle, inputs)
+        if axis.coupled and not axis.on_path:
+            self._path.forbid(first_cycle, inputs)
+        if axis.coupled:
+            setpoints = self._master.setpoints(first_cycle, inputs)
+            if not axis.on_path:
+                return setpoints
+        return self._path.setpoints(first_cycle, inputs)
+
+    def _follow(self, first_cycle: int, setpoints: list[State], columns: Columns) -> None:
+        """Appends the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
+        axis = self._axis
+        done = 0
+        if setpoints and not self._master.watches_gantry:
+            if axis.state in MOVING_ALONE:
+                axis.advance_state(first_cycle)
+            if self._monitoring.undisturbed(first_cycle, setpoints):
+                done = self._undisturbed_cycles(first_cycle, setpoints, columns)
+        error_id = axis.error_id
+        for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
+            for column, value in zip(columns, self._cycle(cycle, setpoint), strict=True):
+                column.append(value)
+            if axis.error_id != error_id and not axis.coupled:
+                break
+
+    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], columns: Columns) -> int:
+        """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
+
+        Returns their number.
+        """
+        axis, loop = self._axis, self._loop
+        closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
+        control = loop.follow(setpoints, closed, watched=closed and loop.monitor.on)
+        actual_positions = control[0]
+        n = len(actual_positions)
+        if n == 0:
+            return 0
+        setpoints = setpoints[:n]
+        common = axis.common_bits(0) | self._control_bits
+        bits = [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
+        values: Columns = [
+            *zip(*setpoints, strict=True),
+            *control,
+            [axis.override_percent] * n,
+            [axis.state] * n,
+            bits,
+            [0] * n,
+        ]
+        for column, more in zip(columns, values, strict=True):
+            column += more
+        return n
+
+    @property
+    def _control_bits(self) -> int:
+        return int(StatusBit.FRICTION_COMPENSATION) if self._loop.friction.on else 0
+
+    def _cycle(self, cycle: int, base: State) -> Row:
+        axis, loop = self._axis, self._loop
+        setpoint = axis.superimposed(cycle, base)
+        actual_position = loop.position
+        if axis.state in MOVING_ALONE:
+            axis.advance_state(cycle)
+        self._path.watch(cycle, base[1])
+        setpoint = self._monitoring.watch(cycle, setpoint)
+        self._master.watch_gantry(cycle, setpoint, actual_position)
+        self._monitoring.watch_target(cycle, setpoint, actual_position)
+        closed = axis.powered or axis.moving(cycle)
+        if closed and axis.error_id == 0 and loop.too_far(setpoint):
+            axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
+        control = loop.step(setpoint, closed)
+        return (
+            *setpoint,
+            *control,
+            axis.override_percent,
+            axis.state,
+            axis.status_bits(cycle, setpoint, control.actual_position) | self._control_bits,
+            axis.error_id,
+        )

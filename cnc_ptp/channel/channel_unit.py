@@ -1,0 +1,502 @@
+"""The NC channel: takes commands and reports, follows the program sequence, makes setpoints for its axes.
+
+What happens in one block of cycles: `step` looks at what axes and spindles reported, sends the functions that came up,
+then `_fill` makes rows cycle by cycle: from the path while a motion runs, standing ones while the program waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count as numbers
+from typing import ClassVar, NoReturn
+
+from cnc_ptp.channel.channel_rows import Prepared, Rows
+from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.program_check import ProgramCheck
+from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
+from cnc_ptp.channel.waits import Outputs
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.program import ModalState, Pairs, Program
+from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
+from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
+from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit, state_name
+from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
+
+NO_PROGRAM = 22003
+NOT_NOW = 22004
+AXIS_NOT_READY = 22005
+BAD_OVERRIDE = 22006
+NOTHING_TO_ACKNOWLEDGE = 22007
+STILL_MOVING = 22008
+NO_TEXT = 22009
+MEMBER_IN_ERROR = 22012
+AXIS_NOT_FOLLOWING = 22015
+NOT_ACKNOWLEDGED = 22016
+SPINDLE_REFUSED = 22018
+NOTHING_AWAITS_EVENT = 22020
+HELD_BY_OVERRIDE = 22024
+FEED_WITHHELD = 22026
+
+NOT_AT_END = "axis {} was moved away from the end of the path before"
+
+C = ChannelStateCode
+
+
+class ChannelUnit(Unit):
+    """One NC channel with its path axes and spindles."""
+
+    kind: ClassVar[str] = "channel"
+
+    def __init__(
+        self,
+        parameters: ChannelParameters,
+        *,
+        axes: Mapping[str, AxisParameters],
+        spindles: Mapping[str, SpindleParameters],
+        cycle_time: float,
+        request_numbers: Iterator[int] | None = None,
+        handshake_timeout: float = 0.0,
+    ) -> None:
+        """`axes` and `spindles` of the machine by node name, `cycle_time` in s.
+
+        `request_numbers`: numbers for handshake requests that no other channel of the machine uses.
+        `handshake_timeout`: s in which the PLC must have acknowledged them, 0 is for ever.
+        """
+        super().__init__(parameters.name)
+        self._parameters = parameters
+        self._axis_nodes = [axis.node for axis in parameters.axes]
+        self._motion = PathMotion(parameters, [axes[node] for node in self._axis_nodes], cycle_time)
+        functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
+        self._handshake_timeout = handshake_timeout
+        self._handshake_cycles = round(handshake_timeout / cycle_time)
+        self._sequence = ProgramSequence(self._motion, functions)
+        self._check = ProgramCheck(parameters, axes, spindles)
+        self._program: Program | None = None
+        self._prepared: Prepared | None = None
+        self._modal = ModalState()
+        """What an MDI text finds: the state that the one before has left, if that was carried out in full."""
+        self._modal_at_end: ModalState | None = None
+        self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
+        self._links: dict[int, Pairs] = {}
+        """Coupling groups that programs have defined; they stay for the next one."""
+        self._axis_states = {
+            node: AxisStateCode.STANDSTILL if axes[node].powered_at_start else AxisStateCode.DISABLED
+            for node in self._axis_nodes
+        }
+        self._commands_sent = 0
+        self._just_started = False
+        self._had_axes = False
+        """The block before was one of path motion: the axes are where its last setpoint has put them."""
+        self._given = self._motion.states
+        """The last setpoints of the block before."""
+        self._beside: list[str] = []
+        """Axes that a superposition has put beside the path, until the channel has taken over where they are."""
+        self._unfinished = False
+        """The program ended between the last cycle of the block before and the first of the next one."""
+        self._feedback: Mapping[str, Block] = {}
+        self._override_percent = min(100.0, parameters.max_override_percent)
+        self._feed_hold = False
+        self._withheld: list[str] = []
+        """Axes whose feed release the path waits for."""
+        self._element_begins = False
+        """The running element begins with the next block: what axes report is about the one before."""
+        self._held: Sequence[str] = ()
+        """What the program waited for because of override 0, in the block before."""
+        self._error_id = 0
+        self._apply_override()
+
+    def prepare(self, program: str, text: str) -> None:
+        """Parses and interprets before time matters what `load` and `start` then find ready. Raises ProgramError."""
+        parsed = parse_program(text, program)
+        modal = self._check.initial_state(self._feedback, self._links)
+        before = modal.copy()
+        blocks = self._check.blocks(parsed, self._motion.position, modal)
+        self._prepared = Prepared(text, parsed, self._motion.position, before, modal, blocks)
+
+    # commands
+
+    def do_load(self, cycle: int, *, program: str, text: str | None = None) -> None:
+        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
+        self._require_idle("load")
+        if text is None:
+            self._refuse("load", NO_TEXT, f"no text came with program '{program}'")
+        prepared = self._prepared is not None and self._prepared.text == text and self._prepared.program.file == program
+        self._program = self._prepared.program if prepared and self._prepared else parse_program(text, program)
+        self._sequence.source = NO_SOURCE
+
+    def do_start(self, cycle: int) -> None:
+        """Starts the program, which is interpreted as a whole first; or goes on after M00 or in single block."""
+        if self._sequence.phase is Phase.STOPPED:
+            self._sequence.resume()
+            return
+        self._require_idle("start")
+        if self._program is None:
+            self._refuse("start", NO_PROGRAM, "no program is loaded")
+        self._begin("start", self._program, self._check.initial_state(self._feedback, self._links))
+        self._sequence.end_couplings()
+
+    def do_mdi(self, cycle: int, *, text: str) -> None:
+        """Executes NC text at once; modal states are kept from one such text to the next."""
+        self._require_idle("mdi")
+        modal = self._modal.copy()
+        modal.spindle.gears = self._check.gears(self._feedback)
+        self._begin("mdi", parse_program(text, "mdi", mdi=True), modal)
+
+    def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
+        """Feed hold: the path goes to velocity 0 on its ramp, and on again when it is taken away."""
+        self._feed_hold = enabled
+        self._apply_override()
+
+    def do_set_override(self, cycle: int, *, percent: float) -> None:
+        """Path override, 0 … P-CHAN-00056 %; acts on feed and rapid."""
+        limit = self._parameters.max_override_percent
+        if not 0.0 <= percent <= limit:
+            self._refuse(
+                "set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... {limit:g} (P-CHAN-00056)"
+            )
+        self._override_percent = float(percent)
+        self._apply_override()
+
+    def do_single_block(self, cycle: int, *, enabled: bool) -> None:
+        """Single block: the channel stops after each block until `start`."""
+        self._sequence.single_block = enabled
+
+    def do_optional_stop(self, cycle: int, *, enabled: bool) -> None:
+        """Makes M01 a stop like M00 (off by default)."""
+        self._sequence.optional_stop = enabled
+
+    def do_reset(self, cycle: int) -> None:
+        """Aborts the program on the path ramp and clears the error; refused while an error ramp runs (22008).
+
+        The spindles that the channel has set turning stop, unless P-AXIS-00455 keeps them (TF5200 spindle 2.4.3).
+        """
+        if self._error_id:
+            if self._sequence.phase is Phase.RAMP_DOWN:
+                self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
+            self._error_id = 0
+        self._sequence.ramp_down(keep=self._turning_after_reset)
+
+    def do_acknowledge(self, cycle: int, *, id: int) -> None:
+        """The PLC's answer to a handshake request."""
+        open_requests = self._sequence.open_requests
+        if id not in open_requests:
+            waiting = ", ".join(map(str, sorted(open_requests))) or "none"
+            self._refuse("acknowledge", NOTHING_TO_ACKNOWLEDGE, f"no request {id} waits (waiting: {waiting})")
+        self._sequence.acknowledge(id)
+
+    def do_measuring_event(self, cycle: int) -> None:
+        """The event for which functions of type MNE_SNS wait; refused (22020) when the running block has none."""
+        if not self._sequence.measuring_event():
+            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> None:
+        """The watchdog: PLC, clock, an axis or a spindle has sent nothing in time; the path stops."""
+        self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+
+    def waits_for(self) -> str:
+        """What the program waits for that does not come with time alone; empty when it goes on by itself."""
+        what = self._sequence.waits_for()
+        return f"channel {self.name} waits in line {self._sequence.source.line} for {what}" if what else ""
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> ChannelBlock:
+        """Computes one block; `inputs` holds the blocks before of the channel's axes and spindles.
+
+        The first row is the state that the block before has led to, so that commands act from exactly there; one row
+        more than the block has leads on to the next one.
+        """
+        first_cycle, count = tick
+        self._read_feedback(first_cycle, inputs)
+        self._watch_handshake(first_cycle)
+        outputs = self._sequence.take_outputs(first_cycle)
+        has_axes = self._unfinished or self._sequence.phase is not Phase.IDLE
+        rows = Rows()
+        self._add(rows, [self._motion.point])
+        self._fill(rows, first_cycle, count + 1)
+        self._had_axes, self._given = has_axes, rows.axes[count - 1]
+        self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
+        if self._sequence.through and self._modal_at_end is not None:
+            self._modal, self._modal_at_end = self._modal_at_end, None
+        self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
+        return self._channel_block(tick, rows, outputs, path_active=has_axes)
+
+    def _channel_block(self, tick: CycleTick, rows: Rows, outputs: Outputs, *, path_active: bool) -> ChannelBlock:
+        count = tick.count
+        for command in outputs.commands:
+            self._commands_sent += 1
+            command.id = self._commands_sent
+        by_axis = [state for axis in zip(*rows.axes[:count], strict=True) for state in axis]
+        position, velocity, acceleration, jerk = map(list, zip(*by_axis, strict=True)) if by_axis else ([], [], [], [])
+        return ChannelBlock(
+            first_cycle=tick.first_cycle,
+            count=count,
+            path_active=path_active,
+            axes=self._axis_nodes,
+            set_position=position,
+            set_velocity=velocity,
+            set_acceleration=acceleration,
+            set_jerk=jerk,
+            line=rows.line[:count],
+            block_number=rows.block_number[:count],
+            path_velocity=rows.path_velocity[:count],
+            programmed_feed=rows.programmed_feed[:count],
+            override_percent=rows.override_percent[:count],
+            distance_to_go=rows.distance_to_go[:count],
+            state=rows.state[:count],
+            error_id=rows.error_id[:count],
+            done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._beside,
+            blocks_done=self._sequence.blocks_done,
+            blocks_total=len(self._sequence.blocks),
+            commands=outputs.commands,
+            requests=outputs.requests,
+        )
+
+    def _fill(self, rows: Rows, first_cycle: int, wanted: int) -> None:
+        """Adds rows up to `wanted`: the path's while a motion runs, standing ones while nothing can go on."""
+        while len(rows) < wanted:
+            if self._sequence.phase in (Phase.MOTION, Phase.RAMP_DOWN):
+                self._follow_path(rows, wanted - len(rows), first_cycle + len(rows))
+            elif not self._go_on(first_cycle, first_cycle + len(rows)):
+                self._motion.stand()
+                self._add(rows, [self._motion.point])
+
+    def _follow_path(self, rows: Rows, missing: int, cycle: int) -> None:
+        """Rows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
+        points = self._motion.follow(missing)
+        self._add(rows, points)
+        if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
+            self._sequence.motion_ended()
+            self._warn(cycle)
+
+    def _go_on(self, first_cycle: int, cycle: int) -> bool:
+        try:
+            goes_on = self._sequence.go_on(first_cycle)
+        except CncError as error:
+            source = self._sequence.source
+            self._fault(cycle, error.error_id, f"{error.message} in line {source.line} '{source.text}'")
+            return True
+        self._warn(cycle)
+        return goes_on
+
+    def _warn(self, cycle: int) -> None:
+        notes, self._sequence.notes = self._sequence.notes, []
+        for number, note in notes:
+            self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", self._sequence.source.line)
+
+    def _add(self, rows: Rows, points: Sequence[PathPoint]) -> None:
+        """Adds the cycles of `points`, all of the same phase and program line."""
+        count = len(points)
+        state = self._state_code()
+        held = state == C.RUNNING and self._motion.held
+        for axes, velocity, distance_to_go in points:
+            rows.axes.append(axes)
+            rows.path_velocity.append(velocity)
+            rows.distance_to_go.append(distance_to_go)
+            rows.state.append(C.HOLD if held and velocity == 0.0 else state)
+        rows.line += [self._sequence.source.line] * count
+        rows.block_number += [self._sequence.source.block_number] * count
+        rows.programmed_feed += [self._motion.feed] * count
+        rows.override_percent += [self._override_percent] * count
+        rows.error_id += [self._error_id] * count
+
+    def _state_code(self) -> ChannelStateCode:
+        """State of the channel; where feed hold or override 0 have brought the path to rest, HOLD replaces RUNNING."""
+        if self._error_id:
+            return C.ERROR
+        phase = self._sequence.phase
+        if phase is Phase.MOTION and self._motion.on_path:
+            return C.RUNNING
+        if phase is Phase.IDLE:
+            return C.IDLE if self._program is None else C.READY
+        return PHASE_STATES[phase]
+
+    def _begin(self, command: str, program: Program, modal: ModalState) -> None:
+        for node, state in self._axis_states.items():
+            if state != AxisStateCode.STANDSTILL:
+                self._refuse(
+                    command, AXIS_NOT_READY, f"axis {node} is in {state_name(state)}, it must be in Standstill"
+                )
+        for node in self._beside:
+            self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done")
+        for node in self.lost:
+            if node in self._axis_nodes or any(node == spindle.node for spindle in self._parameters.spindles):
+                self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
+        ready = self._ready(command, program, modal)
+        if ready is not None:
+            blocks, modal = ready.blocks, ready.modal_at_end
+        else:
+            blocks = self._check.blocks(program, self._motion.position, modal)
+        self._links = modal.spindle.links
+        self._modal = self._check.initial_state({}, self._links)
+        self._modal_at_end = modal if command == "mdi" else self._check.initial_state({}, self._links)
+        self._sequence.begin(blocks, program=command == "start")
+        self._just_started = True
+
+    def _ready(self, command: str, program: Program, modal: ModalState) -> Prepared | None:
+        """What was interpreted before, if it was from where things stand now."""
+        ready = self._prepared
+        if ready is None or command != "start" or ready.program is not program or ready.modal != modal:
+            return None
+        return ready if ready.start == self._motion.position else None
+
+    # override, feedback, faults
+
+    def _apply_override(self) -> None:
+        self._motion.set_factor(0.0 if self._feed_hold or self._withheld else self._override_percent / 100.0)
+
+    def _read_releases(self, cycle: int, inputs: Mapping[str, Block]) -> None:
+        """An axis on the path that may not go on in its direction holds the path, and is told of once an element.
+
+        An element that brakes for its end runs on; the next one is held if it goes in that direction, too.
+        """
+        withheld = [node for node in self._axis_nodes if self._had_axes and lacks_release(inputs.get(node))]
+        if withheld and (self._element_begins or not self._motion.can_be_held):
+            withheld = []
+        if withheld == self._withheld:
+            return
+        line = self._sequence.source.line
+        for node in withheld:
+            if node not in self._withheld:
+                text = f"the path stops in line {line} and waits for the feed release of axis {node}"
+                self.event(cycle, Severity.WARNING, FEED_WITHHELD, f"channel {self.name}: {text}", line)
+        self._withheld = withheld
+        self._apply_override()
+
+    def _read_feedback(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """Takes over what axes and spindles reported for the block before."""
+        self._feedback = inputs
+        self._read_releases(first_cycle, inputs)
+        if self._had_axes:
+            self._look_beside(first_cycle, inputs)
+        else:
+            self._take_axes(first_cycle, inputs)
+        self._just_started = False
+        in_use = self._had_axes or self._sequence.phase is not Phase.IDLE
+        for node, block in inputs.items():
+            if in_use:
+                self._check_member(first_cycle, node, block)
+            elif isinstance(block, SpindleBlock):
+                self._check_refused(first_cycle, node, block)
+        self._sequence.read(first_cycle, inputs)
+        self._warn(first_cycle)
+        self._tell_held(first_cycle)
+
+    def _tell_held(self, cycle: int) -> None:
+        """Where override 0 lets the program wait, which may be for ever: what it waits for, once."""
+        held = [f"{what}, which is held by override 0" for what in self._sequence.held_by_override(cycle)]
+        if self._path_held():
+            held.append("a path override above 0")
+        line = self._sequence.source.line
+        for what in dict.fromkeys(held):
+            if what not in self._held:
+                text = f"channel {self.name}: the program waits in line {line} for {what}"
+                self.event(cycle, Severity.WARNING, HELD_BY_OVERRIDE, text, line)
+        self._held = held
+
+    def _path_held(self) -> bool:
+        """The path stands within an element because of override 0 alone; a feed hold tells of itself."""
+        held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
+        return held and self._override_percent == 0.0 and not self._feed_hold
+
+    def _check_member(self, first_cycle: int, node: str, block: Block) -> None:
+        """Axes and spindles must be without error, and axes on the path that the block before gave them."""
+        if not isinstance(block, (AxisBlock, SpindleBlock)):
+            return
+        if block.error_id[-1]:
+            self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
+        elif isinstance(block, SpindleBlock):
+            self._check_refused(first_cycle, node, block)
+        elif self._had_axes and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
+            state = state_name(AxisStateCode(block.state[-1]))
+            self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
+
+    def _check_refused(self, first_cycle: int, node: str, block: SpindleBlock) -> None:
+        """A spindle has refused what this channel asked it for: it is at work for somebody else, for instance."""
+        source = f"{self.name}: "
+        refused = next((text for text in block.refused if text.startswith(source)), None)
+        if refused is not None:
+            self._fault(first_cycle, SPINDLE_REFUSED, f"{node} has refused a command, {refused.removeprefix(source)}")
+
+    def _watch_handshake(self, first_cycle: int) -> None:
+        """The PLC must acknowledge within P-MACH-00060."""
+        limit = self._handshake_cycles
+        request = self._sequence.overdue(first_cycle, limit) if limit else None
+        if request is not None:
+            function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
+            what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
+            waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
+            self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
+
+    def _look_beside(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """Finds the axes that are not where the path has put them; the next program begins where they are."""
+        self._beside = [
+            node
+            for node, given in zip(self._axis_nodes, self._given, strict=True)
+            if is_beside(inputs.get(node), given[0])
+        ]
+        if self._beside and self._just_started:
+            self._fault(first_cycle, AXIS_NOT_READY, NOT_AT_END.format(self._beside[0]))
+
+    def _take_axes(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+        """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""
+        self._beside = []
+        for index, node in enumerate(self._axis_nodes):
+            block = inputs.get(node)
+            if not isinstance(block, AxisBlock):
+                continue
+            state, position = AxisStateCode(block.state[-1]), block.set_position[-1]
+            if self._just_started and (state != AxisStateCode.STANDSTILL or position != self._motion.position[index]):
+                reason = f"axis {node} moved or was switched off while the program was started"
+                self._fault(first_cycle, AXIS_NOT_READY, reason)
+            self._axis_states[node] = state
+            self._motion.place(index, position)
+
+    def _fault(self, cycle: int, error_id: int, reason: str) -> None:
+        """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
+        if self._error_id:
+            return
+        idle = self._sequence.phase is Phase.IDLE
+        effect = "the path stops on its ramp and the program is aborted"
+        if idle:
+            effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
+        line = 0 if idle else self._sequence.source.line
+        self._error_id = error_id
+        self.event(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", line)
+        self._sequence.ramp_down()
+
+    def _require_idle(self, command: str) -> None:
+        if self._error_id:
+            self._refuse(command, NOT_NOW, f"the channel is in error P-ERR-{self._error_id}; reset it first")
+        if self._sequence.phase is not Phase.IDLE:
+            self._refuse(command, NOT_NOW, f"a program is running (line {self._sequence.source.line})")
+
+    def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
+        raise CncError(error_id, f"channel {self.name}: {command} refused: {reason}; nothing was changed")
+
+
+def is_beside(block: Block | None, position: float) -> bool:
+    """True for an axis that follows its path, but not at `position`."""
+    if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
+        return False
+    return block.set_position[-1] != position
+
+
+def lacks_release(block: Block | None) -> bool:
+    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.FEED_WITHHELD)
+
+
+PHASE_STATES = {
+    Phase.NEXT: C.RUNNING,
+    Phase.WAIT_GEAR: C.WAITING,
+    Phase.WAIT_END: C.WAITING,
+    Phase.MOTION: C.WAITING,
+    Phase.WAIT_BEFORE: C.WAITING,
+    Phase.WAIT_AFTER: C.WAITING,
+    Phase.STOPPED: C.STOPPED,
+    Phase.RAMP_DOWN: C.STOPPING,
+}
+"""State shown in each phase; MOTION without an element is a dwell."""

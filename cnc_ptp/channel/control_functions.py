@@ -1,0 +1,39 @@
+"""Feedforward and compensations of a program as commands for the nodes of axes and spindles.
+
+They are functions without synchronisation: they go out with the next block of cycles, and nothing waits for spindles.
+The next motion of the path begins in that block at the earliest, with what they have switched in the axes.
+"""
+
+from __future__ import annotations
+
+from cnc_ptp.nc.canonical import AxisFeedforward, ControlFunction, SpindleFeedforward
+from cnc_ptp.parameters import ChannelParameters
+from cnc_ptp.protocol.blocks import Command
+
+
+def control_commands(channel: ChannelParameters, function: ControlFunction) -> list[Command]:
+    """One command for each axis or spindle that the function concerns."""
+    if isinstance(function, AxisFeedforward):
+        return _axis_feedforward(channel, function)
+    if isinstance(function, SpindleFeedforward):
+        node = next(spindle.node for spindle in channel.spindles if spindle.name == function.spindle)
+        return [_set_feedforward(node, function.on, function.weight)]
+    node = next(axis.node for axis in channel.axes if axis.name == function.axis)
+    return [Command(node, "set_friction_compensation", {"enabled": function.on})]
+
+
+def reset_commands(channel: ChannelParameters) -> list[Command]:
+    """Program start: feedforward off and weights 100 % (TF5200 feedforward 3)."""
+    nodes = [axis.node for axis in channel.axes] + [spindle.node for spindle in channel.spindles if spindle.node]
+    return [Command(node, "reset_feedforward", {}) for node in nodes]
+
+
+def _axis_feedforward(channel: ChannelParameters, function: AxisFeedforward) -> list[Command]:
+    weights = dict(function.weights)
+    concerned = [axis for axis in channel.axes if function.on is not None or axis.name in weights]
+    return [_set_feedforward(axis.node, function.on, weights.get(axis.name)) for axis in concerned]
+
+
+def _set_feedforward(node: str, on: bool | None, weight: float | None) -> Command:
+    arguments = {"enabled": on, "weight_percent": weight}
+    return Command(node, "set_feedforward", {name: value for name, value in arguments.items() if value is not None})

@@ -1,0 +1,203 @@
+"""From NC text to the list of blocks that a channel will run: interpreted and vetoed before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import inf
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import (
+    AuxiliaryFunction,
+    CanonicalBlock,
+    CompensationSwitch,
+    Function,
+    Source,
+    SpindleCommand,
+    SpindleFunction,
+)
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
+from cnc_ptp.nc.lexer import column_of
+from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.program import ModalState, Pair, Pairs, Program, Spindle, SpindleTable
+from cnc_ptp.parameters import (
+    AxisParameters,
+    ChannelParameters,
+    ChannelSpindle,
+    MachineParameters,
+    SpindleParameters,
+    catalogue,
+)
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.protocol.blocks import Block, SpindleBlock
+from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
+
+SOFT_LIMIT_POSITIVE = 120002
+SOFT_LIMIT_NEGATIVE = 120003
+UNKNOWN_M_FUNCTION = 22011
+NO_FRICTION_COMPENSATION = 70495
+NO_CHANNEL = 26112
+
+
+class ProgramCheck:
+    """What a machine says to a program: soft limits, speeds that the spindles reach, M functions it knows."""
+
+    def __init__(
+        self,
+        channel: ChannelParameters,
+        axes: Mapping[str, AxisParameters],
+        spindles: Mapping[str, SpindleParameters],
+    ) -> None:
+        """`axes` and `spindles` of the machine by node name."""
+        self._channel = channel
+        self._axes = [axes[axis.node] for axis in channel.axes]
+        self._axis_names = tuple(axis.name for axis in channel.axes)
+        self._spindles = spindle_table(channel, spindles)
+        self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
+        self._units = spindles
+
+    @classmethod
+    def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
+        """For the first channel of a machine. Raises CncError 26112 when it has none to run `file`."""
+        if not machine.channels:
+            raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
+        return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
+
+    def errors(self, text: str, file: str) -> list[ProgramError]:
+        """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
+        return check(
+            text,
+            file,
+            self._axis_names,
+            self._spindles,
+            start=self.start,
+            check_target=self.target,
+            centre_offset=self._channel.circle_center_tolerance,
+            centre_offset_ratio=self._channel.circle_center_ratio,
+        ) or self._function_errors(text, file)
+
+    def _function_errors(self, text: str, file: str) -> list[ProgramError]:
+        try:
+            self.blocks(parse_program(text, file), self.start)
+        except ProgramError as error:
+            return [error]
+        return []
+
+    @property
+    def start(self) -> tuple[float, ...]:
+        """Start positions of the channel's axes, mm."""
+        return tuple(axis.start_position for axis in self._axes)
+
+    def initial_state(self, feedback: Mapping[str, Block], links: Mapping[int, Pairs]) -> ModalState:
+        """The modal state in which programs begin: gears as the spindles report them, coupling groups as defined."""
+        state = ModalState()
+        state.spindle.gears = self.gears(feedback)
+        state.spindle.links = dict(links)
+        return state
+
+    def gears(self, feedback: Mapping[str, Block]) -> dict[str, int]:
+        """Gear stages of the spindles that are not in the one of their start-up, by name."""
+        reported = {}
+        for spindle in self._spindles.spindles:
+            block = feedback.get(self._nodes[spindle.key])
+            if isinstance(block, SpindleBlock) and block.gear[-1] != spindle.gear:
+                reported[spindle.key] = block.gear[-1]
+        return reported
+
+    def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
+        """All blocks from `start` (mm, in the channel's order of axes). Raises ProgramError; then `state` is void."""
+        blocks = list(
+            interpret(
+                program,
+                tuple(start),
+                self._axis_names,
+                self._spindles,
+                state=state,
+                check_target=self.target,
+                centre_offset=self._channel.circle_center_tolerance,
+                centre_offset_ratio=self._channel.circle_center_ratio,
+            )
+        )
+        for block in blocks:
+            for function in block.before + block.after:
+                self._function(function, block.source)
+        return blocks
+
+    @property
+    def target(self) -> CheckTarget:
+        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""
+        return self._target
+
+    def _target(self, target: tuple[float, ...], source: Source) -> None:
+        for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
+            unit = "deg" if axis.rotary else "mm"
+            if position > axis.soft_limit_positive:
+                limit = f"positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
+                text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
+                raise ProgramError(SOFT_LIMIT_POSITIVE, text, source, 1)
+            if position < axis.soft_limit_negative:
+                limit = f"negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
+                text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
+                raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
+
+    def _function(self, function: Function, source: Source) -> None:
+        if isinstance(function, (SpindleFunction, SpindleCommand)):
+            self._position_known(function, source)
+        if isinstance(function, CompensationSwitch):
+            self._compensation(function, source)
+        elif not isinstance(function, AuxiliaryFunction):
+            return
+        elif function.letter == "M" and function.number not in self._channel.m_functions:
+            known = ", ".join(f"M{number}" for number in self._channel.m_functions)
+            text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
+            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, column_of(source, f"M{function.number}"))
+
+    def _compensation(self, function: CompensationSwitch, source: Source) -> None:
+        """Raises ProgramError 70495 where friction compensation is switched on that the axis does not permit."""
+        axis = self._axes[self._axis_names.index(function.axis)]
+        if function.on and not axis.control.friction.permitted:
+            reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
+            text = f"axis {function.axis}: {reason}"
+            raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))
+
+    def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
+        """A spindle without actual position can be neither positioned nor homed (TF5200 spindle 2.2.4)."""
+        spindle = self._units.get(self._nodes[function.spindle])
+        if spindle is None or spindle.has_position:
+            return
+        why = f"spindle {function.spindle} has no actual position (P-AXIS-00320, P-SIM-00050) and cannot be"
+        if isinstance(function, SpindleFunction) and function.m == 19:
+            raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
+        if isinstance(function, SpindleCommand) and function.command == "home":
+            raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
+
+
+def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:
+    """The spindles of a channel as its programs see them, the main spindle first."""
+    ordered = sorted(channel.spindles, key=lambda spindle: spindle.name != channel.main_spindle)
+    table = tuple(_spindle(spindle, spindles.get(spindle.node)) for spindle in ordered)
+    groups = catalogue().arrays["koppel_gruppe"].size
+    coupled = tuple(Pair(slave, master) for slave, master in channel.coupled)
+    return SpindleTable(table, channel.main_spindle or "S", channel.gear_change, coupled, groups)
+
+
+def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle:
+    return Spindle(
+        key=spindle.name,
+        own_name=spindle.own_name or spindle.name,
+        number=spindle.number,
+        ranges=spindle.ranges,
+        from_top=spindle.from_top,
+        automatic=spindle.automatic,
+        gear=unit.gear if unit else 1,
+        plc_control=spindle.plc_control,
+        limits=speed_limits(unit) if unit else (),
+    )
+
+
+def speed_limits(unit: SpindleParameters) -> tuple[float, ...]:
+    """Largest speed of each gear stage, rpm; without limit for stages without a record."""
+    gears = unit.gears
+    return tuple(
+        gears[stage].max_speed / DEG_S_PER_RPM if stage in gears else inf for stage in range(1, max(gears) + 1)
+    )

@@ -1,0 +1,43 @@
+"""What is told of the programs of the channels when a run has ended."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.protocol.blocks import WARNED
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+
+CUT_OFF = 26121
+"""Warning: a program was not through when the duration of the run was over."""
+
+
+@dataclass
+class ProgramReport:
+    """The program of one channel: cycles that it took so far, and where it is."""
+
+    cycles: int = 0
+    done: bool = True
+    line: int = 0
+    state: int = ChannelStateCode.IDLE
+
+    def add(self, block: Any) -> None:
+        """`block`: the next ChannelBlock, or its message."""
+        self.cycles += block.count if block.path_active else 0
+        self.done, self.line, self.state = block.done, block.line[-1], block.state[-1]
+
+
+def time_lines(programs: Mapping[str, ProgramReport], cycle_time: float) -> Iterator[str]:
+    """Program time, with several channels that of each; `cycle_time` in s."""
+    for name, program in programs.items():
+        channel = f" {name}:" if len(programs) > 1 else ""
+        yield f"program time{channel} {program.cycles * cycle_time:.3f} s"
+
+
+def cut_off_notes(programs: Mapping[str, ProgramReport], duration: float | None) -> Iterator[str]:
+    """A warning for each program that was not through when the `duration` (s) was over."""
+    for name, program in programs.items():
+        if duration is not None and not program.done:
+            where = f"in line {program.line}, state {ChannelStateCode(program.state).name}"
+            yield f"{WARNED}{CUT_OFF} channel {name}: --duration {duration:g} s has cut off the program {where}"

@@ -1,0 +1,120 @@
+"""Does a spindle do what a channel has told it? The answers from the block that it reports (TF5200 spindle 2.5).
+
+A report counts for the path only while the spindle carries out the command of the channel: one that stands because
+somebody else has stopped it has reached no speed.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import isclose, remainder
+
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.axis_states import state_name
+from cnc_ptp.protocol.blocks import SpindleBlock
+from cnc_ptp.protocol.spindle_states import SpindleBit, SpindleMode
+
+SAME_POSITION = 1e-3
+"""°"""
+
+
+class Condition(Enum):
+    """What a spindle has to report."""
+
+    NONE = ""
+    SPEED = "the speed of spindle {spindle}"
+    STANDSTILL = "the standstill of spindle {spindle}"
+    POSITION = "the position of spindle {spindle}"
+    GEAR = "gear {value} of spindle {spindle}"
+    MASTER = "the coupling of spindle {spindle} to {value}"
+
+
+TOLD = {
+    Condition.SPEED: "turn at {value:g} rpm",
+    Condition.STANDSTILL: "stop",
+    Condition.POSITION: "go to {value:g} deg",
+    Condition.GEAR: "change to gear {value}",
+}
+"""What the spindle was told."""
+
+
+def orders_wait(block: SpindleBlock) -> bool:
+    """Commands wait in the spindle; the one that is asked about may be among them."""
+    return bool(block.status_bits[-1] & SpindleBit.ORDERS_WAIT)
+
+
+def must_wait(block: SpindleBlock) -> bool:
+    """The path has to: commands wait in the spindle, or a gear is changed, after which its rotation goes on."""
+    return orders_wait(block) or block.gear_change_active[-1]
+
+
+def carries_out(block: SpindleBlock, condition: Condition, value: float, turn: float = 360.0) -> bool:
+    """The spindle does at the end of its block what it was told: on the way there, or there.
+
+    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, or gear stage.
+    """
+    state, mode = block.state[-1], block.mode[-1]
+    match condition:
+        case Condition.SPEED:
+            commanded = block.programmed_speed_rpm[-1]
+            return state == S.CONTINUOUS_MOTION and isclose(commanded, value, rel_tol=1e-9, abs_tol=1e-9)
+        case Condition.STANDSTILL:
+            return state != S.CONTINUOUS_MOTION
+        case Condition.POSITION if state == S.STANDSTILL:
+            away = remainder(block.target_position_deg[-1] - value, turn)
+            return mode == SpindleMode.POSITION and abs(away) <= SAME_POSITION
+        case Condition.POSITION:
+            return state in (S.DISCRETE_MOTION, S.HOMING)
+        case Condition.GEAR:
+            return block.gear[-1] == value
+    return True
+
+
+def is_there(block: SpindleBlock, condition: Condition) -> bool:
+    """The spindle reports speed, standstill or position, and nothing else comes first; a stop (M05) never waits."""
+    if condition is not Condition.STANDSTILL and must_wait(block):
+        return False
+    match condition:
+        case Condition.SPEED:
+            return bool(block.speed_reached[-1])
+        case Condition.STANDSTILL:
+            return bool(block.speed_zero[-1]) and block.state[-1] not in (S.HOMING, S.DISCRETE_MOTION)
+        case Condition.POSITION:
+            return bool(block.in_position[-1])
+    return True
+
+
+def held_by_override(block: SpindleBlock) -> bool:
+    """The spindle is on its way, and stands because of override 0."""
+    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
+        return False
+    turns_on = block.state[-1] == S.CONTINUOUS_MOTION
+    moves = turns_on or (block.state[-1] == S.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
+    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
+
+
+def stands(block: SpindleBlock, channel: str) -> bool:
+    """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is in work for `channel`."""
+    return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel
+
+
+def turns(block: SpindleBlock) -> bool:
+    """In endless rotation."""
+    return block.state[-1] == S.CONTINUOUS_MOTION
+
+
+def what_it_was_told(spindle: str, condition: Condition, value: float) -> str:
+    """For the text of an error or a warning."""
+    return f"spindle {spindle} does not {TOLD[condition].format(value=value)} as it was told"
+
+
+def what_it_does(block: SpindleBlock) -> str:
+    """What it does instead."""
+    state = block.state[-1]
+    if block.gear_change_active[-1]:
+        return "its gear is being changed"
+    if state == S.CONTINUOUS_MOTION:
+        return f"it was commanded to {block.programmed_speed_rpm[-1]:g} rpm"
+    if state == S.STANDSTILL and block.mode[-1] == SpindleMode.POSITION:
+        return f"it was commanded to {block.target_position_deg[-1]:g} deg"
+    return f"it is in {state_name(S(state))}"

@@ -1,0 +1,1 @@
+"""The PLC: scenario, commands to all units, master/slave groups, external setpoints and cam tables."""

@@ -1,0 +1,54 @@
+"""Files of external setpoints: CSV with the columns cycle, position, velocity, acceleration, direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from cnc_ptp.axis.external import Setpoint, read_setpoint
+from cnc_ptp.errors import CncError
+from cnc_ptp.plc.csv_table import table_lines
+
+BAD_SETPOINT_FILE = 25102
+COLUMNS = Setpoint._fields
+
+Row = list[float]
+"""One setpoint, in the order of COLUMNS."""
+
+
+def parse_setpoints(text: str, file: str) -> list[Row]:
+    """The rows of a file; mm, mm/s, mm/s² (deg). The columns stand in the first line, in any order; others are ignored.
+
+    Raises CncError 25102 with file, line and value.
+    """
+    rows: list[Row] = []
+    for number, values in table_lines(text, COLUMNS, partial(_fault, file)):
+        try:
+            row = _row(values)
+        except ValueError as error:
+            raise _fault(file, number, f"{error}") from None
+        if rows and row[0] <= rows[-1][0]:
+            reason = f"cycle {row[0]} comes after cycle {rows[-1][0]}; cycles must ascend"
+            raise _fault(file, number, reason)
+        rows.append(row)
+    if not rows:
+        raise _fault(file, 1, "no setpoint follows the first line")
+    return rows
+
+
+def _row(values: Sequence[str]) -> Row:
+    """Raises ValueError for what is no setpoint."""
+    cycle, position, velocity, acceleration, direction = values
+    row = [int(cycle), float(position), float(velocity), float(acceleration), int(direction)]
+    read_setpoint(row)
+    return row
+
+
+def _fault(file: str, line: int, reason: str) -> CncError:
+    return CncError(BAD_SETPOINT_FILE, f"setpoint file {file}:{line}: {reason}; nothing was started")
+
+
+def placed(rows: Sequence[Row], cycle: int) -> list[Row]:
+    """The rows of a file whose command acts at `cycle`: where they begin before it, they count from it on."""
+    shift = cycle if rows and rows[0][0] < cycle else 0
+    return [[row[0] + shift, *row[1:]] for row in rows]

@@ -1,0 +1,31 @@
+"""What the PLC does for spindles: it changes gears, and says which couplings may be (TF5200 spindle 2.8.2, 2.8.3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from cnc_ptp.protocol.blocks import Block, Command, SpindleBlock
+
+
+def spindle_answers(inputs: Mapping[str, Block], *, changes_gears: bool) -> Iterator[Command]:
+    """Answers to what the spindles have reported; `changes_gears`: gear changes are acknowledged at once."""
+    spindles = {name: block for name, block in inputs.items() if isinstance(block, SpindleBlock)}
+    if changes_gears:
+        yield from (Command(name, "gear_changed", {}) for name, block in spindles.items() if block.gear_request)
+    masters = {name: block.master for name, block in spindles.items() if block.master}
+    for name, block in spindles.items():
+        if block.master_wanted:
+            reason = why_no_coupling(name, block.master_wanted, masters, spindles)
+            if not reason:
+                masters[name] = block.master_wanted
+            yield Command(name, "coupling_answer", {"granted": not reason, "reason": reason})
+
+
+def why_no_coupling(slave: str, master: str, masters: Mapping[str, str], spindles: Mapping[str, SpindleBlock]) -> str:
+    """Empty when `slave` may follow `master`: a master must be there and be no slave, a slave no master."""
+    if master not in spindles:
+        return f"nothing comes from spindle {master}"
+    if master in masters:
+        return f"{master} is itself a slave of {masters[master]}"
+    slaves = [name for name, of_name in masters.items() if of_name == slave]
+    return f"{slave} is itself the master of {slaves[0]}" if slaves else ""

@@ -1,0 +1,1 @@
+"""What units hand each other: blocks, commands, states; and the base of all units."""

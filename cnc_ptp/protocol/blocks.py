@@ -1,0 +1,256 @@
+"""What units hand each other: one block per tick, field for field the messages of msg/.
+
+Per-cycle fields are lists of `count` values; the channel's setpoints are axis-major (axis index * count + cycle).
+Units: mm, s, deg and their derivatives; the .msg files say the rest.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from enum import IntEnum
+from math import isfinite
+from typing import Any, NamedTuple
+
+
+class Severity(IntEnum):
+    """Severity of an event (Event.msg)."""
+
+    INFO = 0
+    WARNING = 1
+    ERROR = 2
+
+
+@dataclass(slots=True)
+class Command:
+    """A command on its way to a unit (CommandRequest.msg); `arguments` is a JSON object."""
+
+    target: str
+    command: str
+    arguments: dict[str, Any] = field(default_factory=dict)
+    id: int = 0
+
+    @property
+    def arguments_json(self) -> str:
+        """The arguments as JSON; what JSON does not know (nan, inf) as text, which every unit refuses as well."""
+        try:
+            return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
+        except ValueError:
+            shown = {
+                name: value
+                if isinstance(value, str | int) or (isinstance(value, float) and isfinite(value))
+                else repr(value)
+                for name, value in self.arguments.items()
+            }
+            return json.dumps(shown, sort_keys=True, ensure_ascii=False)
+
+    @classmethod
+    def from_record(cls, record: CommandRecord) -> Command:
+        """The command that a record was made of; older ones name the file of a table besides."""
+        arguments = json.loads(record.arguments_json)
+        if "table" in arguments:
+            arguments.pop("file", None)
+        return cls(record.target, record.command, arguments, record.id)
+
+
+@dataclass(slots=True)
+class CommandRecord:
+    """A command carried out or refused at `cycle` (CommandRecord.msg)."""
+
+    cycle: int
+    target: str
+    command: str
+    arguments_json: str
+    accepted: bool
+    error_id: int
+    message: str
+    id: int = 0
+
+
+REFUSED, WARNED = "refused: P-ERR-", "warning: P-WARN-"
+
+
+def command_note(accepted: bool, error_id: int, message: str) -> str:
+    """What people should hear of a command: its refusal, or the warning with which it was carried out."""
+    if accepted:
+        return f"warning: {message}" if message else ""
+    return f"{REFUSED}{error_id} {message}"
+
+
+def error_note(error_id: int, text: str, cycle: int, line: int) -> str:
+    """An error as it is told at the end of a run: with its cycle, and the line of the NC program where there is one."""
+    where = f"cycle {cycle}, line {line}" if line else f"cycle {cycle}"
+    return f"P-ERR-{error_id} {text} ({where})"
+
+
+def event_note(severity: int, error_id: int, text: str) -> str:
+    """What people should hear of an event: warnings."""
+    return f"{WARNED}{error_id} {text}" if severity == Severity.WARNING else ""
+
+
+def keep_note(notes: list[str], note: str) -> None:
+    """Adds a note once. A refused command is an event too: it is told as refused, in whatever order the two come."""
+    if not note or note in notes or note.replace(WARNED, REFUSED, 1) in notes:
+        return
+    event = note.replace(REFUSED, WARNED, 1)
+    if event in notes:
+        notes.remove(event)
+    notes.append(note)
+
+
+class EventValue(NamedTuple):
+    """A number that an event tells of (EventValue.msg)."""
+
+    name: str
+    value: float
+    unit: str = ""
+
+
+@dataclass(slots=True)
+class Event:
+    """A state change, warning or error (Event.msg)."""
+
+    cycle: int
+    source: str
+    severity: int
+    error_id: int
+    text: str
+    line: int = 0
+    values: list[EventValue] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class HandshakeRequest:
+    """An M/S/T/D output of the channel that may wait for the PLC (HandshakeRequest.msg)."""
+
+    cycle: int
+    id: int
+    channel: str
+    kind: str
+    spindle: str
+    number: int
+    value: float
+    line: int
+    acknowledge_needed: bool
+    position: float = 0.0
+    direction: str = ""
+
+
+class CycleTick(NamedTuple):
+    """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
+
+    first_cycle: int
+    count: int  # type: ignore[assignment]  # tuple.count is not wanted here
+
+
+@dataclass(slots=True)
+class PlcBlock:
+    """PlcBlock.msg"""
+
+    first_cycle: int
+    count: int
+    life_sign: int = 0
+    scenario_done: bool = True
+    run_done: bool = False
+    run_failed: bool = False
+    commands: list[Command] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class ChannelBlock:
+    """ChannelBlock.msg"""
+
+    first_cycle: int
+    count: int
+    path_active: bool = False
+    axes: list[str] = field(default_factory=list)
+    set_position: list[float] = field(default_factory=list)
+    set_velocity: list[float] = field(default_factory=list)
+    set_acceleration: list[float] = field(default_factory=list)
+    set_jerk: list[float] = field(default_factory=list)
+    line: list[int] = field(default_factory=list)
+    block_number: list[int] = field(default_factory=list)
+    path_velocity: list[float] = field(default_factory=list)
+    programmed_feed: list[float] = field(default_factory=list)
+    override_percent: list[float] = field(default_factory=list)
+    distance_to_go: list[float] = field(default_factory=list)
+    state: list[int] = field(default_factory=list)
+    error_id: list[int] = field(default_factory=list)
+    done: bool = True
+    blocks_done: int = 0
+    blocks_total: int = 0
+    commands: list[Command] = field(default_factory=list)
+    requests: list[HandshakeRequest] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class AxisBlock:
+    """AxisBlock.msg"""
+
+    first_cycle: int
+    count: int
+    set_position: list[float]
+    set_velocity: list[float]
+    set_acceleration: list[float]
+    set_jerk: list[float]
+    actual_position: list[float]
+    actual_velocity: list[float]
+    following_error: list[float]
+    command_velocity: list[float]
+    feedforward_velocity: list[float]
+    additive_velocity: list[float]
+    additive_torque: list[float]
+    friction_current: list[float]
+    actual_torque: list[float]
+    feedforward_percent: list[float]
+    override_percent: list[float]
+    state: list[int]
+    status_bits: list[int]
+    error_id: list[int]
+    master: str = ""
+    target_velocity: float = 0.0
+    modulo_begin: float = 0.0
+    modulo_length: float = 0.0
+    torque_digits: float = 0.0
+    couples_actual: bool = False
+
+
+@dataclass(slots=True)
+class SpindleBlock:
+    """SpindleBlock.msg"""
+
+    first_cycle: int
+    count: int
+    set_speed_rpm: list[float]
+    actual_speed_rpm: list[float]
+    programmed_speed_rpm: list[float]
+    set_acceleration_deg_s2: list[float]
+    set_position_deg: list[float]
+    actual_position_deg: list[float]
+    target_position_deg: list[float]
+    distance_to_go_deg: list[float]
+    following_error_deg: list[float]
+    override_percent: list[float]
+    feedforward_percent: list[float]
+    drive_output: list[int]
+    mode: list[int]
+    gear: list[int]
+    speed_reached: list[bool]
+    speed_zero: list[bool]
+    in_position: list[bool]
+    referenced: list[bool]
+    gear_change_active: list[bool]
+    status_bits: list[int]
+    state: list[int]
+    error_id: list[int]
+    gear_request: int = 0
+    master: str = ""
+    master_wanted: str = ""
+    source: str = ""
+    plc_commands: int = 0
+    plc_acknowledged: int = 0
+    refused: list[str] = field(default_factory=list)
+    commands: list[Command] = field(default_factory=list)
+
+
+Block = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

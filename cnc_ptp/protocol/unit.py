@@ -1,0 +1,103 @@
+"""The base of all units: commands are checked, carried out or refused as a whole, and recorded; events collected."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, EventValue, Severity
+from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names
+
+Handler = Callable[..., str | None]
+
+UPSTREAM_LOST = 26101
+"""A unit that is needed has sent nothing within the watchdog time."""
+
+
+class Unit(ABC):
+    """A channel, axis, spindle or the PLC: changed by commands only, advanced by `step` block by block.
+
+    A handler `do_<command>(cycle, **arguments)` validates first and raises CncError to refuse; a text that it returns
+    is a warning that goes into the record. Nothing here knows processes, topics or clocks.
+    """
+
+    kind: ClassVar[str]
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.events: list[Event] = []
+        """Events since the last block; the harness takes them away."""
+        self.records: list[CommandRecord] = []
+        """Commands carried out or refused since the last block; the harness takes them away."""
+        self.sources: Collection[str] = ()
+        """Who may command a spindle; without them every name is taken."""
+        self.lost: set[str] = set()
+        """Sources that a watchdog has given up; their blocks count no more, even if they should come."""
+
+    @abstractmethod
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+        """Computes the cycles of `tick`.
+
+        `inputs`: by unit name, blocks of the same cycles from upstream units and of the cycles before from units that
+        only report back; a unit that is lost or has not computed yet is missing.
+        """
+
+    def command(self, command: Command, cycle: int) -> CommandRecord:
+        """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
+        error_id, message = 0, ""
+        try:
+            self._dispatch(command.command, command.arguments, cycle)
+        except CncError as error:
+            error_id, message = error.error_id, error.message
+            self.event(cycle, Severity.WARNING, error_id, message)
+        shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
+        record = CommandRecord(
+            cycle,
+            self.name,
+            command.command,
+            shown.arguments_json,
+            error_id == 0,
+            error_id,
+            message or self._warning,
+            command.id,
+        )
+        self.records.append(record)
+        return record
+
+    _warning = ""
+
+    def _dispatch(self, command: str, arguments: Mapping[str, Any], cycle: int) -> None:
+        self._warning = ""
+        arguments = current_names(self.kind, command, arguments)
+        check_command(self.kind, self.name, command, arguments, self.sources)
+        self._warning = self.handler(command)(cycle, **arguments) or ""
+        if command == "upstream_lost":
+            self.lost.add(arguments["source"])
+
+    def lag_share(self, block: Block) -> float:
+        """Following error at the end of a block just computed as a part of its limit; 0 while nothing limits it."""
+        return 0.0
+
+    def handler(self, command: str) -> Handler:
+        """What carries out a command that this kind of unit knows."""
+        handler: Handler = getattr(self, f"do_{command}")
+        return handler
+
+    def event(
+        self, cycle: int, severity: int, error_id: int, text: str, line: int = 0, values: Iterable[EventValue] = ()
+    ) -> None:
+        self.events.append(Event(cycle, self.name, severity, error_id, text, line, list(values)))
+
+    def take_events(self) -> list[Event]:
+        events, self.events = self.events, []
+        return events
+
+    def take_records(self) -> list[CommandRecord]:
+        records, self.records = self.records, []
+        return records
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name}>"

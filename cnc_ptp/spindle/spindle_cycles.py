@@ -1,0 +1,289 @@
+"""The cycles of a spindle's block: setpoint, actual values, monitoring, command to the drive."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from cnc_ptp.control.control_loop import State
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
+from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.orders import Orders
+from cnc_ptp.spindle.rotation_commands import RotationCommands
+from cnc_ptp.spindle.spindle import Spindle
+
+SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
+"""States that do not end by themselves."""
+(
+    POSITION_CONTROL,
+    VELOCITY_CONTROL,
+    MONITORING_ACTIVE,
+    MONITORING_INVALID,
+    OVERRIDE_SUPPRESSED,
+    STOP_AT_PROGRAM_END,
+    TOOL_LIMITS,
+    JOB_ERROR,
+    ORDERS_WAIT,
+) = map(int, SpindleBit)
+"""As plain numbers: operations on members of an IntEnum take microseconds."""
+FIELDS = 22
+Columns = list[Any]
+"""The fields of SpindleBlock with a value per cycle, in their order."""
+
+
+class SpindleCycles:
+    """Computes the cycles of one spindle; blocks in which nothing can happen take a shorter way."""
+
+    def __init__(self, spindle: Spindle, jobs: Jobs, orders: Orders, rotation: RotationCommands) -> None:
+        self._spindle = spindle
+        self._jobs = jobs
+        self._orders = orders
+        self._rotation = rotation
+
+    def block(self, first_cycle: int, count: int) -> Columns:
+        """All columns of a block."""
+        columns: Columns = [[] for _ in range(FIELDS)]
+        done = 0
+        long = not any(0.0 < patience < count for patience in (self._patience, self._position_patience))
+        if long and self._undisturbed(first_cycle, first_cycle + count - 1):
+            columns = self._undisturbed_cycles(first_cycle, count)
+            done = len(columns[0])
+        if done < count:
+            rows = [self._cycle(cycle) for cycle in range(first_cycle + done, first_cycle + count)]
+            for column, values in zip(columns, zip(*rows, strict=True), strict=True):
+                column += values
+        return columns
+
+    # any cycle
+
+    def _cycle(self, cycle: int) -> tuple[Any, ...]:
+        spindle = self._spindle
+        loop = spindle.loop
+        spindle.watch_loop(cycle, spindle.motion(cycle)[1])
+        position, speed, acceleration = spindle.motion(cycle)
+        actual_speed = loop.actual_speed(speed)
+        if spindle.work.job is not None:
+            self._jobs.advance(cycle, actual_speed)
+            position, speed, acceleration = spindle.motion(cycle)
+        elif speed == 0.0 and spindle.state == S.STOPPING:
+            spindle.state = S.STANDSTILL
+        actual = loop.actual_position(position, speed)
+        setpoint = position, speed, acceleration, 0.0
+        self._watch_following_error(cycle, setpoint)
+        reached = self._speed_reached(actual_speed)
+        self._watch_speed(cycle, reached)
+        self._jobs.hold(cycle, actual, actual_speed)
+        target = position if spindle.target is None else spindle.target
+        loop.command(setpoint, on=spindle.state != S.DISABLED)
+        self._orders.watch()
+        self._note_settled(cycle)
+        return (
+            speed / DEG_S_PER_RPM,
+            actual_speed / DEG_S_PER_RPM,
+            spindle.programmed_speed / DEG_S_PER_RPM,
+            acceleration,
+            position,
+            actual,
+            target,
+            target - position,
+            position - actual,
+            spindle.override_percent,
+            loop.feedforward_percent,
+            loop.drive_output,
+            spindle.mode,
+            spindle.gear.stage,
+            reached,
+            abs(actual_speed) <= spindle.gear.zero_speed,
+            spindle.holds_position and spindle.exact_stop.reached,
+            spindle.referenced,
+            spindle.work.changes_gear,
+            self._bits(),
+            spindle.state,
+            spindle.error_id,
+        )
+
+    def _watch_following_error(self, cycle: int, setpoint: State) -> None:
+        spindle, control = self._spindle, self._spindle.loop.control
+        if self._watched() and control.too_far(setpoint):
+            spindle.fault(cycle, FOLLOWING_ERROR, control.why_too_far(setpoint, "deg"))
+
+    def _watched(self) -> bool:
+        spindle = self._spindle
+        return not spindle.error_id and spindle.loop.watches(on=spindle.state != S.DISABLED)
+
+    def _speed_reached(self, actual_speed: float) -> bool:
+        """P-AXIS-00217: within the tolerance band around the wanted speed; for speed 0 the zero limit P-AXIS-00216.
+
+        A spindle that override 0 holds has not reached its speed.
+        """
+        spindle = self._spindle
+        wanted = spindle.wanted_speed
+        if wanted == 0.0:
+            held = spindle.state == S.CONTINUOUS_MOTION and spindle.programmed_speed != 0.0
+            return not held and abs(actual_speed) <= spindle.gear.zero_speed
+        return abs(actual_speed - wanted) <= spindle.parameters.speed_reached_band * abs(wanted)
+
+    @property
+    def _patience(self) -> float:
+        """P-MACH-00050 in cycles, 0 for ever."""
+        return self._spindle.parameters.speed_time / self._spindle.cycle_time
+
+    @property
+    def _position_patience(self) -> float:
+        """P-MACH-00014 in cycles, 0 for ever."""
+        return self._spindle.parameters.target_time / self._spindle.cycle_time
+
+    @property
+    def _awaits_speed(self) -> bool:
+        """The speed of the rotation is still to come, or 0 after a stop."""
+        spindle = self._spindle
+        return not spindle.speed_was_reached and spindle.state in (S.CONTINUOUS_MOTION, S.STANDSTILL)
+
+    def _watch_speed(self, cycle: int, reached: bool) -> None:
+        """Time monitoring: an error when the speed does not come, or does not come back (P-MACH-00050)."""
+        spindle = self._spindle
+        spindle.note_speed(cycle, reached)
+        if not self._awaits_speed:
+            return
+        patience = self._patience
+        held = spindle.wanted_speed == 0.0 and spindle.programmed_speed != 0.0
+        if held or not patience or spindle.cycles_without_speed(cycle) < patience:
+            return
+        wanted = spindle.wanted_speed / DEG_S_PER_RPM
+        seconds = f"{spindle.parameters.speed_time:g} s"
+        missing = f"was not reached {seconds} after the setpoint got there"
+        if spindle.speed_lost_at > -inf:
+            missing = f"was lost and has not come back for {seconds}"
+        limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
+        spindle.fault(cycle, SPEED_NOT_REACHED, f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)")
+
+    def _bits(self) -> int:
+        spindle = self._spindle
+        loop = spindle.loop
+        bits = POSITION_CONTROL if loop.closed and spindle.state != S.DISABLED else 0
+        if spindle.state == S.CONTINUOUS_MOTION:
+            bits |= MONITORING_ACTIVE
+        if loop.velocity_control:
+            bits |= VELOCITY_CONTROL
+        if not loop.measures_speed:
+            bits |= MONITORING_INVALID
+        if spindle.override_suppressed:
+            bits |= OVERRIDE_SUPPRESSED
+        if self._rotation.stops_at_program_end:
+            bits |= STOP_AT_PROGRAM_END
+        if spindle.has_tool_limits:
+            bits |= TOOL_LIMITS
+        if spindle.job_error:
+            bits |= JOB_ERROR
+        if self._orders.waiting:
+            bits |= ORDERS_WAIT
+        return bits
+
+    def _note_settled(self, cycle: int) -> None:
+        """Whether only commands and the following error can change anything from the next cycle on."""
+        spindle = self._spindle
+        spindle.unsettled = not (
+            spindle.state in SETTLED
+            and spindle.work.job is None
+            and spindle.finished(cycle)
+            and not self._awaits_speed
+            and (spindle.exact_stop.reached or not spindle.holds_position)
+            and not self._orders.source
+            and not self._orders.waiting
+            and not spindle.loop.waits_to_close(spindle.motion(cycle)[1], spindle.wanted_speed)
+        )
+
+    # cycles in which the spindle does nothing but go on
+
+    def _undisturbed(self, first_cycle: int, last_cycle: int) -> bool:
+        """True when only the following error can change state, mode or loop in these cycles."""
+        spindle = self._spindle
+        if not spindle.unsettled:
+            return True
+        if spindle.work.job is not None or self._orders.waiting:
+            return False
+        if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
+            return False
+        if self._patience_ends(last_cycle):
+            return False
+        limit = spindle.loop.undisturbed_speed
+        return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
+
+    def _patience_ends(self, last_cycle: int) -> bool:
+        """The time for a missing speed (P-MACH-00050) or position (P-MACH-00014) is over until `last_cycle`."""
+        spindle = self._spindle
+        late = bool(self._patience) and spindle.cycles_without_speed(last_cycle) >= self._patience
+        away_for = last_cycle - spindle.exact_stop.left_at
+        lost = 0.0 < self._position_patience <= away_for and spindle.holds_position
+        return (late and self._awaits_speed) or lost
+
+    def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
+        """The same as `_cycle` for such cycles; up to a following error too large."""
+        spindle = self._spindle
+        gear, state = spindle.gear, spindle.state
+        motions = spindle.motions(first_cycle, count)
+        actuals, actual_speeds, errors, outputs, percents = spindle.loop.cycles(
+            motions, on=state != S.DISABLED, watched=self._watched()
+        )
+        n = len(actuals)
+        positions, speeds, accelerations, _ = map(list, zip(*motions[:n], strict=True)) if n else ([], [], [], [])
+        target = spindle.target
+        reached = self._speeds_reached(actual_speeds)
+        columns = [
+            [speed / DEG_S_PER_RPM for speed in speeds],
+            [speed / DEG_S_PER_RPM for speed in actual_speeds],
+            [spindle.programmed_speed / DEG_S_PER_RPM] * n,
+            accelerations,
+            positions,
+            actuals,
+            [*positions] if target is None else [target] * n,
+            [0.0] * n if target is None else [target - position for position in positions],
+            errors,
+            [spindle.override_percent] * n,
+            percents,
+            outputs,
+            [spindle.mode] * n,
+            [gear.stage] * n,
+            reached,
+            [abs(speed) <= gear.zero_speed for speed in actual_speeds],
+            self._positions_reached(first_cycle, actuals, actual_speeds),
+            [spindle.referenced] * n,
+            [False] * n,
+            [self._bits()] * n,
+            [state] * n,
+            [spindle.error_id] * n,
+        ]
+        if not all(reached) or not spindle.speed_was_reached:
+            for cycle, there in enumerate(reached, first_cycle):
+                spindle.note_speed(cycle, there)
+        if spindle.unsettled and n:
+            self._settle(first_cycle + n - 1)
+        return columns
+
+    def _speeds_reached(self, actual_speeds: list[float]) -> list[bool]:
+        """`_speed_reached` of many cycles with the same wanted speed."""
+        wanted = self._spindle.wanted_speed
+        if wanted == 0.0:
+            return [self._speed_reached(speed) for speed in actual_speeds]
+        band = self._spindle.parameters.speed_reached_band * abs(wanted)
+        return [abs(speed - wanted) <= band for speed in actual_speeds]
+
+    def _positions_reached(self, first_cycle: int, actuals: list[float], actual_speeds: list[float]) -> list[bool]:
+        """Exact stop after a positioning, cycle by cycle; a position that is left is to be watched."""
+        spindle, target = self._spindle, self._spindle.target
+        if target is None or not spindle.holds_position:
+            return [False] * len(actuals)
+        motion = zip(actuals, actual_speeds, strict=True)
+        reached = [
+            spindle.note_position(cycle, target - actual, speed)
+            for cycle, (actual, speed) in enumerate(motion, first_cycle)
+        ]
+        spindle.unsettled |= not all(reached)
+        return reached
+
+    def _settle(self, last_cycle: int) -> None:
+        self._orders.watch()
+        self._note_settled(last_cycle)

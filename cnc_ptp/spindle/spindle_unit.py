@@ -1,0 +1,312 @@
+"""The spindle unit: takes commands in their order, closes the position loop, makes blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any, ClassVar
+
+from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, feedforward_warning
+from cnc_ptp.control.drives import Drive, make_drive
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import GearParameters, SpindleParameters
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
+from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
+from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
+from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
+from cnc_ptp.spindle.position_commands import PositionCommands
+from cnc_ptp.spindle.power_commands import PowerCommands
+from cnc_ptp.spindle.rotation_commands import RotationCommands
+from cnc_ptp.spindle.spindle import Spindle
+from cnc_ptp.spindle.spindle_cycles import SpindleCycles
+
+
+class SpindleUnit(Unit):
+    """One spindle with its functions (cnc_ptp.spindle), position loop and drive.
+
+    States (PLCopen): Disabled, Standstill, ContinuousMotion (M03, M04), Stopping (M05), DiscreteMotion (M19, way to the
+    change position), Homing (G74, automatic homing), ErrorStop. Speeds inside are °/s, + = M03.
+    """
+
+    kind: ClassVar[str] = "spindle"
+
+    def __init__(
+        self,
+        parameters: SpindleParameters,
+        *,
+        cycle_time: float,
+        drive: Drive | None = None,
+        spindles: tuple[str, ...] = (),
+    ) -> None:
+        """`cycle_time` in s; without `drive` the simulated one of the parameters is used; `spindles` of the machine."""
+        super().__init__(parameters.name)
+        self._given_drive = drive
+        self._cycle_time = cycle_time
+        self.spindle = Spindle(
+            parameters,
+            drive=self._make_drive(parameters.gears[parameters.gear], parameters.start_position),
+            make_drive=self._make_drive,
+            cycle_time=cycle_time,
+            report_error=partial(self._report, Severity.ERROR),
+            report_warning=partial(self._report, Severity.WARNING),
+        )
+        jobs = Jobs(self.spindle)
+        self._orders = Orders(self.spindle)
+        self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
+        self._rotation = RotationCommands(self.spindle, jobs)
+        self._power = PowerCommands(self.spindle)
+        self._groups = (
+            self,
+            self._rotation,
+            PositionCommands(self.spindle, jobs),
+            self._power,
+            self._coupling,
+            FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
+        )
+        self._cycles = SpindleCycles(self.spindle, jobs, self._orders, self._rotation)
+        self.next_order = 1
+        """Number of the next motion command."""
+        self._turned_down: tuple[int, CncError | None] = 0, None
+        self._passed_on: list[Command] = []
+        self._refused: list[str] = []
+
+    def _make_drive(self, gear: GearParameters, position: float) -> Drive:
+        plant = replace(gear.control.plant, start_position=position)
+        return self._given_drive or make_drive(replace(gear.control, plant=plant), self._cycle_time)
+
+    def _report(self, severity: Severity, cycle: int, error_id: int, text: str) -> None:
+        self.event(cycle, severity, error_id, text)
+
+    @property
+    def master(self) -> str | None:
+        """The spindle whose block of the same cycles is needed before this one's can be computed."""
+        return self._coupling.master or None
+
+    # commands
+
+    def command(self, command: Command, cycle: int) -> CommandRecord:
+        """As every unit; the source of a refused command finds the refusal in the next block."""
+        record = super().command(command, cycle)
+        source = command.arguments.get("source") or command.arguments.get("owner")
+        if not record.accepted and source and command.command != "upstream_lost":
+            self._refused.append(f"{source}: P-ERR-{record.error_id} {record.message}")
+        return record
+
+    def handler(self, command: str) -> Handler:
+        """Motion commands come in the order that `Orders` gives them; all others act at once."""
+        handler = self._group_handler(command)
+        return partial(self._ordered, command) if command in MOTION else handler
+
+    def _group_handler(self, command: str) -> Handler:
+        group = next(group for group in self._groups if hasattr(group, f"do_{command}"))
+        handler: Handler = getattr(group, f"do_{command}")
+        return handler
+
+    def _ordered(
+        self, command: str, cycle: int, *, source: str = "", own: bool = False, **arguments: Any
+    ) -> str | None:
+        """`own`: a stop that counts only while nobody else has commanded the spindle since."""
+        commander = self._orders.commander
+        if own and commander and commander != source:
+            self._orders.forget(source)
+            return (
+                f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
+            )
+        self._orders.check(command, source, self._coupling.master)
+        order = Order(command, arguments, source, self.next_order)
+        self.next_order += 1
+        if self._orders.must_wait(command, source):
+            self.spindle.require_ready(command)
+            message = self._waiting(order)
+            self._orders.add(order)
+        else:
+            message = self._carry_out(cycle, order)
+        self._orders.taken += source == PLC
+        return message
+
+    def _waiting(self, order: Order) -> str | None:
+        """PLC and people hear what their order waits for; in a program it is the order of things."""
+        if order.source not in ("", PLC):
+            return None
+        return f"P-WARN-{ORDER_WAITS} spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
+
+    def _carry_out(self, cycle: int, order: Order) -> str | None:
+        work = self.spindle.work
+        if order.command == "stop":
+            self._tell_lost_homings(cycle, "stop")
+            if order.source != self._orders.source:
+                self._tell_overtaken(cycle, "stop")
+        before, turned = work.job, self.spindle.state == S.CONTINUOUS_MOTION
+        message = self._group_handler(order.command)(cycle, **order.arguments)
+        if work.job is not None and work.job is not before:
+            work.job.number = order.number
+        if order.command == "stop":
+            self._orders.clear()
+        if self._has_effect(order.command, new_job=work.job is not before, turned=turned):
+            self._orders.begin(order.source)
+        if order.command in PASSED_ON:
+            source = {"source": order.source} if order.source else {}
+            self._passed_on.append(Command(self.name, order.command, {**order.arguments, **source}))
+        return message
+
+    def _tell_overtaken(self, cycle: int, by: str) -> None:
+        """For whom the PLC changes the gear hears that nothing goes on afterwards."""
+        source = self._orders.source
+        if not source or not self.spindle.work.gear_request:
+            return
+        text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
+        self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
+        self._refused.append(f"{source}: P-ERR-{GEAR_CHANGE_OVERTAKEN} {text}")
+
+    def _tell_lost_homings(self, cycle: int, by: str) -> None:
+        """A homing whose zero pulse has not come, and those that wait, do not take place: nobody waits for them."""
+        spindle, job = self.spindle, self.spindle.work.job
+        numbers = [job.number] if job is not None and job.homes else []
+        numbers += [order.number for order in self._orders.waiting if order.command == "home"]
+        reference = "the reference point of before counts" if spindle.referenced else "there is no reference point"
+        for number in numbers:
+            text = f"{by} before the zero pulse, homing (order {number}) is given up; {reference}"
+            self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
+
+    @staticmethod
+    def _has_effect(command: str, *, new_job: bool, turned: bool) -> bool:
+        """False for the gear in use and a speed at rest: they take the spindle away from nobody."""
+        if command == "select_gear":
+            return new_job
+        return command != "set_speed" or turned
+
+    def _take_turns(self, cycle: int) -> None:
+        """Commands whose turn has come act at the first cycle of a block, like all others."""
+        while (order := self._orders.next()) is not None:
+            if order.master_source is not None:
+                self._act_as_slave(cycle, order)
+                continue
+            try:
+                self._carry_out(cycle, order)
+            except CncError as error:
+                self._turned_down = order.number, error
+                self.event(cycle, Severity.WARNING, error.error_id, error.message)
+                if order.source:
+                    self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
+
+    def outcome(self, number: int) -> bool | None:
+        """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
+        job = self.spindle.work.job
+        in_work = job is not None and job.number == number
+        if in_work or any(order.number == number for order in self._orders.waiting):
+            return None
+        return self.spindle.work.last_done == number
+
+    def refusal(self, number: int) -> CncError | None:
+        """Why the last order that was refused in its turn was so, if it is this one."""
+        refused, error = self._turned_down
+        return error if refused == number else None
+
+    def do_power(self, cycle: int, *, enabled: bool) -> str | None:
+        """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""
+        if not enabled:
+            self._tell_overtaken(cycle, "power off")
+            self._orders.clear()
+            if self.spindle.work.gear_request:
+                self._passed_on.append(Command(self.name, "stop", {"homes": False}))
+        return self._power.do_power(cycle, enabled=enabled)
+
+    def do_reset(self, cycle: int) -> None:
+        """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
+        self._tell_lost_homings(cycle, "reset")
+        self._power.do_reset(cycle)
+        self._orders.clear()
+        self._passed_on.append(Command(self.name, "stop", {"homes": False}))
+
+    def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
+        """As CouplingCommands.do_decouple; what waits because the master was told so is forgotten."""
+        message = self._coupling.do_decouple(cycle, owner=owner)
+        if message is None:
+            self._orders.leave_master(self._coupling.owner)
+        return message
+
+    def do_upstream_lost(self, cycle: int, *, source: str) -> None:
+        """The watchdog: `source` (channel, PLC, clock or master) has sent nothing in time; the spindle stops."""
+        if can_follow(self.spindle):
+            self.spindle.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
+
+    def lag_share(self, block: Block) -> float:
+        """See Unit."""
+        loop = self.spindle.loop
+        if not isinstance(block, SpindleBlock) or not loop.watches(on=self.spindle.powered) or block.error_id[-1]:
+            return 0.0
+        set_values = block.set_position_deg, block.set_speed_rpm
+        return loop.control.lag_share(*set_values, block.actual_position_deg[-1], unit=DEG_S_PER_RPM)
+
+    # one block
+
+    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> SpindleBlock:
+        """Computes one block; a slave carries out first what its master does from this block on."""
+        first_cycle, count = tick
+        master = inputs.get(self._coupling.master)
+        if isinstance(master, SpindleBlock):
+            self._follow(first_cycle, master)
+        self._take_turns(first_cycle)
+        columns = self._cycles.block(first_cycle, count)
+        block = SpindleBlock(first_cycle, count, *columns)
+        warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
+        if warning is not None:
+            self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
+        block.gear_request = self.spindle.work.gear_request
+        block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
+        block.source = self._orders.source
+        block.plc_commands, block.plc_acknowledged = self._orders.taken, self._orders.acknowledged
+        block.refused, self._refused = self._refused, []
+        block.commands, self._passed_on = self._passed_on, []
+        return block
+
+    def _follow(self, cycle: int, master: SpindleBlock) -> None:
+        """Carries out what the master does; after an error of the master and without its power nothing waits."""
+        spindle = self.spindle
+        for command in master.commands:
+            if can_follow(spindle):
+                self._do_as_master(cycle, command)
+            elif spindle.state == S.DISABLED and command.command != "stop":
+                self._stays_behind(cycle, command)
+        if master.error_id[0] or master.state[0] == S.DISABLED:
+            self._orders.forget_master()
+            spindle.work.forget_rotation()
+        if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
+            reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
+            spindle.fault(cycle, MASTER_IN_ERROR, reason)
+
+    def _stays_behind(self, cycle: int, command: Command) -> None:
+        """A slave without power: who has commanded its master hears of it."""
+        reason = f"cannot carry out '{command.command}' of its master {self._coupling.master}"
+        text = f"spindle {self.name}: {reason}: the spindle is in Disabled; give it power first; nothing was changed"
+        self._report(Severity.ERROR, cycle, SLAVE_CANNOT, text)
+        if "source" in command.arguments:
+            self._refused.append(f"{command.arguments['source']}: P-ERR-{SLAVE_CANNOT} {text}")
+
+    def _do_as_master(self, cycle: int, command: Command) -> None:
+        """During a gear change of the slave the command waits; a stop forgets what waits."""
+        name, arguments = command.command, self._coupling.of_slave(command.arguments)
+        source = arguments.pop("source", "")
+        order = Order(name, arguments, "", master_source=source)
+        if self._orders.must_wait(name, ""):
+            self._orders.add(order)
+            return
+        if name == "stop":
+            self._tell_lost_homings(cycle, "stop")
+            self._orders.clear()
+        self._act_as_slave(cycle, order)
+
+    def _act_as_slave(self, cycle: int, order: Order) -> None:
+        """What the slave cannot do is an error."""
+        self._orders.obey(order)
+        try:
+            self._group_handler(order.command)(cycle, **order.arguments)
+        except CncError as error:
+            if can_follow(self.spindle):
+                reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {why_not(error)}"
+                self.spindle.fault(cycle, SLAVE_CANNOT, reason)

@@ -1,0 +1,213 @@
+"""Arguments, dynamics and soft limits of the commands of an axis, with the exact texts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from axis_states_support import DYNAMICS
+from machine_support import AXIS_COMMANDS, CYCLE_TIME, assert_axis_smooth, axis_bench
+
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+
+# ---------------------------------------------------------------- arguments
+
+
+TWO_STAGE = ("velocity", "target", "activation_position")
+BAD_NUMBERS: list[tuple[Any, str]] = [
+    (math.nan, "22001 axis x: {command} refused: {name} = nan is not finite; nothing was changed"),
+    (math.inf, "22001 axis x: {command} refused: {name} = inf is not finite; nothing was changed"),
+    (-math.inf, "22001 axis x: {command} refused: {name} = -inf is not finite; nothing was changed"),
+    (10**400, "22001 axis x: {command} refused: {name} = an integer that long is not finite; nothing was changed"),
+    ("5", "22001 axis x: {command} refused: {name} = '5' is not a number; nothing was changed"),
+    (True, "22001 axis x: {command} refused: {name} = True is not a number; nothing was changed"),
+    (None, "22001 axis x: {command} refused: {name} = None is not a number; nothing was changed"),
+    ([1.0], "22001 axis x: {command} refused: {name} = [1.0] is not a number; nothing was changed"),
+]
+NUMBERS = [
+    ("move_absolute", "target", {}),
+    ("move_relative", "distance", {}),
+    ("move_modulo", "position", {}),
+    ("set_override", "percent", {}),
+    ("new_target", "target", {}),
+    *[("new_velocity_and_target", name, {other: 1.0 for other in TWO_STAGE if other != name}) for name in TWO_STAGE],
+    *[("move_absolute", name, {"target": 1.0}) for name in DYNAMICS],
+]
+
+
+@pytest.mark.parametrize(("value", "text"), BAD_NUMBERS)
+@pytest.mark.parametrize(("command", "name", "others"), NUMBERS)
+def test_bad_numbers(command: str, name: str, others: dict[str, float], value: Any, text: str) -> None:
+    bench = axis_bench()
+    assert bench.refused(command, **others, **{name: value}) == "P-ERR-" + text.format(command=command, name=name)
+    bench.run(10)
+    assert bench.state == S.STANDSTILL and bench.column("status_bits")[-1] == 0
+
+
+@pytest.mark.parametrize("name", DYNAMICS)
+@pytest.mark.parametrize("value", [0.0, -1.0, 0, -0.0])
+def test_dynamics_must_be_above_0(name: str, value: float) -> None:
+    text = f"{name} = {value} must be greater than 0"
+    assert axis_bench().refused("move_absolute", target=1.0, **{name: value}) == (
+        f"P-ERR-23003 axis x: move_absolute refused: {text}; nothing was changed"
+    )
+
+
+@pytest.mark.parametrize("command", ["move_absolute", "move_relative", "move_modulo"])
+@pytest.mark.parametrize("name", ["acceleration", "deceleration", "velocity", "jerk"])
+@pytest.mark.parametrize("value", [1e-9, 1e-6, 1e12, 1e300])
+def test_absurd_dynamics_end_in_a_refusal_or_in_a_motion_without_steps(command: str, name: str, value: float) -> None:
+    """Never in an exception of the unit, and never beyond the limits of the axis."""
+    bench = axis_bench(modulo=True, modulo_high=360.0)
+    first = {"move_absolute": "target", "move_relative": "distance", "move_modulo": "position"}[command]
+    bench.give(command, **{first: 90.0, **DYNAMICS, name: value})
+    bench.run(300)
+    bench.give("set_override", percent=0.0001)
+    bench.run(300)
+    bench.give("new_velocity_and_target", velocity=1e-9, target=90.5, activation_position=1.0)
+    bench.run(300)
+    bench.give("stop")
+    bench.give("new_target", target=-90.0)
+    bench.run(300)
+    assert_axis_smooth(bench, acceleration=DYNAMICS["acceleration"], jerk=DYNAMICS["acceleration"] / CYCLE_TIME)
+
+
+@pytest.mark.parametrize("kind", [1, 2, 3, 4])
+@pytest.mark.parametrize("override", [0.0, 50.0])
+@pytest.mark.parametrize("name", ["acceleration", "deceleration", "velocity"])
+def test_dynamics_that_no_table_can_be_made_for_leave_no_job(name: str, kind: int, override: float) -> None:
+    bench = axis_bench(override_type=kind)
+    bench.accepted("set_override", percent=override)
+    assert bench.refused("move_absolute", target=1.0, **{name: 1e-300}) == (
+        f"P-ERR-23003 axis x: move_absolute refused: {name} = 1e-300 must be at least 1e-09; nothing was changed"
+    )
+    bench.run(10)
+    assert bench.state == S.STANDSTILL and bench.column("status_bits")[-1] == 0
+    assert set(bench.column("set_position")) == {0.0}
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments", "text"),
+    [
+        ("move_absolute", {}, "22001 axis x: move_absolute refused: argument 'target' is missing; nothing was changed"),
+        (
+            "move_absolute",
+            {"target": 1.0, "speed": 5.0},
+            "22001 axis x: move_absolute refused: unknown argument 'speed'; nothing was changed. Known: target, "
+            "velocity, "
+            "acceleration, deceleration, jerk",
+        ),
+        ("move_modulo", {}, "22001 axis x: move_modulo refused: argument 'position' is missing; nothing was changed"),
+        ("new_target", {}, "22001 axis x: new_target refused: argument 'target' is missing; nothing was changed"),
+        (
+            "emergency_stop",
+            {"deceleration": 1e4, "now": True},
+            "22001 axis x: emergency_stop refused: unknown argument 'now'; nothing was changed. Known: deceleration, jerk",
+        ),
+        (
+            "new_velocity_and_target",
+            {"velocity": 1.0, "target": 1.0},
+            "22001 axis x: new_velocity_and_target refused: argument 'activation_position' is missing; nothing was changed",
+        ),
+        ("halt", {"now": True}, "22001 axis x: halt refused: unknown argument 'now'; nothing was changed. Known: none"),
+        ("stop", {"now": True}, "22001 axis x: stop refused: unknown argument 'now'; nothing was changed. Known: none"),
+        ("power", {"enabled": 1}, "22001 axis x: power refused: enabled = 1 is not a switch; nothing was changed"),
+        (
+            "power",
+            {"enabled": "on"},
+            "22001 axis x: power refused: enabled = 'on' is not a switch; nothing was changed",
+        ),
+        (
+            "jump",
+            {},
+            "22002 axis x: unknown command 'jump'; nothing was changed. Known: " + AXIS_COMMANDS,
+        ),
+    ],
+)
+def test_what_an_axis_does_not_understand(command: str, arguments: dict[str, Any], text: str) -> None:
+    assert axis_bench().refused(command, **arguments) == f"P-ERR-{text}"
+
+
+# ---------------------------------------------------------------- velocity and soft limits
+
+
+def test_velocity_above_the_maximum_and_above_the_reference_velocity() -> None:
+    bench = axis_bench(max_velocity=2000.0, reference_velocity=1500.0)
+    assert bench.refused("move_absolute", target=1.0, velocity=2000.5) == (
+        "P-ERR-23004 axis x: move_absolute refused: velocity 2000.5 mm/s is above the maximum 2000.0 mm/s "
+        "(P-AXIS-00212); nothing was changed"
+    )
+    assert bench.refused("move_relative", distance=1.0, velocity=1500.5) == (
+        "P-ERR-23011 axis x: move_relative refused: velocity 1500.5 mm/s is above the reference velocity 1500.0 mm/s "
+        "(P-MACH-00008); nothing was changed"
+    )
+    assert bench.accepted("move_absolute", target=1.0, velocity=1500) == ""
+
+
+def test_rotary_axes_speak_of_degrees() -> None:
+    bench = axis_bench(rotary=True, max_velocity=360.0, reference_velocity=360.0)
+    assert "velocity 361.0 deg/s is above the maximum 360.0 deg/s" in bench.refused(
+        "move_absolute", target=1.0, velocity=361.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "argument", "text"),
+    [
+        (
+            "move_absolute",
+            {"target": 100.001},
+            "120002 {c}: target 100.001 mm lies beyond the positive soft limit 100.0 mm",
+        ),
+        (
+            "move_relative",
+            {"distance": 60.5},
+            "120002 {c}: target 100.5 mm lies beyond the positive soft limit 100.0 mm",
+        ),
+        (
+            "move_absolute",
+            {"target": -50.1},
+            "120003 {c}: target -50.1 mm lies beyond the negative soft limit -50.0 mm",
+        ),
+        (
+            "move_relative",
+            {"distance": -91},
+            "120003 {c}: target -51.0 mm lies beyond the negative soft limit -50.0 mm",
+        ),
+    ],
+)
+def test_soft_limits(command: str, argument: dict[str, float], text: str) -> None:
+    bench = axis_bench(soft_limit_negative=-50.0, soft_limit_positive=100.0, start_position=40.0)
+    number = "P-AXIS-00178" if "positive" in text else "P-AXIS-00177"
+    expected = text.format(c=f"axis x: {command} refused")
+    assert bench.refused(command, **argument) == f"P-ERR-{expected} ({number}); nothing was changed"
+    bench.run(10)
+    assert bench.state == S.STANDSTILL
+
+
+@pytest.mark.parametrize("target", [100.0, -50.0])
+def test_the_soft_limits_themselves_can_be_reached(target: float) -> None:
+    bench = axis_bench(soft_limit_negative=-50.0, soft_limit_positive=100.0)
+    bench.accepted("move_absolute", target=target)
+    bench.run(1000)
+    assert bench.column("set_position")[-1] == target
+
+
+@pytest.mark.parametrize("outside", [150.0, -80.0])
+def test_from_outside_the_soft_limits_only_inwards(outside: float) -> None:
+    bench = axis_bench(soft_limit_negative=-50.0, soft_limit_positive=100.0, start_position=outside)
+    bench.refused("move_relative", distance=10.0 if outside > 0.0 else -10.0)
+    bench.refused("move_absolute", target=outside * 0.9)
+    bench.accepted("move_absolute", target=20.0)
+    bench.run(1000)
+    assert bench.column("set_position")[-1] == 20.0
+
+
+@pytest.mark.parametrize("name", ["acceleration", "deceleration"])
+def test_an_acceleration_above_that_of_the_axis_is_refused(name: str) -> None:
+    bench = axis_bench(max_acceleration=50000.0)
+    assert bench.refused("move_absolute", target=5.0, **{name: 50000.5}) == (
+        f"P-ERR-23013 axis x: move_absolute refused: {name} 50000.5 mm/s² is above the maximum 50000.0 mm/s² (P-AXIS-00008); "
+        "nothing was changed"
+    )

@@ -1,0 +1,116 @@
+"""What a channel hears of its spindle when commands of others come in the very block of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from machine_support import CYCLE_TIME, UnitBench
+from spindle_support import two_gears
+
+from cnc_ptp.channel.spindle_reports import Condition
+from cnc_ptp.channel.spindle_watch import SpindleWatch
+from cnc_ptp.channel.waits import Wait
+from cnc_ptp.spindle.spindle_unit import SpindleUnit
+
+GEAR = "does not turn at {0} rpm as it was told, its gear is being changed"
+
+
+class Watched:
+    """A spindle with two gears that a channel watches."""
+
+    def __init__(self) -> None:
+        self.bench = UnitBench(SpindleUnit(two_gears(), cycle_time=CYCLE_TIME))
+        self.name = self.bench.unit.name
+        self.watch = SpindleWatch("channel")
+
+    def speed(self, speed_rpm: float, command: str = "start") -> None:
+        """The channel commands a speed, M3 or S."""
+        words = {"direction": "cw"} if command == "start" else {}
+        self.bench.accepted(command, source="channel", speed_rpm=speed_rpm, **words)
+        self.watch.note([Wait(self.name, Condition.SPEED, speed_rpm)], self.bench.cycle)
+
+    def hears(self, blocks: int, waited_for: tuple[str, ...] = (), *, runs: bool = True) -> Iterator[str]:
+        """Texts of the next blocks, without the name of the spindle."""
+        for _ in range(blocks):
+            self.bench.run(10)
+            reports = {self.name: self.bench.last}
+            texts = self.watch.read(self.bench.cycle, reports, waited_for, runs=runs)
+            yield from (text.removeprefix(f"spindle {self.name} ") for text in texts)
+
+
+def test_a_gear_change_in_the_block_of_m3() -> None:
+    """M3 came first and does not wait in the spindle: it has had its turn."""
+    watched = Watched()
+    watched.speed(1000.0)
+    watched.bench.accepted("select_gear", stage=2)
+    assert list(watched.hears(1)) == [GEAR.format(1000)] and list(watched.hears(50)) == []
+
+
+def test_m3_in_the_block_of_a_gear_change() -> None:
+    """M3 came second and waits."""
+    watched = Watched()
+    watched.bench.accepted("select_gear", stage=2)
+    watched.speed(1000.0)
+    assert list(watched.hears(50)) == []
+    watched.bench.accepted("gear_changed")
+    assert list(watched.hears(50)) == [] and watched.bench.last.speed_reached[-1]
+    watched.bench.accepted("select_gear", stage=1)
+    assert list(watched.hears(1)) == [GEAR.format(1000)]
+
+
+def test_commands_that_wait_from_the_block_of_m3_on() -> None:
+    """M3 is in work while they wait; the first of them begins when its speed is reached."""
+    watched = Watched()
+    watched.speed(1000.0)
+    for position in (90.0, 180.0):
+        watched.bench.accepted("orient", position_deg=position, source="plc")
+    assert list(watched.hears(10)) == []
+    assert list(watched.hears(20)) == ["does not turn at 1000 rpm as it was told, it is in DiscreteMotion"]
+
+
+def test_a_new_speed_that_waits_for_a_gear() -> None:
+    """The spindle has turned for the channel before: that its S waits does not make it turn."""
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(30)) == []
+    watched.bench.accepted("select_gear", stage=2)
+    watched.speed(2000.0, "set_speed")
+    assert list(watched.hears(1)) == [GEAR.format(2000)] and list(watched.hears(50)) == []
+
+
+def test_m3_after_m5_has_its_turn_to_wait_for() -> None:
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(30)) == []
+    watched.bench.accepted("stop", source="channel")
+    watched.watch.note([Wait(watched.name, Condition.STANDSTILL)], watched.bench.cycle)
+    assert list(watched.hears(30)) == []
+    watched.bench.accepted("select_gear", stage=2)
+    watched.speed(1000.0)
+    assert list(watched.hears(50)) == []
+
+
+def test_a_path_that_waits_hears_nothing() -> None:
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(5, (watched.name,))) == []
+    watched.bench.accepted("select_gear", stage=2)
+    assert list(watched.hears(5, (watched.name,))) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
+
+
+def test_a_program_hears_what_has_happened_before_it() -> None:
+    """Between two manual blocks; only the second one is told."""
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(30, runs=False)) == []
+    watched.bench.accepted("select_gear", stage=2)
+    assert list(watched.hears(5, runs=False)) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
+
+
+def test_nothing_is_heard_of_earlier_programs() -> None:
+    watched = Watched()
+    watched.speed(1000.0)
+    assert list(watched.hears(30)) == []
+    watched.watch.forget()
+    watched.bench.accepted("select_gear", stage=2)
+    assert list(watched.hears(50)) == []

@@ -1,7 +1,0 @@
-"""Makes the helper modules of these tests and of the machine tests importable (pytest runs in importlib mode)."""
-
-import sys
-from pathlib import Path
-
-for folder in ("machine", "control"):
-    sys.path.insert(0, str(Path(__file__).parents[1] / folder))

@@ -1,0 +1,221 @@
+"""Synthetic blocks for the tests of the recording: seeded random numbers, or a small machine that moves smoothly."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import plotly.graph_objects as go
+
+from cnc_ptp.plots.report_figures import rows_figure
+from cnc_ptp.protocol.blocks import (
+    AxisBlock,
+    Block,
+    ChannelBlock,
+    Command,
+    CommandRecord,
+    CycleTick,
+    Event,
+    HandshakeRequest,
+    PlcBlock,
+    SpindleBlock,
+)
+from cnc_ptp.recording.reader import Recorded
+from cnc_ptp.recording.rows import time_rows
+from cnc_ptp.recording.writer import Recording
+
+MACHINE = "/machine:\n  ros__parameters: {axes: [x, y, z], note: 'Fräse'}\n"
+EXTREMES = [0.0, -0.0, math.nan, math.inf, -math.inf, 5e-324, 1.7976931348623157e308]
+
+
+class Blocks:
+    """Random blocks; floats include NaN, infinities, signed zeros and the smallest and largest numbers."""
+
+    def __init__(self, seed: int) -> None:
+        self.random = random.Random(seed)
+
+    def floats(self, count: int) -> list[float]:
+        return [self.random.choice([*EXTREMES, self.random.uniform(-1e4, 1e4)]) for _ in range(count)]
+
+    def integers(self, count: int, bits: int) -> list[int]:
+        return [self.random.getrandbits(bits) for _ in range(count)]
+
+    def booleans(self, count: int) -> list[bool]:
+        return [self.random.random() < 0.5 for _ in range(count)]
+
+    def axis(self, first: int, count: int = 10) -> AxisBlock:
+        columns = [self.floats(count) for _ in range(15)]
+        return AxisBlock(first, count, *columns, *(self.integers(count, bits) for bits in (8, 32, 32)))
+
+    def spindle(self, first: int, count: int = 10) -> SpindleBlock:
+        columns = [self.floats(count) for _ in range(11)]
+        output = [value - 2**31 for value in self.integers(count, 32)]
+        modes = [self.integers(count, 8) for _ in range(2)]
+        flags = [self.booleans(count) for _ in range(5)]
+        last = [self.integers(count, bits) for bits in (32, 8, 32)]
+        return SpindleBlock(first, count, *columns, output, *modes, *flags, *last)
+
+    def channel(self, first: int, count: int = 10, axes: tuple[str, ...] = ("x", "y", "z")) -> ChannelBlock:
+        return ChannelBlock(
+            first,
+            count,
+            path_active=bool(axes),
+            axes=list(axes),
+            set_position=self.floats(count * len(axes)),
+            set_velocity=self.floats(count * len(axes)),
+            set_acceleration=self.floats(count * len(axes)),
+            set_jerk=self.floats(count * len(axes)),
+            line=self.integers(count, 32),
+            block_number=self.integers(count, 32),
+            path_velocity=self.floats(count),
+            programmed_feed=self.floats(count),
+            override_percent=self.floats(count),
+            distance_to_go=self.floats(count),
+            state=self.integers(count, 8),
+            error_id=self.integers(count, 32),
+            done=False,
+        )
+
+    def channel_with_commands(self, first: int, count: int = 10) -> ChannelBlock:
+        block = self.channel(first, count)
+        block.commands = [Command("s", "start", {"speed_rpm": 1000.0}, 7), Command("s", "stop", {}, 8)]
+        block.requests = [HandshakeRequest(first + 3, 5, "channel", "M", "s", 3, 0.0, 12, True)]
+        return block
+
+    def machine(self, count: int, axes: tuple[str, ...] = ("x", "y")) -> Iterator[tuple[str, Block]]:
+        """`count` blocks of a PLC, a channel, axes and a spindle."""
+        for first in range(0, 10 * count, 10):
+            yield "plc", PlcBlock(first, 10, first)
+            yield "channel", self.channel(first)
+            for axis in axes:
+                yield axis, self.axis(first)
+            yield "s", self.spindle(first)
+
+
+def record(path: Path, blocks: list[tuple[str, Block]], **options: float) -> None:
+    """A recording of the blocks with one event and one command."""
+    with Recording(path, MACHINE, **options) as recording:
+        recording.event(Event(3, "x", 1, 23001, 'x: Öl <niedrig> & "fällt"', 4))
+        recording.command(CommandRecord(0, "channel", "start", "{}", True, 0, ""))
+        for name, block in blocks:
+            if name == "plc":
+                recording.tick(CycleTick(block.first_cycle, block.count))
+            recording.block(name, block)
+
+
+SPEED = 2 * math.pi  # rad/s
+
+
+def smooth_run(path: Path, seconds: float = 2.0, *, axes: tuple[str, ...] = ("x", "y", "z"), text: str = "") -> None:
+    """A run as a machine would give it: a helix of radius 40 mm, the spindle runs up, some events and commands."""
+    with Recording(path, MACHINE) as recording:
+        count = round(seconds * 100)
+        for index in range(count):
+            first = 10 * index
+            recording.tick(CycleTick(first, 10))
+            recording.plc_block(PlcBlock(first, 10, index))
+            recording.channel_block("channel", _channel(first, count * 10))
+            for number, axis in enumerate(axes):
+                recording.axis_block(axis, _axis(first, number))
+            recording.spindle_block("s", _spindle(first))
+        for event in _events(text):
+            recording.event(event)
+        recording.command(CommandRecord(0, "channel", "load", '{"program": "bracket.nc"}', True, 0, ""))
+        recording.command(CommandRecord(10, "channel", "start", "{}", True, 0, text))
+        recording.command(
+            CommandRecord(900, "x", "move_absolute", '{"target": 9999.0}', False, 23010, "x: target 9999.0 mm; refused")
+        )
+
+
+def _events(text: str) -> list[Event]:
+    return [
+        Event(10, "channel", 0, 0, "program started"),
+        Event(500, "s", 1, 24010, f"spindle s: speed 980 rpm, limit 1000 rpm {text}", 12),
+        Event(1200, "y", 2, 23020, "axis y: following error 0.8 mm, limit 0.5 mm; the axis stops", 31),
+    ]
+
+
+def _axis(first: int, number: int) -> AxisBlock:
+    times = [(first + i) * 1e-3 for i in range(10)]
+    phases = [SPEED * t + number * math.pi / 2 for t in times]
+    radius = 40.0 if number < 2 else 0.0
+    climb = 0.0 if number < 2 else 3.0
+    position = [radius * math.cos(phase) + climb * t for phase, t in zip(phases, times, strict=True)]
+    velocity = [-radius * SPEED * math.sin(phase) + climb for phase in phases]
+    zero = [0.0] * 10
+    return AxisBlock(
+        first,
+        10,
+        position,
+        velocity,
+        [-radius * SPEED**2 * math.cos(phase) for phase in phases],
+        [radius * SPEED**3 * math.sin(phase) for phase in phases],
+        [p - v / 16.7 for p, v in zip(position, velocity, strict=True)],
+        [v * 0.999 for v in velocity],
+        [v / 16.7 for v in velocity],
+        velocity,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        [100.0 if first < 700 else 75.0] * 10,
+        [1 if first < 10 else 5] * 10,
+        [256] * 10,
+        [0] * 10,
+    )
+
+
+def _spindle(first: int) -> SpindleBlock:
+    speeds = [min(1000.0, 2.0 * (first + i)) for i in range(10)]
+    zero = [0.0] * 10
+    return SpindleBlock(
+        first,
+        10,
+        speeds,
+        [speed * 0.98 for speed in speeds],
+        [1000.0] * 10,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        zero,
+        [100.0] * 10,
+        zero,
+        [0] * 10,
+        [2] * 10,
+        [1] * 10,
+        [speed >= 950.0 for speed in speeds],
+        [speed < 1.0 for speed in speeds],
+        [False] * 10,
+        [True] * 10,
+        [False] * 10,
+        [5] * 10,
+        [4] * 10,
+        [0] * 10,
+    )
+
+
+def _channel(first: int, cycles: int) -> ChannelBlock:
+    state = 1 if first < 10 else 3 if 600 <= first < 640 else 2 if first < cycles - 100 else 0
+    return ChannelBlock(
+        first,
+        10,
+        line=[first // 100 + 1] * 10,
+        block_number=[first // 10] * 10,
+        path_velocity=[40.0 * SPEED] * 10,
+        programmed_feed=[260.0] * 10,
+        override_percent=[100.0 if first < 700 else 75.0] * 10,
+        distance_to_go=[50.0] * 10,
+        state=[state] * 10,
+        error_id=[0] * 10,
+    )
+
+
+def time_figure(recorded: Recorded, units: dict[str, str], torque_units: dict[str, str] | None = None) -> go.Figure:
+    """All that a report draws over time; `units`: mm or deg by axis, `torque_units`: Nm or N."""
+    return rows_figure(recorded, list(time_rows(recorded, units, torque_units or {})))
