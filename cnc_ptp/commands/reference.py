@@ -93,8 +93,8 @@ def argument_lines(kind: str) -> Iterator[str]:
             optional = not argument.required
             cells = (name, type_text(argument), text.unit, text.meaning, text.left_out if optional else "")
             rows.setdefault(cells, []).append(command)
-    for cells, used in sorted(rows.items(), key=lambda row: row[0][0]):
-        yield f"| `{cells[0]}` | {', '.join(f'`{command}`' for command in used)} | {' | '.join(cells[1:])} |"
+    for row, used in sorted(rows.items(), key=lambda item: item[0][0]):
+        yield f"| `{row[0]}` | {', '.join(f'`{command}`' for command in used)} | {' | '.join(row[1:])} |"
 
 
 def type_text(argument: Argument) -> str:
