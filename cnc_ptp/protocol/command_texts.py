@@ -155,7 +155,7 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("axis", "decouple", "velocity"): ArgumentText("mm/s, °/s", "of the axis from now on", "unchanged"),
     ("axis", "set_feedforward", "enabled"): ArgumentText("", "on or off", "unchanged"),
     ("spindle", "set_feedforward", "enabled"): ArgumentText("", "on or off", "unchanged"),
-    ("spindle", "orient", "speed_rpm"): ArgumentText("rpm", "speed on the way there", "P-AXIS-00209"),
+    ("spindle", "orient", "speed_rpm"): ArgumentText("rpm", "speed of the positioning", "P-AXIS-00209"),
     ("spindle", "orient", "direction"): ArgumentText("", "of rotation", "the rules of M19"),
     ("spindle", "couple", "master"): ArgumentText("", "name of the master spindle"),
     ("channel", "load", "text"): ArgumentText("", "the program itself", "`program` is read"),
