@@ -48,7 +48,7 @@ figures: setup
 	$(BIN)/python -m figures
 
 docs: setup
-	$(BIN)/python -m cnc_ptp.parameters.reference > docs/parameters.md
+	$(BIN)/python -m cnc_ptp.parameters.declare.reference > docs/parameters.md
 
 clean:
 	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so

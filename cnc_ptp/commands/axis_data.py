@@ -14,7 +14,7 @@ from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, load_machine
-from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.reader import AXIS_STATE, Recorded, read_recording

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import ceil, inf
 
-from cnc_ptp.parameters.control_view import LagMonitoring
+from cnc_ptp.parameters.view.control_view import LagMonitoring
 
 ESTIMATED, LINEAR, FIXED = 1, 2, 4
 SCALE = 1024

@@ -70,7 +70,7 @@ NOTICES = {
     110465: ("NO_TORQUE_SCALE = 110465", "no additive torque is put out"),
     110473: ("NO_JERK_DENOMINATOR = 110473", "100 is used"),
 }
-"""Warnings of a machine file: source of parameters/control_notices.py, what the document says."""
+"""Warnings of a machine file: source of parameters/check/control_notices.py, what the document says."""
 
 
 def documented():
@@ -107,5 +107,5 @@ def test_numbers_of_program_faults(number):
 @pytest.mark.parametrize("number", NOTICES)
 def test_numbers_of_warnings(number):
     source, said = NOTICES[number]
-    assert source in inspect.getsource(import_module("cnc_ptp.parameters.control_notices"))
+    assert source in inspect.getsource(import_module("cnc_ptp.parameters.check.control_notices"))
     assert said in documented()[number]

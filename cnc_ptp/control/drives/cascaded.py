@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import copysign, exp, inf
 
 from cnc_ptp.control.drives.transitions import transition
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 
 FINEST = 6
 """A cycle is halved at most so often where friction or the torque limit changes its kind."""

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from cnc_ptp.parameters.control_view import PlantParameters
-from cnc_ptp.parameters.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
+from cnc_ptp.parameters.view.control_view import PlantParameters
+from cnc_ptp.parameters.view.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
 
 Row = tuple[float, ...]
 Rows = tuple[Row, Row, Row]

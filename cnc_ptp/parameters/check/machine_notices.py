@@ -1,0 +1,190 @@
+"""What a machine file may say but what does not do what its author may expect. Lines for the log, none stops a node."""
+
+from collections.abc import Iterator, Mapping
+
+from cnc_ptp.parameters.check.control_notices import control_notices
+from cnc_ptp.parameters.check.friction_notices import friction_notices
+from cnc_ptp.parameters.read.messages import Notice, notice
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.axis_view import is_modulo
+from cnc_ptp.parameters.view.channel_members import spindle_entries
+from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
+from cnc_ptp.parameters.view.spindle_view import control_limit, feedback, is_open_loop
+
+UNIT_LISTS = {"channel": "P-MACH-00004", "axis": "P-MACH-00005", "spindle": "P-MACH-00006"}
+SERCOS = 2
+HOMED_BY_THE_NC = (1, 5, 6)
+"""Drive types of what TF5200 spindle 2.3 calls analogue spindles: conventional, Lightbus, terminal (P-AXIS-00156)."""
+UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
+UPPER_END = "P-AXIS-00126"
+GEAR_RATIO = ("P-AXIS-00511", "P-AXIS-00512")
+HYPERBOLA = 1
+SMALL_STEP = 0.001
+"""Part of the constant acceleration."""
+
+
+def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """One line a warning, with file and line."""
+    cycle_time = machine.kernel("P-MACH-00001")
+    yield from units_without_section(machine, sets)
+    for parameters in sets.values():
+        yield from without_effect(parameters)
+        if parameters.kind == "channel":
+            yield from slope_not_available(parameters)
+            yield from tools_without_limit(parameters)
+            yield from couplings_without_effect(parameters)
+            yield from ranges_above_the_spindle(parameters, sets)
+        else:
+            yield from control_notices(parameters, cycle_time)
+            yield from friction_notices(parameters)
+            yield from corrected_resolution(parameters)
+            yield from gear_ratio_without_effect(parameters)
+            yield from range_of_a_conveyor(parameters)
+            yield from spindle_notices(parameters)
+
+
+def units_without_section(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """Units that /machine lists and the file says nothing of, which the loader places where /machine stands."""
+    for name, parameters in sets.items():
+        if parameters.place == machine.place:
+            text = f"{parameters.kind} /{name} has no section in the file, it has the default of every parameter"
+            yield notice(machine, UNIT_LISTS[parameters.kind], (), text)
+
+
+def without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    for ros_name in parameters.given:
+        declaration, indexes, _ = parameters.find(ros_name)
+        if not declaration.effective_for(parameters.axis_type):
+            yield notice(parameters, declaration.id, indexes, "accepted, but without effect in this version")
+
+
+def slope_not_available(channel: ParameterSet) -> Iterator[Notice]:
+    value = channel.number("P-CHAN-00071")
+    if value in UNAVAILABLE_SLOPES:
+        text = f"value {value}, {UNAVAILABLE_SLOPES[int(value)]}, is not available; 1 (TRAPEZ) is used"
+        yield notice(channel, "P-CHAN-00071", (), text)
+
+
+def tools_without_limit(parameters: ParameterSet) -> Iterator[Notice]:
+    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
+    for tool in parameters.used_indexes("wz"):
+        if not parameters.number("P-TOOL-00012", tool):
+            continue
+        for number in ("P-TOOL-00014", "P-TOOL-00015"):
+            if not parameters.is_given(number, tool):
+                yield notice(parameters, number, (tool,), f"not given, tool {tool} has no such limit")
+
+
+def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    """Coupled pairs that no command can enable: path axes, and other groups than 0."""
+    for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
+        for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
+            if group:
+                yield notice(parameters, "P-CHAN-00038", (group, pair), "only coupling group 0 is taken from here")
+            elif not parameters.number("P-CHAN-00061", group, pair):
+                yield notice(parameters, "P-CHAN-00061", (group, pair), "a pair of path axes is not coupled here")
+
+
+def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """Speeds of a gear stage that its spindle refuses in motion (24001)."""
+    if not channel.number("P-CHAN-00052"):
+        return
+    for entry in spindle_entries(channel, sets):
+        if entry.node is None or not entry.indexes:
+            continue
+        for gear in channel.used_indexes(f"spindel.{entry.indexes[0]}.range_table"):
+            top = channel.number("P-CHAN-00055", *entry.indexes, gear)
+            most = sets[entry.node].kernel("P-AXIS-00212", gear) / DEG_S_PER_RPM
+            if top > most:
+                text = f"value {top} (rpm) is above P-AXIS-00212 getriebe[{gear}].vb_max of /{entry.node}, {most:g} rpm"
+                yield notice(channel, "P-CHAN-00055", (*entry.indexes, gear), text)
+
+
+def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
+    for gear in parameters.used_indexes("getriebe"):
+        for number, warning in CORRECTED.items():
+            if parameters.number(number, gear) == 0:
+                yield notice(parameters, number, (gear,), "value 0 is corrected to 1", error_id=warning)
+
+
+def gear_ratio_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    """A gear ratio belongs to the feed constant; without it wegaufz and wegaufn say all of the resolution."""
+    if uses_feed_constant(parameters):
+        return
+    for gear in parameters.used_indexes("getriebe"):
+        given = [number for number in GEAR_RATIO if parameters.is_given(number, gear)]
+        if given and parameters.number(GEAR_RATIO[0], gear) != parameters.number(GEAR_RATIO[1], gear):
+            text = (
+                "without effect, there is no feed constant (P-AXIS-00362 and P-AXIS-00363 are 1); the resolution is "
+                "P-AXIS-00234/00233"
+            )
+            yield notice(parameters, given[0], (gear,), text)
+
+
+def spindle_notices(parameters: ParameterSet) -> Iterator[Notice]:
+    if parameters.kind == "spindle":
+        yield from homing_mode(parameters)
+        yield from rapid_traverse(parameters)
+        yield from step_in_the_curve(parameters)
+
+
+def homing_mode(parameters: ParameterSet) -> Iterator[Notice]:
+    """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
+    drive, no_automatic = parameters.number("P-AXIS-00020"), int(parameters.number("P-AXIS-00015")) & 0x100
+    if drive == SERCOS and not no_automatic:
+        text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
+        yield notice(parameters, "P-AXIS-00015", (), text)
+    elif drive in HOMED_BY_THE_NC and no_automatic:
+        text = f"0x100 (no automatic homing) should not be set for {drive_type(parameters)}, which the NC homes"
+        yield notice(parameters, "P-AXIS-00015", (), text)
+    if drive in HOMED_BY_THE_NC and has_position(parameters) and not parameters.number("P-AXIS-00156"):
+        text = f"should be 1 for a spindle with {drive_type(parameters)}; it is homed without a cam"
+        yield notice(parameters, "P-AXIS-00156", (), text)
+
+
+def drive_type(parameters: ParameterSet) -> str:
+    """Drive type 6 (+-10 V terminal)."""
+    number = int(parameters.number("P-AXIS-00020"))
+    return f"drive type {number} ({parameters.catalogue.by_id['P-AXIS-00020'].choices[number]})"
+
+
+def has_position(parameters: ParameterSet) -> bool:
+    """False: the spindle cannot be homed."""
+    return feedback(parameters) == "POSITION"
+
+
+def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
+    """The way to a position is measured, which ends at the control limit."""
+    for gear in parameters.used_indexes("getriebe"):
+        if is_open_loop(parameters) or parameters.kernel("P-AXIS-00209", gear) <= control_limit(parameters, gear):
+            continue
+        text = (
+            f"value {parameters.number('P-AXIS-00209', gear)} is above the control limit "
+            f"{parameters.number('P-AXIS-00220', gear)} (0.001°/s) of P-AXIS-00220 getriebe[{gear}].vb_regelgrenze; "
+            "positionings are that much slower"
+        )
+        yield notice(parameters, "P-AXIS-00209", (gear,), text)
+
+
+def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
+    """A hyperbola that does not begin with the constant acceleration."""
+    for gear in parameters.used_indexes("getriebe"):
+        if parameters.number("P-AXIS-00202", gear) != HYPERBOLA:
+            continue
+        b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+        begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
+        constant = parameters.kernel("P-AXIS-00007", gear)
+        if abs(begin - constant) > SMALL_STEP * constant:
+            text = f"the hyperbola begins with {begin:g} °/s², P-AXIS-00007 is {constant:g} °/s²: a step in the curve"
+            yield notice(parameters, "P-AXIS-00026", (gear,), text)
+
+
+def range_of_a_conveyor(parameters: ParameterSet) -> Iterator[Notice]:
+    """The default suits a turntable, hardly a conveyor."""
+    if parameters.axis_type != "T" or not is_modulo(parameters):
+        return
+    gear = int(parameters.number("P-AXIS-00079")) - 1
+    if not parameters.is_given(UPPER_END, gear):
+        end = parameters.kernel(UPPER_END, gear)
+        yield notice(parameters, UPPER_END, (gear,), f"not given, the modulo range of the axis ends at {end:g} mm")

@@ -1,0 +1,341 @@
+"""What position controller, feedforward, friction compensation and drive of one gear need, in kernel units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view import telegram
+from cnc_ptp.parameters.view.encoder import encoder_increment, resolution, uses_feed_constant
+
+VEL, ACC, JERK = 0x001, 0x002, 0x004
+ADD_VEL, ADD_ACC, ADD_JERK = 0x100, 0x200, 0x800
+DELAY_CYCLES = 6
+"""A feedforward delay must be below so many cycles (P-AXIS-00389, 00390)."""
+DEFAULT_JERK_DENOMINATOR = 100
+SIMULATION, VIRTUAL, PROFIDRIVE = 4, 16, 3
+TIME_BASES = {0: 60.0, 1: 1.0}
+
+
+@dataclass(frozen=True, slots=True)
+class LagMonitoring:
+    """Monitoring of the following error (P-AXIS-00172: 0 off, 1 estimated, 2 linear, 4 fixed). mm, deg, s."""
+
+    kind: int
+    moving_limit: float
+    standstill_limit: float
+    dynamic: int
+    """P-AXIS-00167 in 1/1024."""
+    filter_time: float
+
+
+@dataclass(frozen=True, slots=True)
+class DriveScaling:
+    """Drive formats: what one mm, mm/s (deg, deg/s) and Nm (N) is on the bus."""
+
+    position: float
+    """Increments a mm (deg)."""
+    velocity: float
+    """Digits a mm/s (deg/s)."""
+    torque: float
+    """Digits a Nm (N); 0.0 where nothing can be put out (110465)."""
+    analogue: float
+    """Bits of a DA word a mm/s (deg/s), P-AXIS-00129 / P-AXIS-00128."""
+    torque_per_acceleration: float
+    """Nm (N) for 1 mm/s² (deg/s²): J · 2π · i / h, or m / 1000."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveParameters:
+    """The drive and what its telegram carries."""
+
+    kind: int
+    """P-AXIS-00020."""
+    interface: str
+    """What is commanded: velocity, position, lag (DSC), torque, or none (virtual axis)."""
+    commands: frozenset[str]
+    """Quantities in the command telegram: velocity, additive_torque …"""
+    feedback: frozenset[str]
+    analogue: bool
+    """The command is a DA word of 16 bits."""
+    ideal: bool
+    """No format between NC and drive: nothing is rounded (simulated and virtual drives)."""
+    reverse: bool
+    velocity_gain: float
+    velocity_integral_time: float
+    command_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
+    """Length of each quantity in the command telegram."""
+    feedback_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
+
+
+@dataclass(frozen=True, slots=True)
+class FeedforwardParameters:
+    """Feedforward (P-AXIS-00223 …). Velocity parts are dimensionless weights, times in s."""
+
+    mode: int
+    weight: float
+    """Global weight P-AXIS-00228 / P-AXIS-00229."""
+    velocity_weight: float
+    time_constant: float
+    """Ta of the conventional acceleration part, s."""
+    torque_weight: float
+    """Weight of the additive torque, P-AXIS-00225 / P-AXIS-00226 without dimension."""
+    jerk_weight: float
+    velocity_delay: float
+    acceleration_delay: float
+    lead_cycles: int
+    """By how many cycles the feedforward leaves before its setpoint (PROFIdrive)."""
+    prefilter_cycles: int
+    always_active: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionParameters:
+    """Friction compensation: table over |velocity| (mm/s, deg/s) in drive digits, already scaled."""
+
+    permitted: bool
+    active: bool
+    """P-AXIS-00522 and P-COMP-00041 are set."""
+    velocities: tuple[float, ...]
+    currents: tuple[float, ...]
+    position_delay: float
+    reversal_lookahead: int
+    delay_cycles: int
+
+
+@dataclass(frozen=True, slots=True)
+class PlantParameters:
+    """The simulated drive and mechanics (P-SIM-…). Torques in Nm (N), times in s."""
+
+    cascaded: bool
+    time_constant: float
+    torque_per_acceleration: float
+    velocity_gain: float
+    velocity_integral_time: float
+    current_time_constant: float
+    torque_limit: float
+    coulomb: float
+    static: float
+    stribeck_velocity: float
+    viscous: float
+    """Nm (N) a mm/s (deg/s)."""
+    backlash: float
+    encoder_at_load: bool
+    bus_delay_cycles: int
+    kv: float
+    encoder_increment: float
+    start_position: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModuloError:
+    """Encoder increments that a modulo turn is short of (P-AXIS-00124 / P-AXIS-00125); 0 = no compensation."""
+
+    turn: float
+    """Modulo range, deg."""
+    increment: float
+    """deg an increment."""
+    increments_per_turn: float
+
+
+@dataclass(frozen=True, slots=True)
+class ControlParameters:
+    """Everything below the setpoint of an axis or spindle in one gear."""
+
+    kv: float
+    monitoring: LagMonitoring
+    drive: DriveParameters
+    scaling: DriveScaling
+    feedforward: FeedforwardParameters
+    friction: FrictionParameters
+    modulo_error: ModuloError
+    plant: PlantParameters
+    path_delay_cycles: int = 0
+    """What other axes of the same path need: this one is to be late by as much."""
+
+    @property
+    def delay_cycles(self) -> int:
+        """Cycles by which the position controller works behind the setpoint, so that others can look ahead."""
+        lead = self.feedforward.lead_cycles if self.feedforward.mode else 0
+        return max(lead, self.friction.reversal_lookahead if self.friction.permitted else 0, self.path_delay_cycles)
+
+
+def control_view(parameters: ParameterSet, gear: int, cycle_time: float) -> ControlParameters:
+    """The parameters of record `gear` (0 …); `cycle_time` in s."""
+    scaling = drive_scaling(parameters, gear, cycle_time)
+    return ControlParameters(
+        kv=parameters.kernel("P-AXIS-00099", gear),
+        monitoring=lag_monitoring(parameters, gear),
+        drive=drive_parameters(parameters, gear),
+        scaling=scaling,
+        feedforward=feedforward_parameters(parameters, cycle_time),
+        friction=friction_parameters(parameters),
+        modulo_error=modulo_error(parameters, gear),
+        plant=plant_parameters(parameters, gear),
+    )
+
+
+def lag_monitoring(parameters: ParameterSet, gear: int) -> LagMonitoring:
+    return LagMonitoring(
+        kind=int(parameters.number("P-AXIS-00172", gear)),
+        moving_limit=parameters.kernel("P-AXIS-00168", gear),
+        standstill_limit=parameters.kernel("P-AXIS-00169", gear),
+        dynamic=int(parameters.number("P-AXIS-00167", gear)),
+        filter_time=parameters.kernel("P-MACH-00031"),
+    )
+
+
+def drive_parameters(parameters: ParameterSet, gear: int) -> DriveParameters:
+    kind = int(parameters.number("P-AXIS-00020"))
+    commands, feedback = telegram.commands(parameters), telegram.feedback(parameters)
+    return DriveParameters(
+        kind=kind,
+        interface=telegram.interface(parameters),
+        commands=commands,
+        feedback=feedback,
+        analogue=kind in telegram.ANALOGUE,
+        ideal=kind in (SIMULATION, VIRTUAL),
+        reverse=parameters.axis_type == "S" and bool(parameters.number("P-AXIS-00159", gear)),
+        velocity_gain=parameters.number("P-MACH-00028"),
+        velocity_integral_time=parameters.kernel("P-MACH-00029"),
+        command_bits=telegram.command_bits(parameters),
+        feedback_bits=telegram.feedback_bits(parameters),
+    )
+
+
+def drive_scaling(parameters: ParameterSet, gear: int, cycle_time: float) -> DriveScaling:
+    """Source: TF5200 feedforward 4.1, 4.2; spindle P-AXIS-00129 (bits at 1 m/min or 1000 °/min)."""
+    return DriveScaling(
+        position=float(10_000 * resolution(parameters, gear)),
+        velocity=velocity_scale(parameters, cycle_time),
+        torque=torque_scale(parameters),
+        analogue=analogue_scale(parameters, gear, cycle_time),
+        torque_per_acceleration=torque_per_acceleration(parameters, gear, parameters.number("P-AXIS-00391", gear)),
+    )
+
+
+def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> float:
+    """Bits of a DA word a mm/s (deg/s): P-AXIS-00129 / P-AXIS-00128 bits at 1 m/min (1000 °/min).
+
+    An axis whose position loop stays open (P-AXIS-00320) puts its speed out with P-AXIS-00205 to 00207 (spindle 2.2.4).
+    """
+    if parameters.text("P-AXIS-00320").startswith("OPEN_POSITION_LOOP"):
+        return velocity_scale(parameters, cycle_time)
+    return parameters.number("P-AXIS-00129", gear) / parameters.number("P-AXIS-00128", gear) * 60.0 / 1000.0
+
+
+def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:
+    """Digits a mm/s (deg/s): v_reso_num digits are v_reso_denom µm (0.001°) in the time base."""
+    base = TIME_BASES.get(int(parameters.number("P-AXIS-00207")), cycle_time)
+    return parameters.number("P-AXIS-00206") * base / parameters.kernel("P-AXIS-00205")
+
+
+def torque_scale(parameters: ParameterSet) -> float:
+    """Digits a Nm (N): P-AXIS-00325 / P-AXIS-00326 digits are P-AXIS-00392; 0.0 with a zero denominator (110465)."""
+    denominator, reference = parameters.number("P-AXIS-00326"), parameters.number("P-AXIS-00392")
+    return parameters.number("P-AXIS-00325") / denominator / reference if denominator and reference else 0.0
+
+
+def torque_per_acceleration(parameters: ParameterSet, gear: int, load: float) -> float:
+    """Nm (N) for 1 mm/s² (deg/s²) with `load` in kg·m² at the motor shaft (kg on a linear axis without feed constant).
+
+    M = J · 2π · i / h · a, h the feed constant and i the gear ratio (TF5200 feedforward 4.2).
+    """
+    if uses_feed_constant(parameters):
+        turn = parameters.number("P-AXIS-00362") / parameters.number("P-AXIS-00363") / 10_000.0
+        gear_ratio = parameters.number("P-AXIS-00511", gear) / parameters.number("P-AXIS-00512", gear)
+        return load * 2.0 * math.pi * gear_ratio / turn
+    return load / 1000.0 if parameters.axis_type == "T" else load * math.pi / 180.0
+
+
+def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> FeedforwardParameters:
+    acceleration_factor = quotient(parameters, "P-AXIS-00225", "P-AXIS-00226")
+    profidrive = parameters.number("P-AXIS-00020") == PROFIDRIVE
+    return FeedforwardParameters(
+        mode=feedforward_mode(parameters),
+        weight=quotient(parameters, "P-AXIS-00228", "P-AXIS-00229"),
+        velocity_weight=quotient(parameters, "P-AXIS-00514", "P-AXIS-00515"),
+        time_constant=acceleration_factor / 1e6,
+        torque_weight=acceleration_factor,
+        jerk_weight=parameters.number("P-AXIS-00337") / (parameters.number("P-AXIS-00338") or DEFAULT_JERK_DENOMINATOR),
+        velocity_delay=permitted_delay(parameters, "P-AXIS-00389", cycle_time),
+        acceleration_delay=permitted_delay(parameters, "P-AXIS-00390", cycle_time),
+        lead_cycles=int(parameters.number("P-AXIS-00165")) if profidrive else 0,
+        prefilter_cycles=int(parameters.number("P-MACH-00030")),
+        always_active=bool(parameters.number("P-AXIS-00255")),
+    )
+
+
+def quotient(parameters: ParameterSet, numerator: str, denominator: str) -> float:
+    return parameters.number(numerator) / parameters.number(denominator)
+
+
+def feedforward_mode(parameters: ParameterSet) -> int:
+    """The bits of P-AXIS-00223."""
+    return flag_bits(parameters, "P-AXIS-00223")
+
+
+def flag_bits(parameters: ParameterSet, number: str) -> int:
+    choices = parameters.catalogue.by_id[number].choices
+    bits = 0
+    for name in parameters.text(number).split(" | "):
+        bits |= choices[name] if name in choices else int(name, 0)
+    return bits
+
+
+def permitted_delay(parameters: ParameterSet, number: str, cycle_time: float) -> float:
+    """A delay in s; 0 where it is not below six cycles (70348, 70349)."""
+    delay = parameters.kernel(number)
+    return delay if delay < DELAY_CYCLES * cycle_time * (1.0 - 1e-12) else 0.0
+
+
+def friction_parameters(parameters: ParameterSet) -> FrictionParameters:
+    """Source: TF5200 friction 2.2. Values are scaled by P-COMP-00045 / 1000."""
+    scale = parameters.kernel("P-COMP-00045")
+    entries = range(int(parameters.number("P-COMP-00042")))
+    permitted = bool(parameters.number("P-AXIS-00522")) if parameters.axis_type != "S" else False
+    return FrictionParameters(
+        permitted=permitted,
+        active=permitted and parameters.number("P-COMP-00041") != 0,
+        velocities=tuple(parameters.kernel("P-COMP-00046", index) for index in entries),
+        currents=tuple(parameters.number("P-COMP-00047", index) * scale for index in entries),
+        position_delay=parameters.kernel("P-COMP-00043"),
+        reversal_lookahead=int(parameters.number("P-COMP-00044")),
+        delay_cycles=int(parameters.number("P-COMP-00058")),
+    )
+
+
+def modulo_error(parameters: ParameterSet, gear: int) -> ModuloError:
+    """P-AXIS-00124 increments in P-AXIS-00125 turns, where P-AXIS-00120 switches the compensation on."""
+    turns = parameters.number("P-AXIS-00125", gear) if parameters.axis_type != "T" else 0
+    if not turns or not parameters.number("P-AXIS-00120"):
+        return ModuloError(0.0, 0.0, 0.0)
+    turn = parameters.kernel("P-AXIS-00126", gear) - parameters.kernel("P-AXIS-00127", gear)
+    increment = float(1 / (10_000 * resolution(parameters, gear)))
+    return ModuloError(turn, increment, parameters.number("P-AXIS-00124", gear) / turns)
+
+
+def plant_parameters(parameters: ParameterSet, gear: int) -> PlantParameters:
+    load = parameters.number("P-SIM-00007") or parameters.number("P-AXIS-00391", gear)
+    coulomb = parameters.number("P-SIM-00012")
+    return PlantParameters(
+        cascaded=parameters.text("P-SIM-00006") == "CASCADED",
+        time_constant=parameters.kernel("P-SIM-00001"),
+        torque_per_acceleration=torque_per_acceleration(parameters, gear, load),
+        velocity_gain=parameters.number("P-SIM-00008"),
+        velocity_integral_time=parameters.kernel("P-SIM-00009"),
+        current_time_constant=parameters.kernel("P-SIM-00010"),
+        torque_limit=parameters.number("P-SIM-00011") or math.inf,
+        coulomb=coulomb,
+        static=max(coulomb, parameters.number("P-SIM-00013")),
+        stribeck_velocity=parameters.number("P-SIM-00014"),
+        viscous=parameters.number("P-SIM-00015") / 1000.0,
+        backlash=parameters.kernel("P-SIM-00016"),
+        encoder_at_load=parameters.text("P-SIM-00017") == "LOAD",
+        bus_delay_cycles=int(parameters.number("P-SIM-00018")),
+        kv=parameters.kernel("P-SIM-00019") or parameters.kernel("P-AXIS-00099", gear),
+        encoder_increment=encoder_increment(parameters, gear),
+        start_position=parameters.kernel("P-SIM-00003"),
+    )

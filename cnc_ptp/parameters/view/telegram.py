@@ -1,0 +1,180 @@
+"""Cyclic telegrams: which objects go to and come from a drive, and what these mean.
+
+Sources: TF5200 feedforward 4, friction 2.4; SERCOS IDN and CiA 402 object numbers; PROFIdrive signals of telegram 5.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+
+COMMAND_OBJECTS: dict[str, str] = {
+    "S-0-0036": "velocity",
+    "S-0-0047": "position",
+    "S-0-0080": "torque",
+    "S-0-0037": "additive_velocity",
+    "S-0-0081": "additive_torque",
+    "60FF": "velocity",
+    "607A": "position",
+    "6071": "torque",
+    "60B1": "additive_velocity",
+    "60B2": "additive_torque",
+    "NSOLL_B": "velocity",
+    "XERR": "lag",
+    "M_ADD1": "additive_torque",
+    "DA_WORD": "velocity",
+}
+FEEDBACK_OBJECTS: dict[str, str] = {
+    "S-0-0051": "position",
+    "S-0-0040": "velocity",
+    "S-0-0084": "torque",
+    "6064": "position",
+    "606C": "velocity",
+    "6077": "torque",
+    "G1_XIST1": "position",
+    "NIST_B": "velocity",
+    "MIST_GLATT": "torque",
+}
+EVERYTHING = frozenset({"velocity", "position", "torque", "lag", "additive_velocity", "additive_torque"})
+ALL_FEEDBACK = frozenset({"position", "velocity", "torque"})
+PLAIN = (frozenset({"velocity"}), frozenset({"position"}))
+PRESETS: dict[int, tuple[frozenset[str], frozenset[str]]] = {
+    1: PLAIN,
+    2: PLAIN,
+    3: (frozenset({"lag", "additive_velocity"}), frozenset({"position", "velocity"})),
+    4: (EVERYTHING, ALL_FEEDBACK),
+    5: PLAIN,
+    6: PLAIN,
+    7: PLAIN,
+    8: PLAIN,
+    16: (frozenset(), frozenset()),
+    32: PLAIN,
+}
+"""What a drive type (P-AXIS-00020) exchanges where no telegram is configured."""
+BUSES: dict[int, tuple[str, ...]] = {
+    1: ("DA",),
+    2: ("S-",),
+    3: ("NSOLL", "XERR", "M_ADD", "G1", "NIST", "MIST"),
+    5: ("S-",),
+    6: ("DA",),
+    7: ("S-", "6"),
+    8: ("6",),
+    32: ("6",),
+}
+"""How the objects of a drive type begin; the simulated drive (4) takes them all, the virtual axis (16) none."""
+ANALOGUE = (1, 6)
+"""Drive types whose command is a voltage of ±10 V."""
+OPERATION_MODES = {
+    "DRIVE_POSITION_CONTROL": "position",
+    "CNC_POSITION_CONTROL": "velocity",
+    "DSC_POSITION_CONTROL": "lag",
+}
+INTERFACES = ("velocity", "lag", "position", "torque")
+
+
+def fits(name: str, kind: int) -> bool:
+    """Whether an object can be exchanged with a drive of type `kind` (P-AXIS-00020)."""
+    return kind == 4 or name.startswith(BUSES.get(kind, ("-",)))
+
+
+class Configured(NamedTuple):
+    """An object of a telegram, and the parameter that has put it there."""
+
+    name: str
+    number: str
+    indexes: tuple[int, ...]
+
+
+def configured_commands(parameters: ParameterSet) -> tuple[Configured, ...]:
+    """The objects of the command telegram by name, S-0-0037."""
+    return _objects(parameters, "P-MACH-00020", "mdt", ("P-MACH-00022", "P-MACH-00023"))
+
+
+def configured_feedback(parameters: ParameterSet) -> tuple[Configured, ...]:
+    """The objects of the feedback telegram by name, S-0-0051."""
+    return _objects(parameters, "P-MACH-00021", "at", ("P-MACH-00025", "P-MACH-00026"))
+
+
+def command_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    return tuple(entry.name for entry in configured_commands(parameters))
+
+
+def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
+    return tuple(entry.name for entry in configured_feedback(parameters))
+
+
+def default_bits() -> dict[str, int]:
+    """Lengths of all quantities where no telegram says otherwise: torques 16 bits, all others 32."""
+    return {quantity: 16 if "torque" in quantity else 32 for quantity in EVERYTHING}
+
+
+def command_bits(parameters: ParameterSet) -> dict[str, int]:
+    """Lengths in bits: 16 for a DA word, P-MACH-00024 where it is given."""
+    bits = default_bits() | _lengths(parameters, "mdt", ("P-MACH-00022", "P-MACH-00023", "P-MACH-00024"))
+    return bits | {"velocity": 16} if parameters.number("P-AXIS-00020") in ANALOGUE else bits
+
+
+def feedback_bits(parameters: ParameterSet) -> dict[str, int]:
+    """Lengths in bits: P-MACH-00027 where it is given."""
+    return default_bits() | _lengths(parameters, "at", ("P-MACH-00025", "P-MACH-00026", "P-MACH-00027"))
+
+
+def _lengths(parameters: ParameterSet, array: str, elements: tuple[str, str, str]) -> dict[str, int]:
+    quantities = COMMAND_OBJECTS if array == "mdt" else FEEDBACK_OBJECTS
+    found = {}
+    for index in parameters.used_indexes(f"antr.sercos.{array}"):
+        name = _object(parameters, elements[:2], index)
+        if name in quantities and parameters.is_given(elements[2], index):
+            found[quantities[name]] = 8 * int(parameters.number(elements[2], index))
+    return found
+
+
+def commands(parameters: ParameterSet) -> frozenset[str]:
+    """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity.
+
+    A telegram that names additive values alone (TF5200 feedforward 4) has them beside the drive type's own command.
+    """
+    objects, preset = command_objects(parameters), PRESETS[int(parameters.number("P-AXIS-00020"))][0]
+    if not objects:
+        return preset
+    quantities = {COMMAND_OBJECTS[name] for name in objects if name in COMMAND_OBJECTS}
+    if "XERR" in objects and "NSOLL_B" in objects:
+        quantities = quantities - {"velocity"} | {"additive_velocity"}
+    if quantities.isdisjoint(INTERFACES):
+        quantities.update(main_command(preset))
+    return frozenset(quantities)
+
+
+def main_command(available: frozenset[str]) -> tuple[str, ...]:
+    """The first of velocity, lag, position and torque that there is."""
+    return tuple(quantity for quantity in INTERFACES if quantity in available)[:1]
+
+
+def feedback(parameters: ParameterSet) -> frozenset[str]:
+    """Actual values that come back; the position always does."""
+    objects = feedback_objects(parameters)
+    if not objects:
+        return PRESETS[int(parameters.number("P-AXIS-00020"))][1]
+    return frozenset({"position", *(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)})
+
+
+def interface(parameters: ParameterSet) -> str:
+    """What the NC commands: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
+    mode = OPERATION_MODES.get(parameters.text("P-AXIS-00320"))
+    return mode or next(iter(main_command(commands(parameters))), "none")
+
+
+def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[str, str]) -> tuple[Configured, ...]:
+    objects = [Configured(name, names, ()) for name in parameters.names(names)]
+    for index in parameters.used_indexes(f"antr.sercos.{array}"):
+        name = _object(parameters, elements, index)
+        if name:
+            objects.append(Configured(name, elements[0 if parameters.text(elements[0], index) else 1], (index,)))
+    return tuple(objects)
+
+
+def _object(parameters: ParameterSet, elements: tuple[str, str], index: int) -> str:
+    """Name of a configured object by its name or number; empty where the element names none."""
+    name, number = parameters.text(elements[0], index), parameters.number(elements[1], index)
+    return name.replace("_", "-") or (f"S-0-{number:04d}" if number else "")
