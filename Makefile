@@ -1,5 +1,6 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html
 # make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
+# make docs, make ids   docs/parameters.md and cnc_ptp/parameters/declare/ids.py are made from declarations.yaml
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
 PYTHON ?= python3
 VENV := .venv
@@ -7,7 +8,7 @@ BIN := $(VENV)/bin
 INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 
-.PHONY: setup demo test lint bench figures docs clean
+.PHONY: setup demo test lint bench figures docs ids clean
 setup: $(VENV)/.package
 
 $(VENV)/.python:
@@ -49,6 +50,9 @@ figures: setup
 
 docs: setup
 	$(BIN)/python -m cnc_ptp.parameters.declare.reference > docs/parameters.md
+
+ids: setup
+	$(BIN)/python cnc_ptp/parameters/declare/make_ids.py
 
 clean:
 	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so

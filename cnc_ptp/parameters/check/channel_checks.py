@@ -1,12 +1,13 @@
 """A channel against axes and spindles of the machine: what is listed exists, fits and has a name of its own.
 
-Each check yields Problems; the checks of gears, couplings and tools stand in spindle_list_checks.py.
+Each check yields Problems; the checks of gears, couplings and tools stand in channel_spindle_checks.py.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.channel_spindle_checks import SPINDLE_LIST_CHECKS
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -17,18 +18,20 @@ Sets = Mapping[str, ParameterSet]
 
 def channel_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """Each listed axis exists, is a path axis, is listed once, has a name of its own."""
-    yield from listed_units(channel, axis_entries(channel, sets), "P-CHAN-00035", "P-CHAN-00006", sets)
+    yield from listed_units(channel, axis_entries(channel, sets), ids.ACHSE_LOG_ACHS_NR, ids.ACHSE_BEZEICHNUNG, sets)
 
 
 def channel_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """The same for spindles."""
-    yield from listed_units(channel, spindle_entries(channel, sets), "P-CHAN-00036", "P-CHAN-00007", sets)
+    yield from listed_units(
+        channel, spindle_entries(channel, sets), ids.SPINDEL_LOG_ACHS_NR, ids.SPINDEL_BEZEICHNUNG, sets
+    )
 
 
 def listed_units(
     channel: ParameterSet, entries: Sequence[ChannelAxisEntry], number: str, name: str, sets: Sets
 ) -> Iterator[Problem]:
-    wants_spindle = number == "P-CHAN-00036"
+    wants_spindle = number == ids.SPINDEL_LOG_ACHS_NR
     names: dict[str, ChannelAxisEntry] = {}
     numbers: dict[int, ChannelAxisEntry] = {}
     for entry in entries:
@@ -48,7 +51,7 @@ def unit_trouble(
         return plc_spindle_trouble(entry, numbers)
     if entry.node is None:
         known = ", ".join(
-            f"{int(unit.number('P-AXIS-00016'))} /{unit.node}" for unit in sets.values() if unit.kind != "channel"
+            f"{int(unit.number(ids.KOPF_ACHS_NR))} /{unit.node}" for unit in sets.values() if unit.kind != "channel"
         )
         return f"value {entry.number} is no logical axis number of the machine ({known or 'none'})", errors.NO_SUCH_AXIS
     unit = sets[entry.node]
@@ -81,7 +84,9 @@ def name_trouble(
 
 
 def wrong_name(entry: ChannelAxisEntry, name: str) -> str:
-    letters, listed_as = ("S", "spindel[i]") if name == "P-CHAN-00007" else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
+    letters, listed_as = (
+        ("S", "spindel[i]") if name == ids.SPINDEL_BEZEICHNUNG else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
+    )
     if entry.plc_control and not entry.own_name:
         return f"a spindle with P-CHAN-00069 (plc_control) has no node name: give {listed_as}.bezeichnung"
     if entry.name and entry.name[0] not in letters:
@@ -101,29 +106,29 @@ def used_twice(entry: ChannelAxisEntry, names: dict[str, ChannelAxisEntry]) -> s
 def axis_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     for group in channel.used_indexes("gruppe"):
         count = len(channel.used_indexes(f"gruppe.{group}.achse"))
-        value = channel.number("P-CHAN-00003", group)
-        if channel.is_given("P-CHAN-00003", group) and value != count:
+        value = channel.number(ids.GRUPPE_ACHS_ANZAHL, group)
+        if channel.is_given(ids.GRUPPE_ACHS_ANZAHL, group) and value != count:
             text = f"value {value}, but {count} axes are listed (achse[j])"
-            yield problem(channel, errors.COUNT, "P-CHAN-00003", (group,), text)
+            yield problem(channel, errors.COUNT, ids.GRUPPE_ACHS_ANZAHL, (group,), text)
 
 
 def spindle_count(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     count = len(channel.used_indexes("spindel"))
-    value = channel.number("P-CHAN-00082")
-    if value != count and not channel.is_invalid("P-CHAN-00082") and (count or channel.is_given("P-CHAN-00082")):
+    value = channel.number(ids.SPDL_ANZAHL)
+    if value != count and not channel.is_invalid(ids.SPDL_ANZAHL) and (count or channel.is_given(ids.SPDL_ANZAHL)):
         text = f"value {value}, but {count} spindles are listed (spindel[i])"
-        yield problem(channel, errors.COUNT, "P-CHAN-00082", (), text)
+        yield problem(channel, errors.COUNT, ids.SPDL_ANZAHL, (), text)
 
 
 def main_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
-    listed = [int(channel.number("P-CHAN-00036", index)) for index in channel.used_indexes("spindel")]
-    number = int(channel.number("P-CHAN-00051"))
-    if number in listed or channel.is_invalid("P-CHAN-00051") or not (listed or number):
+    listed = [int(channel.number(ids.SPINDEL_LOG_ACHS_NR, index)) for index in channel.used_indexes("spindel")]
+    number = int(channel.number(ids.MAIN_SPINDLE_AX_NR))
+    if number in listed or channel.is_invalid(ids.MAIN_SPINDLE_AX_NR) or not (listed or number):
         return
     numbers = ", ".join(map(str, listed)) or "none"
     given = f"value {number} is" if number else "no value is given, it must be"
     text = f"{given} {'none' if number else 'one'} of the channel's spindles ({numbers})"
-    yield problem(channel, errors.MAIN_SPINDLE, "P-CHAN-00051", (), text)
+    yield problem(channel, errors.MAIN_SPINDLE, ids.MAIN_SPINDLE_AX_NR, (), text)
 
 
 CHANNEL_CHECKS = (

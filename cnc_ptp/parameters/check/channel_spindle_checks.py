@@ -5,6 +5,7 @@ spindles that the channel has.
 from collections.abc import Iterator, Mapping
 
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -13,7 +14,14 @@ from cnc_ptp.parameters.view.channel_view import GEAR_M_FUNCTIONS, SPINDLES
 
 Sets = Mapping[str, ParameterSet]
 COUPLING_GROUP = 0
-SYNCHRONISATIONS = ("P-CHAN-00041", "P-CHAN-00043", "P-CHAN-00045", "P-CHAN-00047", "P-CHAN-00049", "P-CHAN-00081")
+SYNCHRONISATIONS = (
+    ids.M_SYNCH,
+    ids.SPINDEL_M19_SYNCH,
+    ids.SPINDEL_M3_SYNCH,
+    ids.SPINDEL_M4_SYNCH,
+    ids.SPINDEL_M5_SYNCH,
+    ids.SPINDEL_S_SYNCH,
+)
 """M functions, M19, M3, M4, M5, S."""
 
 
@@ -29,13 +37,13 @@ def one_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
 
 def gear_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """M40 to M45 wait before the motion and in no other way while they select gears (TF5200 spindle 2.8.2)."""
-    if not channel.number("P-CHAN-00052"):
+    if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         return
     for number in GEAR_M_FUNCTIONS:
-        value = channel.text("P-CHAN-00041", number)
+        value = channel.text(ids.M_SYNCH, number)
         if value not in ("MVS_SVS", "NOT_VALID"):
             text = f"value {value} must be MVS_SVS, M{number} selects a gear (P-CHAN-00052)"
-            yield problem(channel, errors.CONTRADICTION, "P-CHAN-00041", (number,), text)
+            yield problem(channel, errors.CONTRADICTION, ids.M_SYNCH, (number,), text)
 
 
 def gear_records(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
@@ -43,39 +51,45 @@ def gear_records(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     entries = spindle_entries(channel, sets)
     main = main_spindle_number(channel, entries)
     entry = next((entry for entry in entries if entry.number == main), None)
-    if not channel.number("P-CHAN-00052") or entry is None or entry.node is None or not entry.indexes:
+    if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE) or entry is None or entry.node is None or not entry.indexes:
         return
     records = {0, *sets[entry.node].used_indexes("getriebe")}
     for gear in channel.used_indexes(f"spindel.{entry.indexes[0]}.range_table"):
         where = (*entry.indexes, gear)
-        if channel.number("P-CHAN-00055", *where) and gear not in records:
+        if channel.number(ids.RANGE_TABLE_MAX_SPEED, *where) and gear not in records:
             text = f"gear stage M{GEAR_M_FUNCTIONS[gear]} has no record getriebe[{gear}] in the list of /{entry.node}"
-            yield problem(channel, errors.CONTRADICTION, "P-CHAN-00055", where, text)
+            yield problem(channel, errors.CONTRADICTION, ids.RANGE_TABLE_MAX_SPEED, where, text)
 
 
 def coupled_pairs(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """Pairs of spindles: both are in the channel, none follows itself or two masters, none is slave and master."""
     pairs = [
-        (pair, *(int(channel.number(number, COUPLING_GROUP, pair)) for number in ("P-CHAN-00038", "P-CHAN-00037")))
+        (
+            pair,
+            *(
+                int(channel.number(number, COUPLING_GROUP, pair))
+                for number in (ids.PAAR_LOG_ACHS_NR_SLAVE, ids.PAAR_LOG_ACHS_NR_MASTER)
+            ),
+        )
         for pair in channel.used_indexes(f"synchro_data.koppel_gruppe.{COUPLING_GROUP}.paar")
-        if channel.number("P-CHAN-00061", COUPLING_GROUP, pair) == SPINDLES
+        if channel.number(ids.PAAR_MODE, COUPLING_GROUP, pair) == SPINDLES
     ]
     entries = spindle_entries(channel, sets)
     slaves = [slave for _, slave, _ in pairs]
     for position, (pair, slave, master) in enumerate(pairs):
-        for number, value in (("P-CHAN-00038", slave), ("P-CHAN-00037", master)):
+        for number, value in ((ids.PAAR_LOG_ACHS_NR_SLAVE, slave), (ids.PAAR_LOG_ACHS_NR_MASTER, master)):
             text = not_coupled(value, entries)
             if text:
                 yield problem(channel, errors.NO_SUCH_AXIS, number, (COUPLING_GROUP, pair), text)
         if slave == master:
             text = f"value {slave} is its own master (P-CHAN-00037)"
-            yield problem(channel, errors.CONTRADICTION, "P-CHAN-00038", (COUPLING_GROUP, pair), text)
+            yield problem(channel, errors.CONTRADICTION, ids.PAAR_LOG_ACHS_NR_SLAVE, (COUPLING_GROUP, pair), text)
         elif slave in slaves[:position]:
             text = f"value {slave} is slave of two masters"
-            yield problem(channel, errors.CONTRADICTION, "P-CHAN-00038", (COUPLING_GROUP, pair), text)
+            yield problem(channel, errors.CONTRADICTION, ids.PAAR_LOG_ACHS_NR_SLAVE, (COUPLING_GROUP, pair), text)
         elif master in slaves:
             text = f"value {master} is slave and master in one coupling group"
-            yield problem(channel, errors.CONTRADICTION, "P-CHAN-00037", (COUPLING_GROUP, pair), text)
+            yield problem(channel, errors.CONTRADICTION, ids.PAAR_LOG_ACHS_NR_MASTER, (COUPLING_GROUP, pair), text)
 
 
 def not_coupled(number: int, entries: list[ChannelAxisEntry]) -> str:
@@ -91,19 +105,19 @@ def tool_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """Tools limit spindles of the channel (P-TOOL-00012); 0 is none."""
     entries = spindle_entries(channel, sets)
     for tool in channel.used_indexes("wz"):
-        number = int(channel.number("P-TOOL-00012", tool))
+        number = int(channel.number(ids.WZ_LOG_AX_NR_SPDL, tool))
         text = not_coupled(number, entries) if number else ""
         if text:
-            yield problem(channel, errors.NO_SUCH_AXIS, "P-TOOL-00012", (tool,), text)
+            yield problem(channel, errors.NO_SUCH_AXIS, ids.WZ_LOG_AX_NR_SPDL, (tool,), text)
 
 
 def tool_speeds(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """The lowest speed of a tool against the highest, where that is given; without it there is none."""
     for tool in channel.used_indexes("wz"):
-        low, high = (channel.number(number, tool) for number in ("P-TOOL-00013", "P-TOOL-00014"))
-        if channel.is_given("P-TOOL-00014", tool) and low > high:
+        low, high = (channel.number(number, tool) for number in (ids.WZ_VB_MIN, ids.WZ_VB_MAX))
+        if channel.is_given(ids.WZ_VB_MAX, tool) and low > high:
             text = f"value {low} is above the maximum {high} (0.001°/s) of P-TOOL-00014 wz[{tool}].vb_max"
-            yield problem(channel, errors.CONTRADICTION, "P-TOOL-00013", (tool,), text)
+            yield problem(channel, errors.CONTRADICTION, ids.WZ_VB_MIN, (tool,), text)
 
 
 SPINDLE_LIST_CHECKS = (

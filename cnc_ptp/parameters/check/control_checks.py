@@ -9,21 +9,20 @@ from collections.abc import Iterator
 from itertools import combinations, groupby
 
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view import telegram
-from cnc_ptp.parameters.view.control_view import ADD_ACC, ADD_JERK, ADD_VEL, flag_bits
+from cnc_ptp.parameters.view.control_view import ADD_ACC, ADD_JERK, ADD_VEL, flag_bits, friction_table_size
 
 NO_ADDITIVE_VELOCITY = 70350
 NO_ADDITIVE_TORQUE = 70351
 GEAR_DENOMINATOR = 110579
 TABLE_NOT_ASCENDING = 110591
 TABLE_MISSING = 110592
-DEFAULT_POINTS = 20
-"""Entries of a friction table where P-COMP-00062 is 0."""
 ADDITIVE_MODE = 3
-DENOMINATORS = ("P-AXIS-00226", "P-AXIS-00229", "P-AXIS-00515")
+DENOMINATORS = (ids.VORSTEUER_VS_A_NENNER, ids.VORSTEUER_VS_V_NENNER, ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM)
 
 
 def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
@@ -45,9 +44,9 @@ def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
 
 def gear_denominators(parameters: ParameterSet) -> Iterator[Problem]:
     for gear in parameters.used_indexes("getriebe"):
-        if parameters.number("P-AXIS-00512", gear) == 0:
+        if parameters.number(ids.GETRIEBE_GEAR_FACT_DENOM, gear) == 0:
             text = "value 0 is no denominator of a gear ratio"
-            yield problem(parameters, GEAR_DENOMINATOR, "P-AXIS-00512", (gear,), text)
+            yield problem(parameters, GEAR_DENOMINATOR, ids.GETRIEBE_GEAR_FACT_DENOM, (gear,), text)
 
 
 def zero_denominators(parameters: ParameterSet) -> Iterator[Problem]:
@@ -59,23 +58,26 @@ def zero_denominators(parameters: ParameterSet) -> Iterator[Problem]:
 def inertia(parameters: ParameterSet) -> Iterator[Problem]:
     """What has mechanics has an inertia."""
     torque = telegram.interface(parameters) == "torque"
-    if parameters.number("P-SIM-00007") or not (torque or parameters.text("P-SIM-00006") == "CASCADED"):
+    if parameters.number(ids.SIMULATION_INERTIA) or not (torque or parameters.text(ids.SIMULATION_MODEL) == "CASCADED"):
         return
     for gear in sorted({0, *parameters.used_indexes("getriebe")}):
-        if parameters.number("P-AXIS-00391", gear) == 0:
+        if parameters.number(ids.GETRIEBE_LOAD, gear) == 0:
             reason = "a torque command" if torque else "P-SIM-00006 simulation.model CASCADED"
             text = f"value 0 is no inertia for {reason}, P-SIM-00007 simulation.inertia is 0 too"
-            yield problem(parameters, errors.CONTRADICTION, "P-AXIS-00391", (gear,), text)
+            yield problem(parameters, errors.CONTRADICTION, ids.GETRIEBE_LOAD, (gear,), text)
 
 
 def velocity_controller(parameters: ParameterSet) -> Iterator[Problem]:
     """The velocity loop of a cascaded plant, s³ Ti + s² + Kp s + Kp/Tn, is stable for Ti < Tn (Routh)."""
-    lag, integral = parameters.number("P-SIM-00010"), parameters.number("P-SIM-00009")
-    used = parameters.text("P-SIM-00006") == "CASCADED" and telegram.interface(parameters) != "torque"
+    lag, integral = (
+        parameters.number(ids.SIMULATION_CURRENT_TIME_CONSTANT),
+        parameters.number(ids.SIMULATION_VELOCITY_INTEGRAL_TIME),
+    )
+    used = parameters.text(ids.SIMULATION_MODEL) == "CASCADED" and telegram.interface(parameters) != "torque"
     if used and integral and lag >= integral:
         where = f"the {lag} µs of P-SIM-00010 simulation.current_time_constant"
         text = f"value {integral} is not above {where}, the velocity controller is unstable"
-        yield problem(parameters, errors.CONTRADICTION, "P-SIM-00009", (), text)
+        yield problem(parameters, errors.CONTRADICTION, ids.SIMULATION_VELOCITY_INTEGRAL_TIME, (), text)
 
 
 TELEGRAMS = {"command": "antr.sercos.mdt, antr.telegram.commands", "feedback": "antr.sercos.at, antr.telegram.feedback"}
@@ -83,7 +85,7 @@ TELEGRAMS = {"command": "antr.sercos.mdt, antr.telegram.commands", "feedback": "
 
 def known_objects(parameters: ParameterSet) -> Iterator[Problem]:
     """Each object of a telegram is known and one of the drive type's own bus."""
-    kind = int(parameters.number("P-AXIS-00020"))
+    kind = int(parameters.number(ids.KENNGR_ANTR_TYP))
     for entries, known, others, own in (
         (telegram.configured_commands(parameters), telegram.COMMAND_OBJECTS, telegram.FEEDBACK_OBJECTS, "feedback"),
         (telegram.configured_feedback(parameters), telegram.FEEDBACK_OBJECTS, telegram.COMMAND_OBJECTS, "command"),
@@ -117,7 +119,10 @@ def objects_once(parameters: ParameterSet) -> Iterator[Problem]:
 
 def names_and_numbers(parameters: ParameterSet) -> Iterator[Problem]:
     """An object that has a name and a number has them of the same object."""
-    for array, name_of, number_of in (("mdt", "P-MACH-00022", "P-MACH-00023"), ("at", "P-MACH-00025", "P-MACH-00026")):
+    for array, name_of, number_of in (
+        ("mdt", ids.MDT_NC_REF, ids.MDT_IDENT_NR),
+        ("at", ids.AT_NC_REF, ids.AT_IDENT_NR),
+    ):
         for index in parameters.used_indexes(f"antr.sercos.{array}"):
             name, number = parameters.text(name_of, index).replace("_", "-"), parameters.number(number_of, index)
             if name and number and int(name[-4:]) != number:
@@ -127,26 +132,26 @@ def names_and_numbers(parameters: ParameterSet) -> Iterator[Problem]:
 
 def operation_mode(parameters: ParameterSet) -> Iterator[Problem]:
     """The quantity that P-AXIS-00320 commands is in the telegram."""
-    mode = parameters.text("P-AXIS-00320")
+    mode = parameters.text(ids.ANTR_OPERATION_MODE)
     wanted = telegram.OPERATION_MODES.get(mode)
     if wanted is not None and wanted not in telegram.commands(parameters):
         text = f"mode {mode} commands the {wanted}, {carried(parameters)}"
-        yield problem(parameters, errors.TELEGRAM, "P-AXIS-00320", (), text)
+        yield problem(parameters, errors.TELEGRAM, ids.ANTR_OPERATION_MODE, (), text)
 
 
 def additive_objects(parameters: ParameterSet) -> Iterator[Problem]:
     """ADD_… of P-AXIS-00223; a torque command can hold all of them, as the NC has the velocity controller."""
-    mode, available = flag_bits(parameters, "P-AXIS-00223"), telegram.commands(parameters)
+    mode, available = flag_bits(parameters, ids.VORSTEUER_VORSTEUERUNG), telegram.commands(parameters)
     if telegram.interface(parameters) == "torque":
         return
     if mode & ADD_VEL and "additive_velocity" not in available:
         text = f"ADD_VEL needs an additive velocity command (S-0-0037, 60B1, NSOLL_B), {carried(parameters)}"
-        yield problem(parameters, NO_ADDITIVE_VELOCITY, "P-AXIS-00223", (), text)
+        yield problem(parameters, NO_ADDITIVE_VELOCITY, ids.VORSTEUER_VORSTEUERUNG, (), text)
     if mode & (ADD_ACC | ADD_JERK) and "additive_torque" not in available:
         names = " and ".join(name for name, bit in (("ADD_ACC", ADD_ACC), ("ADD_JERK", ADD_JERK)) if mode & bit)
         needs = "need" if " and " in names else "needs"
         text = f"{names} {needs} an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
-        yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00223", (), text)
+        yield problem(parameters, NO_ADDITIVE_TORQUE, ids.VORSTEUER_VORSTEUERUNG, (), text)
 
 
 def carried(parameters: ParameterSet) -> str:
@@ -157,40 +162,40 @@ def carried(parameters: ParameterSet) -> str:
 
 def friction(parameters: ParameterSet) -> Iterator[Problem]:
     """The table of the friction compensation (P-COMP-…) where it is used."""
-    entries, points = parameters.number("P-COMP-00042"), parameters.number("P-COMP-00062") or DEFAULT_POINTS
+    entries, points = parameters.number(ids.FRICT_COMP_TABLE_ENTRIES), friction_table_size(parameters)
     if entries > points:
         text = f"value {entries} is above the {points} entries of P-COMP-00062 frict_comp.max_points"
-        yield problem(parameters, errors.CONTRADICTION, "P-COMP-00042", (), text)
+        yield problem(parameters, errors.CONTRADICTION, ids.FRICT_COMP_TABLE_ENTRIES, (), text)
         return
-    mode = parameters.number("P-COMP-00041")
+    mode = parameters.number(ids.FRICT_COMP_MODE)
     if mode not in (0, ADDITIVE_MODE):
         text = f"mode {mode} is unknown, there are 0 (off) and {ADDITIVE_MODE} (additive current)"
-        yield problem(parameters, TABLE_MISSING, "P-COMP-00041", (), text)
+        yield problem(parameters, TABLE_MISSING, ids.FRICT_COMP_MODE, (), text)
     elif mode and not entries:
         text = f"mode {mode} has no values, P-COMP-00042 frict_comp.table_entries is 0"
-        yield problem(parameters, TABLE_MISSING, "P-COMP-00041", (), text)
+        yield problem(parameters, TABLE_MISSING, ids.FRICT_COMP_MODE, (), text)
     yield from ascending(parameters, int(entries))
-    permitted = parameters.axis_type != "S" and parameters.number("P-AXIS-00522")
+    permitted = parameters.axis_type != "S" and parameters.number(ids.LR_PARAM_FRICT_COMP)
     takes_torque = {"additive_torque"} & telegram.commands(parameters) or telegram.interface(parameters) == "torque"
     if permitted and mode and not takes_torque:
         text = f"friction compensation needs an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"
-        yield problem(parameters, NO_ADDITIVE_TORQUE, "P-AXIS-00522", (), text)
+        yield problem(parameters, NO_ADDITIVE_TORQUE, ids.LR_PARAM_FRICT_COMP, (), text)
 
 
 def ascending(parameters: ParameterSet, entries: int) -> Iterator[Problem]:
     """Velocities that do not ascend; those that were not given at all in one line (entry 0 may be left out)."""
-    missing = [index for index in range(1, entries) if not parameters.is_given("P-COMP-00046", index)]
+    missing = [index for index in range(1, entries) if not parameters.is_given(ids.TABLE_IN, index)]
     if missing:
         which = f"entries {spans(missing)}" if len(missing) > 1 else f"entry {missing[0]}"
         text = f"value {entries}, but the velocity (P-COMP-00046) of {which} is not given"
-        yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00042", (), text)
+        yield problem(parameters, TABLE_NOT_ASCENDING, ids.FRICT_COMP_TABLE_ENTRIES, (), text)
     last, before = -1, -1
     for index in (index for index in range(entries) if index not in missing):
-        value = parameters.number("P-COMP-00046", index)
+        value = parameters.number(ids.TABLE_IN, index)
         if value <= before or value < 0:
             wanted = "not negative" if value < 0 else f"above the {before} of entry {last}"
             text = f"value {value} must be {wanted}, velocities ascend"
-            yield problem(parameters, TABLE_NOT_ASCENDING, "P-COMP-00046", (index,), text)
+            yield problem(parameters, TABLE_NOT_ASCENDING, ids.TABLE_IN, (index,), text)
         last, before = index, max(before, int(value))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.control_view import (
@@ -15,6 +16,7 @@ from cnc_ptp.parameters.view.control_view import (
     DEFAULT_JERK_DENOMINATOR,
     DELAY_CYCLES,
     JERK,
+    MONITORING_TYPES,
     VEL,
     ControlParameters,
     PlantParameters,
@@ -28,13 +30,12 @@ from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.parameters.view.telegram import ANALOGUE
 
 MANUAL_POSITION_DELAY = 10
-MONITORING_TYPES = (1, 2, 4)
 PARTS = ((VEL, ADD_VEL), (ACC, ADD_ACC), (JERK, ADD_JERK))
 """Bits of P-AXIS-00223: a part, and that it goes out additively."""
 ADDITIVE = "a_max and the friction table"
 NO_TORQUE_SCALE = 110465
 NO_JERK_DENOMINATOR = 110473
-DELAYS = {"P-AXIS-00389": 70349, "P-AXIS-00390": 70348}
+DELAYS = {ids.VORSTEUER_VELOCITY_DELAY_TIME: 70349, ids.VORSTEUER_ACCELERATION_DELAY_TIME: 70348}
 
 
 def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
@@ -62,15 +63,15 @@ def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
 
 
 def denominators(parameters: ParameterSet) -> Iterator[Notice]:
-    if parameters.number("P-AXIS-00326") == 0:
+    if parameters.number(ids.ANTR_TORQUE_SCALE_DENOM) == 0:
         text = "value 0 is no denominator, no additive torque is put out"
-        yield notice(parameters, "P-AXIS-00326", (), text, error_id=NO_TORQUE_SCALE)
-    if parameters.number("P-AXIS-00392") == 0 and puts_out_torque(parameters):
+        yield notice(parameters, ids.ANTR_TORQUE_SCALE_DENOM, (), text, error_id=NO_TORQUE_SCALE)
+    if parameters.number(ids.ANTR_ACC_REFERENCE_VALUE) == 0 and puts_out_torque(parameters):
         text = "value 0 is no reference of the torque scaling, no additive torque is put out"
-        yield notice(parameters, "P-AXIS-00392", (), text, error_id=NO_TORQUE_SCALE)
-    if parameters.number("P-AXIS-00338") == 0:
+        yield notice(parameters, ids.ANTR_ACC_REFERENCE_VALUE, (), text, error_id=NO_TORQUE_SCALE)
+    if parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) == 0:
         text = f"value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
-        yield notice(parameters, "P-AXIS-00338", (), text, error_id=NO_JERK_DENOMINATOR)
+        yield notice(parameters, ids.VORSTEUER_JERK_FACT_DENOM, (), text, error_id=NO_JERK_DENOMINATOR)
 
 
 def puts_out_torque(parameters: ParameterSet) -> bool:
@@ -79,66 +80,72 @@ def puts_out_torque(parameters: ParameterSet) -> bool:
 
 
 def weight(parameters: ParameterSet) -> Iterator[Notice]:
-    value, denominator = parameters.number("P-AXIS-00228"), parameters.number("P-AXIS-00229")
+    value, denominator = parameters.number(ids.VORSTEUER_VS_V_FAKTOR), parameters.number(ids.VORSTEUER_VS_V_NENNER)
     if value > denominator:
         text = f"weight {value / denominator:g} of the feedforward is above 1, the axis leads its setpoint"
-        yield notice(parameters, "P-AXIS-00228", (), text)
-    own = parameters.number("P-AXIS-00514") / parameters.number("P-AXIS-00515")
+        yield notice(parameters, ids.VORSTEUER_VS_V_FAKTOR, (), text)
+    own = parameters.number(ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM) / parameters.number(
+        ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM
+    )
     if own > 1 and own * value > denominator:
         text = (
             f"weight {own * value / denominator:g} of the velocity feedforward is above 1, the axis leads its setpoint"
         )
-        yield notice(parameters, "P-AXIS-00514", (), text)
+        yield notice(parameters, ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM, (), text)
 
 
 def position_delay(parameters: ParameterSet) -> Iterator[Notice]:
-    value = parameters.number("P-COMP-00043")
+    value = parameters.number(ids.FRICT_COMP_POSITION_DELAY)
     if value > MANUAL_POSITION_DELAY:
         text = f"value {value} is above the {MANUAL_POSITION_DELAY} of the manual, accepted"
-        yield notice(parameters, "P-COMP-00043", (), text)
+        yield notice(parameters, ids.FRICT_COMP_POSITION_DELAY, (), text)
 
 
 def monitoring_type(parameters: ParameterSet) -> Iterator[Notice]:
     """A kind of monitoring that there is none of, and that is not 0 either."""
     for gear in used_gears(parameters):
-        kind = parameters.number("P-AXIS-00172", gear)
+        kind = parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear)
         if kind not in (0, *MONITORING_TYPES):
             known = ", ".join(map(str, MONITORING_TYPES))
             text = f"type {kind} is none of {known}, the following error is not monitored"
-            yield notice(parameters, "P-AXIS-00172", (gear,), text)
+            yield notice(parameters, ids.GETRIEBE_SLEP_UEBERW_TYP, (gear,), text)
 
 
 def following_error(parameters: ParameterSet) -> Iterator[Notice]:
     """Monitoring that would trip in plain motion: vb_max / kv above slep_max, where the limit is a fixed one."""
-    gear = (int(parameters.number("P-AXIS-00079")) - 1,)
-    if parameters.number("P-AXIS-00172", *gear) not in MONITORING_TYPES or parameters.kind != "axis":
+    gear = (int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1,)
+    if parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, *gear) not in MONITORING_TYPES or parameters.kind != "axis":
         return
-    expected = parameters.kernel("P-AXIS-00212", *gear) / parameters.kernel("P-AXIS-00099", *gear)
-    limit = parameters.kernel("P-AXIS-00168", *gear)
-    if expected >= limit and parameters.number("P-AXIS-00172", *gear) != 2:  # the linear one grows with the velocity
+    expected = parameters.kernel(ids.DYNAMIK_VB_MAX, *gear) / parameters.kernel(ids.GETRIEBE_KV, *gear)
+    limit = parameters.kernel(ids.GETRIEBE_SLEP_MAX, *gear)
+    if (
+        expected >= limit and parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, *gear) != 2
+    ):  # the linear one grows with the velocity
         unit = "mm" if parameters.axis_type == "T" else "deg"
         text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
-        yield notice(parameters, "P-AXIS-00168", gear, text)
+        yield notice(parameters, ids.GETRIEBE_SLEP_MAX, gear, text)
 
 
 def open_loop(parameters: ParameterSet) -> Iterator[Notice]:
     """The open position loop is for spindles (TF5200 spindle 2.2.4)."""
-    mode = parameters.text("P-AXIS-00320")
+    mode = parameters.text(ids.ANTR_OPERATION_MODE)
     if mode.startswith("OPEN_POSITION_LOOP") and parameters.kind != "spindle":
-        yield notice(parameters, "P-AXIS-00320", (), f"mode {mode} is accepted, but the position loop stays closed")
+        yield notice(
+            parameters, ids.ANTR_OPERATION_MODE, (), f"mode {mode} is accepted, but the position loop stays closed"
+        )
 
 
 def used_gears(parameters: ParameterSet) -> list[int]:
     """Records that can be in work: of an axis the one after start-up, of a spindle all that there are."""
-    start = int(parameters.number("P-AXIS-00079")) - 1
+    start = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
     return sorted({start, *parameters.used_indexes("getriebe")}) if parameters.kind == "spindle" else [start]
 
 
 def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
     """A velocity command that is too short for the largest velocity; a DA word has a scale in each gear."""
     gears = used_gears(parameters)
-    if int(parameters.number("P-AXIS-00020")) not in ANALOGUE:
-        gears = [max(gears, key=lambda gear: parameters.kernel("P-AXIS-00212", gear))]
+    if int(parameters.number(ids.KENNGR_ANTR_TYP)) not in ANALOGUE:
+        gears = [max(gears, key=lambda gear: parameters.kernel(ids.DYNAMIK_VB_MAX, gear))]
     for gear in gears:
         yield from velocity_range_of(parameters, gear, cycle_time)
 
@@ -148,10 +155,12 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
     drive, scaling = control.drive, control.scaling
     if drive.ideal or drive.interface != "velocity":
         return
-    scale, number = (scaling.analogue, "P-AXIS-00129") if drive.analogue else (scaling.velocity, "P-AXIS-00206")
+    scale, number = (
+        (scaling.analogue, ids.GETRIEBE_MULTI_GAIN_Z) if drive.analogue else (scaling.velocity, ids.ANTR_V_RESO_NUM)
+    )
     bits = drive.command_bits["velocity"]
     limit = largest_digit(bits) / scale if scale else 0.0
-    largest = parameters.kernel("P-AXIS-00212", gear)
+    largest = parameters.kernel(ids.DYNAMIK_VB_MAX, gear)
     if largest > limit:
         unit = "mm/s" if parameters.axis_type == "T" else "deg/s"
         text = (
@@ -178,7 +187,7 @@ def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice
         if is_used and needed > limit:
             carries = f"the {bits} bits of the {word} carry {limit:g} {unit}"
             text = f"{carries}, less than the {needed:g} {unit} of {cause}, what is above is cut off"
-            yield notice(parameters, "P-AXIS-00325", (), text)
+            yield notice(parameters, ids.ANTR_TORQUE_SCALE_NUM, (), text)
 
 
 def additive_torque(parameters: ParameterSet, control: ControlParameters) -> tuple[float, str]:
@@ -198,8 +207,8 @@ def largest_torque(parameters: ParameterSet, control: ControlParameters) -> tupl
 def accelerating_torque(parameters: ParameterSet) -> float:
     """For the largest acceleration (P-AXIS-00008) in the gear that needs most, Nm (N)."""
     return max(
-        torque_per_acceleration(parameters, gear, parameters.number("P-AXIS-00391", gear))
-        * parameters.kernel("P-AXIS-00008", gear)
+        torque_per_acceleration(parameters, gear, parameters.number(ids.GETRIEBE_LOAD, gear))
+        * parameters.kernel(ids.DYNAMIK_A_MAX, gear)
         for gear in used_gears(parameters)
     )
 
@@ -219,7 +228,7 @@ def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
                 f"gain {control.plant.kv:g} 1/s of the drive is not the {control.kv:g} 1/s of P-AXIS-00099 by which "
                 "feedforward becomes a position; a lag stays"
             )
-            yield notice(parameters, "P-SIM-00019", (), text)
+            yield notice(parameters, ids.SIMULATION_DRIVE_KV, (), text)
 
 
 def largest_digit(bits: int) -> int:
@@ -248,10 +257,10 @@ def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[
         return
     limit = loop.limit(cycle_time)
     text = f"gain {kv:g} 1/s makes the position loop unstable, with this drive the limit is {limit:.4g} 1/s"
-    if in_drive and parameters.number("P-SIM-00019"):
-        yield notice(parameters, "P-SIM-00019", (), text)
+    if in_drive and parameters.number(ids.SIMULATION_DRIVE_KV):
+        yield notice(parameters, ids.SIMULATION_DRIVE_KV, (), text)
     else:
-        yield notice(parameters, "P-AXIS-00099", (gear,), text)
+        yield notice(parameters, ids.GETRIEBE_KV, (gear,), text)
 
 
 def small_times(plant: PlantParameters, cycle_time: float) -> float:

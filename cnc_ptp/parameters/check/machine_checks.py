@@ -16,6 +16,7 @@ from cnc_ptp.parameters.check.channel_checks import CHANNEL_CHECKS
 from cnc_ptp.parameters.check.control_checks import control_checks
 from cnc_ptp.parameters.check.limit_checks import parameter_against_parameter
 from cnc_ptp.parameters.check.spindle_checks import spindle_problems
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -42,13 +43,13 @@ def check_machine(sets: Sets) -> list[Problem]:
 def duplicate_numbers(sets: Sets) -> Iterator[Problem]:
     owners: dict[int, ParameterSet] = {}
     for parameters in sets.values():
-        if parameters.kind == "channel" or parameters.is_invalid("P-AXIS-00016"):
+        if parameters.kind == "channel" or parameters.is_invalid(ids.KOPF_ACHS_NR):
             continue
-        number = int(parameters.number("P-AXIS-00016"))
+        number = int(parameters.number(ids.KOPF_ACHS_NR))
         owner = owners.setdefault(number, parameters)
         if owner is not parameters:
             text = f"value {number} is the logical axis number of /{owner.node} already"
-            yield problem(parameters, errors.DUPLICATE_NUMBER, "P-AXIS-00016", (), text)
+            yield problem(parameters, errors.DUPLICATE_NUMBER, ids.KOPF_ACHS_NR, (), text)
 
 
 def axes_in_two_channels(sets: Sets) -> Iterator[Problem]:
@@ -60,7 +61,7 @@ def axes_in_two_channels(sets: Sets) -> Iterator[Problem]:
         for entry in axis_entries(channel, sets):
             if entry.node and owners.setdefault(entry.node, channel.node) != channel.node:
                 text = f"channel /{channel.node}: axis /{entry.node} belongs to channel /{owners[entry.node]} already"
-                place = channel.where("P-CHAN-00035", *entry.indexes) if entry.indexes else channel.place
+                place = channel.where(ids.ACHSE_LOG_ACHS_NR, *entry.indexes) if entry.indexes else channel.place
                 yield Problem(errors.DUPLICATE_NUMBER, place, text)
 
 

@@ -4,21 +4,22 @@ from collections.abc import Iterator, Mapping
 
 from cnc_ptp.parameters.check.control_notices import control_notices
 from cnc_ptp.parameters.check.friction_notices import friction_notices
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.axis_view import is_modulo
 from cnc_ptp.parameters.view.channel_members import spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
-from cnc_ptp.parameters.view.spindle_view import control_limit, feedback, is_open_loop
+from cnc_ptp.parameters.view.spindle_view import COEFFICIENTS, control_limit, feedback, is_open_loop
 
-UNIT_LISTS = {"channel": "P-MACH-00004", "axis": "P-MACH-00005", "spindle": "P-MACH-00006"}
+UNIT_LISTS = {"channel": ids.CHANNELS, "axis": ids.AXES, "spindle": ids.SPINDLES}
 SERCOS = 2
 HOMED_BY_THE_NC = (1, 5, 6)
 """Drive types of what TF5200 spindle 2.3 calls analogue spindles: conventional, Lightbus, terminal (P-AXIS-00156)."""
 UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
-UPPER_END = "P-AXIS-00126"
-GEAR_RATIO = ("P-AXIS-00511", "P-AXIS-00512")
+UPPER_END = ids.GETRIEBE_MODULOO
+GEAR_RATIO = (ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM)
 HYPERBOLA = 1
 SMALL_STEP = 0.001
 """Part of the constant acceleration."""
@@ -26,7 +27,7 @@ SMALL_STEP = 0.001
 
 def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
     """One line a warning, with file and line."""
-    cycle_time = machine.kernel("P-MACH-00001")
+    cycle_time = machine.kernel(ids.CYCLE_TIME_US)
     yield from units_without_section(machine, sets)
     for parameters in sets.values():
         yield from without_effect(parameters)
@@ -60,18 +61,18 @@ def without_effect(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def slope_not_available(channel: ParameterSet) -> Iterator[Notice]:
-    value = channel.number("P-CHAN-00071")
+    value = channel.number(ids.SLOPE_PROFILE)
     if value in UNAVAILABLE_SLOPES:
         text = f"value {value}, {UNAVAILABLE_SLOPES[int(value)]}, is not available; 1 (TRAPEZ) is used"
-        yield notice(channel, "P-CHAN-00071", (), text)
+        yield notice(channel, ids.SLOPE_PROFILE, (), text)
 
 
 def tools_without_limit(parameters: ParameterSet) -> Iterator[Notice]:
     """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
     for tool in parameters.used_indexes("wz"):
-        if not parameters.number("P-TOOL-00012", tool):
+        if not parameters.number(ids.WZ_LOG_AX_NR_SPDL, tool):
             continue
-        for number in ("P-TOOL-00014", "P-TOOL-00015"):
+        for number in (ids.WZ_VB_MAX, ids.WZ_A_MAX):
             if not parameters.is_given(number, tool):
                 yield notice(parameters, number, (tool,), f"not given, tool {tool} has no such limit")
 
@@ -81,24 +82,26 @@ def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
     for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
         for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
             if group:
-                yield notice(parameters, "P-CHAN-00038", (group, pair), "only coupling group 0 is taken from here")
-            elif not parameters.number("P-CHAN-00061", group, pair):
-                yield notice(parameters, "P-CHAN-00061", (group, pair), "a pair of path axes is not coupled here")
+                yield notice(
+                    parameters, ids.PAAR_LOG_ACHS_NR_SLAVE, (group, pair), "only coupling group 0 is taken from here"
+                )
+            elif not parameters.number(ids.PAAR_MODE, group, pair):
+                yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled here")
 
 
 def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
     """Speeds of a gear stage that its spindle refuses in motion (24001)."""
-    if not channel.number("P-CHAN-00052"):
+    if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         return
     for entry in spindle_entries(channel, sets):
         if entry.node is None or not entry.indexes:
             continue
         for gear in channel.used_indexes(f"spindel.{entry.indexes[0]}.range_table"):
-            top = channel.number("P-CHAN-00055", *entry.indexes, gear)
-            most = sets[entry.node].kernel("P-AXIS-00212", gear) / DEG_S_PER_RPM
+            top = channel.number(ids.RANGE_TABLE_MAX_SPEED, *entry.indexes, gear)
+            most = sets[entry.node].kernel(ids.DYNAMIK_VB_MAX, gear) / DEG_S_PER_RPM
             if top > most:
                 text = f"value {top} (rpm) is above P-AXIS-00212 getriebe[{gear}].vb_max of /{entry.node}, {most:g} rpm"
-                yield notice(channel, "P-CHAN-00055", (*entry.indexes, gear), text)
+                yield notice(channel, ids.RANGE_TABLE_MAX_SPEED, (*entry.indexes, gear), text)
 
 
 def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
@@ -131,22 +134,22 @@ def spindle_notices(parameters: ParameterSet) -> Iterator[Notice]:
 
 def homing_mode(parameters: ParameterSet) -> Iterator[Notice]:
     """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
-    drive, no_automatic = parameters.number("P-AXIS-00020"), int(parameters.number("P-AXIS-00015")) & 0x100
+    drive, no_automatic = parameters.number(ids.KENNGR_ANTR_TYP), int(parameters.number(ids.KENNGR_ACHS_MODE)) & 0x100
     if drive == SERCOS and not no_automatic:
         text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
-        yield notice(parameters, "P-AXIS-00015", (), text)
+        yield notice(parameters, ids.KENNGR_ACHS_MODE, (), text)
     elif drive in HOMED_BY_THE_NC and no_automatic:
         text = f"0x100 (no automatic homing) should not be set for {drive_type(parameters)}, which the NC homes"
-        yield notice(parameters, "P-AXIS-00015", (), text)
-    if drive in HOMED_BY_THE_NC and has_position(parameters) and not parameters.number("P-AXIS-00156"):
+        yield notice(parameters, ids.KENNGR_ACHS_MODE, (), text)
+    if drive in HOMED_BY_THE_NC and has_position(parameters) and not parameters.number(ids.KENNGR_REF_OHNE_NOCKEN):
         text = f"should be 1 for a spindle with {drive_type(parameters)}; it is homed without a cam"
-        yield notice(parameters, "P-AXIS-00156", (), text)
+        yield notice(parameters, ids.KENNGR_REF_OHNE_NOCKEN, (), text)
 
 
 def drive_type(parameters: ParameterSet) -> str:
     """Drive type 6 (+-10 V terminal)."""
-    number = int(parameters.number("P-AXIS-00020"))
-    return f"drive type {number} ({parameters.catalogue.by_id['P-AXIS-00020'].choices[number]})"
+    number = int(parameters.number(ids.KENNGR_ANTR_TYP))
+    return f"drive type {number} ({parameters.catalogue.by_id[ids.KENNGR_ANTR_TYP].choices[number]})"
 
 
 def has_position(parameters: ParameterSet) -> bool:
@@ -157,34 +160,36 @@ def has_position(parameters: ParameterSet) -> bool:
 def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
     """The way to a position is measured, which ends at the control limit."""
     for gear in parameters.used_indexes("getriebe"):
-        if is_open_loop(parameters) or parameters.kernel("P-AXIS-00209", gear) <= control_limit(parameters, gear):
-            continue
-        text = (
-            f"value {parameters.number('P-AXIS-00209', gear)} is above the control limit "
-            f"{parameters.number('P-AXIS-00220', gear)} (0.001°/s) of P-AXIS-00220 getriebe[{gear}].vb_regelgrenze; "
-            "positionings are that much slower"
+        rapid, limit = (
+            parameters.number(number, gear) for number in (ids.GETRIEBE_VB_EILGANG, ids.GETRIEBE_VB_REGELGRENZE)
         )
-        yield notice(parameters, "P-AXIS-00209", (gear,), text)
+        above = parameters.kernel(ids.GETRIEBE_VB_EILGANG, gear) > control_limit(parameters, gear)
+        if above and not is_open_loop(parameters):
+            text = (
+                f"value {rapid} is above the control limit {limit} (0.001°/s) of P-AXIS-00220 "
+                f"getriebe[{gear}].vb_regelgrenze; positionings are that much slower"
+            )
+            yield notice(parameters, ids.GETRIEBE_VB_EILGANG, (gear,), text)
 
 
 def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
     """A hyperbola that does not begin with the constant acceleration."""
     for gear in parameters.used_indexes("getriebe"):
-        if parameters.number("P-AXIS-00202", gear) != HYPERBOLA:
+        if parameters.number(ids.BESCHL_KENNLINIE_TYP, gear) != HYPERBOLA:
             continue
-        b1, b2, b3 = (parameters.kernel(f"P-AXIS-0002{n}", gear) for n in (6, 7, 8))
+        b1, b2, b3 = (parameters.kernel(number, gear) for number in COEFFICIENTS)
         begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
-        constant = parameters.kernel("P-AXIS-00007", gear)
+        constant = parameters.kernel(ids.BESCHL_KENNLINIE_A_KONST, gear)
         if abs(begin - constant) > SMALL_STEP * constant:
             text = f"the hyperbola begins with {begin:g} °/s², P-AXIS-00007 is {constant:g} °/s²: a step in the curve"
-            yield notice(parameters, "P-AXIS-00026", (gear,), text)
+            yield notice(parameters, ids.BESCHL_KENNLINIE_B1, (gear,), text)
 
 
 def range_of_a_conveyor(parameters: ParameterSet) -> Iterator[Notice]:
     """The default suits a turntable, hardly a conveyor."""
     if parameters.axis_type != "T" or not is_modulo(parameters):
         return
-    gear = int(parameters.number("P-AXIS-00079")) - 1
+    gear = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
     if not parameters.is_given(UPPER_END, gear):
         end = parameters.kernel(UPPER_END, gear)
         yield notice(parameters, UPPER_END, (gear,), f"not given, the modulo range of the axis ends at {end:g} mm")

@@ -1,6 +1,7 @@
 """What a node says to a parameter that somebody wants to change, at its start or while it runs."""
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import dotted
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.read.sections import checked_entry
@@ -8,7 +9,7 @@ from cnc_ptp.parameters.read.source import Entry, Value
 from cnc_ptp.parameters.read.values import BadValue, shown
 
 MEMORY_IS_FIXED = 110641
-POINTS = "P-COMP-00062"
+POINTS = ids.FRICT_COMP_MAX_POINTS
 """Table size for which memory is kept from the start on (TF5200 friction compensation 5.2.2)."""
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -42,7 +43,7 @@ def read_parameters(text: str, file: str) -> tuple[ParameterSet, dict[str, Param
 def list_units(machine: ParameterSet, problems: list[Problem]) -> dict[str, str]:
     """Node name -> kind, as /machine lists them."""
     units: dict[str, str] = {}
-    for number, kind in (("P-MACH-00004", "channel"), ("P-MACH-00005", "axis"), ("P-MACH-00006", "spindle")):
+    for number, kind in ((ids.CHANNELS, "channel"), (ids.AXES, "axis"), (ids.SPINDLES, "spindle")):
         for name in (name.lstrip("/") for name in machine.names(number)):
             trouble = name_trouble(name, units)
             if trouble:
@@ -79,9 +80,9 @@ def suggestion(name: str, names: Mapping[str, str]) -> str:
 def number_units(sets: dict[str, ParameterSet]) -> None:
     """Gives units without P-AXIS-00016 the smallest free logical axis numbers, axes first."""
     axes = [parameters for parameters in sets.values() if parameters.kind in ("axis", "spindle")]
-    taken = {parameters.value("P-AXIS-00016") for parameters in axes if parameters.is_given("P-AXIS-00016")}
+    taken = {parameters.value(ids.KOPF_ACHS_NR) for parameters in axes if parameters.is_given(ids.KOPF_ACHS_NR)}
     free = (number for number in range(1, 65535) if number not in taken)
     for parameters in axes:
-        if not parameters.is_given("P-AXIS-00016"):
+        if not parameters.is_given(ids.KOPF_ACHS_NR):
             implied = {**parameters.implied, "kopf.achs_nr": next(free)}
             sets[parameters.node] = replace(parameters, implied=implied)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cnc_ptp.parameters import units
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import (
     Array,
     Catalogue,
@@ -63,7 +64,7 @@ class ParameterSet:
         """T, R or S; empty for machine and channels."""
         if self.kind not in ("axis", "spindle"):
             return ""
-        return AXIS_TYPES[str(self.value("P-AXIS-00018"))]
+        return AXIS_TYPES[str(self.value(ids.KENNGR_ACHS_TYP))]
 
     def value(self, number: str, *indexes: int) -> ParameterValue:
         """Value in the type and unit of the list: the given one, else the default.

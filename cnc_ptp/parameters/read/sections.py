@@ -3,6 +3,7 @@
 import difflib
 
 from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import (
     AXIS_LETTERS,
     Catalogue,
@@ -37,7 +38,7 @@ def section_axis_type(section: Section, kind: str) -> str:
     if kind not in ("axis", "spindle"):
         return ""
     value: ParameterValue = "ACHSTYP_SPINDEL" if kind == "spindle" else "ACHSTYP_TRANSLATOR"
-    declaration = catalogue().by_id["P-AXIS-00018"]
+    declaration = catalogue().by_id[ids.KENNGR_ACHS_TYP]
     for entry in section.entries:
         if entry.name == declaration.key:
             try:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.view.encoder import encoder_increment
@@ -10,7 +11,7 @@ from cnc_ptp.parameters.view.encoder import encoder_increment
 VIRTUAL_AXIS = 16
 MODULO, MODULO_LINEAR = 0x4, 0x400
 """Bits of P-AXIS-00015; the second one is for linear axes."""
-SOFT_LIMITS = ("P-AXIS-00177", "P-AXIS-00178")
+SOFT_LIMITS = (ids.KENNGR_SWE_NEG, ids.KENNGR_SWE_POS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,60 +74,64 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     gear = active_gear(parameters)
     rotary = parameters.axis_type == "R"
     modulo = is_modulo(parameters)
-    max_velocity = parameters.kernel("P-AXIS-00212", gear)
+    max_velocity = parameters.kernel(ids.DYNAMIK_VB_MAX, gear)
     return AxisParameters(
         name=parameters.node,
-        number=int(parameters.number("P-AXIS-00016")),
+        number=int(parameters.number(ids.KOPF_ACHS_NR)),
         rotary=rotary,
         modulo=modulo,
-        modulo_low=parameters.kernel("P-AXIS-00127", gear) if modulo else 0.0,
-        modulo_high=parameters.kernel("P-AXIS-00126", gear) if modulo else 0.0,
-        virtual=int(parameters.number("P-AXIS-00020")) == VIRTUAL_AXIS,
+        modulo_low=parameters.kernel(ids.GETRIEBE_MODULOU, gear) if modulo else 0.0,
+        modulo_high=parameters.kernel(ids.GETRIEBE_MODULOO, gear) if modulo else 0.0,
+        virtual=int(parameters.number(ids.KENNGR_ANTR_TYP)) == VIRTUAL_AXIS,
         max_velocity=max_velocity,
-        rapid_velocity=parameters.kernel("P-AXIS-00209", gear),
-        reference_velocity=parameters.kernel("P-MACH-00008") or max_velocity,
-        max_acceleration=parameters.kernel("P-AXIS-00008", gear),
-        acceleration=parameters.kernel("P-AXIS-00001", gear),
-        deceleration=parameters.kernel("P-AXIS-00002", gear),
+        rapid_velocity=parameters.kernel(ids.GETRIEBE_VB_EILGANG, gear),
+        reference_velocity=parameters.kernel(ids.PTP_REFERENCE_VELOCITY) or max_velocity,
+        max_acceleration=parameters.kernel(ids.DYNAMIK_A_MAX, gear),
+        acceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BESCHL, gear),
+        deceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BREMS, gear),
         emergency_deceleration=emergency_deceleration(parameters, gear),
         jerk=jerk(parameters, gear),
-        soft_limit_negative=-math.inf if modulo else parameters.kernel("P-AXIS-00177"),
-        soft_limit_positive=math.inf if modulo else parameters.kernel("P-AXIS-00178"),
-        position_window=parameters.kernel("P-AXIS-00236", gear),
+        soft_limit_negative=-math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_NEG),
+        soft_limit_positive=math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_POS),
+        position_window=parameters.kernel(ids.GETRIEBE_WINDOW, gear),
         encoder_increment=encoder_increment(parameters, gear),
-        override_type=int(parameters.number("P-MACH-00007")),
-        override_steps=int(parameters.number("P-MACH-00010")),
-        override_interval=parameters.number("P-MACH-00011") / 1000.0,
-        max_override_percent=parameters.percent("P-AXIS-00109"),
-        external_dead_time=parameters.kernel("P-MACH-00012"),
-        external_timeout=parameters.number("P-MACH-00013") / 1000.0,
-        target_time=parameters.number("P-MACH-00014") / 1000.0,
-        error_propagation_delayed=bool(parameters.number("P-MACH-00015")),
-        error_propagation_delay=parameters.number("P-MACH-00016") / 1000.0,
-        couple_to_actual=bool(parameters.number("P-MACH-00017")),
-        velocity_window=parameters.kernel("P-MACH-00018"),
-        velocity_filter_time=parameters.kernel("P-MACH-00019"),
-        powered_at_start=bool(parameters.number("P-SIM-00004")),
-        referenced_at_start=bool(parameters.number("P-SIM-00005")),
-        start_position=parameters.kernel("P-SIM-00003"),
+        override_type=int(parameters.number(ids.PTP_OVERRIDE_TYPE)),
+        override_steps=int(parameters.number(ids.PTP_OVERRIDE_STEPS)),
+        override_interval=parameters.number(ids.PTP_OVERRIDE_INTERVAL_MS) / 1000.0,
+        max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
+        external_dead_time=parameters.kernel(ids.PTP_EXTERNAL_DEAD_TIME),
+        external_timeout=parameters.number(ids.PTP_EXTERNAL_TIMEOUT_MS) / 1000.0,
+        target_time=parameters.number(ids.PTP_TARGET_TIME_MS) / 1000.0,
+        error_propagation_delayed=bool(parameters.number(ids.COUPLING_ERROR_PROPAGATION_MODE)),
+        error_propagation_delay=parameters.number(ids.COUPLING_ERROR_PROPAGATION_DELAY_MS) / 1000.0,
+        couple_to_actual=bool(parameters.number(ids.COUPLING_COUPLE_TO_ACTUAL)),
+        velocity_window=parameters.kernel(ids.COUPLING_VELOCITY_WINDOW),
+        velocity_filter_time=parameters.kernel(ids.COUPLING_VELOCITY_FILTER_TIME),
+        powered_at_start=bool(parameters.number(ids.SIMULATION_POWERED_AT_START)),
+        referenced_at_start=bool(parameters.number(ids.SIMULATION_REFERENCED_AT_START)),
+        start_position=parameters.kernel(ids.SIMULATION_START_POSITION),
         control=control_view(parameters, gear, cycle_time),
     )
 
 
 def active_gear(parameters: ParameterSet) -> int:
     """Index of the gear record in use after start-up."""
-    return int(parameters.number("P-AXIS-00079")) - 1
+    return int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
 
 
 def jerk(parameters: ParameterSet, gear: int) -> float:
     """J = a_beschl / tr_beschl_zu, in mm/s³ or °/s³."""
-    return parameters.number("P-AXIS-00001", gear) * 1_000_000 / parameters.number("P-AXIS-00196", gear)
+    return (
+        parameters.number(ids.SLOPE_PROFIL_A_BESCHL, gear)
+        * 1_000_000
+        / parameters.number(ids.SLOPE_PROFIL_TR_BESCHL_ZU, gear)
+    )
 
 
 def emergency_deceleration(parameters: ParameterSet, gear: int) -> float:
-    return parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear)
+    return parameters.kernel(ids.DYNAMIK_A_EMERGENCY, gear) or parameters.kernel(ids.DYNAMIK_A_MAX, gear)
 
 
 def is_modulo(parameters: ParameterSet) -> bool:
     bits = MODULO | MODULO_LINEAR if parameters.axis_type == "T" else MODULO
-    return bool(int(parameters.number("P-AXIS-00015")) & bits)
+    return bool(int(parameters.number(ids.KENNGR_ACHS_MODE)) & bits)

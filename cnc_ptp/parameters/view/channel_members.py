@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 Sets = Mapping[str, ParameterSet]
@@ -42,9 +43,9 @@ def axis_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]:
 def listed_axes(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEntry]:
     for group in channel.used_indexes("gruppe"):
         for axis in channel.used_indexes(f"gruppe.{group}.achse"):
-            number = int(channel.number("P-CHAN-00035", group, axis))
+            number = int(channel.number(ids.ACHSE_LOG_ACHS_NR, group, axis))
             unit = unit_with(number, sets)
-            name = channel.text("P-CHAN-00006", group, axis) or program_name(unit)
+            name = channel.text(ids.ACHSE_BEZEICHNUNG, group, axis) or program_name(unit)
             yield ChannelAxisEntry(name, unit.node if unit else None, number, (group, axis))
 
 
@@ -57,36 +58,36 @@ def spindle_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]
         unlisted(unit) for unit in sets.values() if unit.kind == "spindle"
     ]
     main = main_spindle_number(channel, entries)
-    main_name = channel.text("P-CHAN-00053") or "S"
+    main_name = channel.text(ids.MAIN_SPINDLE_NAME) or "S"
     return [replace(entry, name=main_name) if main and entry.number == main else entry for entry in entries]
 
 
 def listed_spindles(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEntry]:
     for index in channel.used_indexes("spindel"):
-        number = int(channel.number("P-CHAN-00036", index))
+        number = int(channel.number(ids.SPINDEL_LOG_ACHS_NR, index))
         unit = unit_with(number, sets)
-        name = channel.text("P-CHAN-00007", index) or program_name(unit)
-        plc_control = bool(channel.number("P-CHAN-00069", index))
+        name = channel.text(ids.SPINDEL_BEZEICHNUNG, index) or program_name(unit)
+        plc_control = bool(channel.number(ids.SPINDEL_PLC_CONTROL, index))
         yield ChannelAxisEntry(name, unit.node if unit else None, number, (index,), name, plc_control)
 
 
 def main_spindle_number(channel: ParameterSet, entries: list[ChannelAxisEntry]) -> int:
     """Logical number of the main spindle: P-CHAN-00051, or the first of spindles that were not listed; 0 for none."""
-    if entries and not entries[0].indexes and not channel.is_given("P-CHAN-00051"):
+    if entries and not entries[0].indexes and not channel.is_given(ids.MAIN_SPINDLE_AX_NR):
         return entries[0].number
-    return int(channel.number("P-CHAN-00051"))
+    return int(channel.number(ids.MAIN_SPINDLE_AX_NR))
 
 
 def unit_with(number: int, sets: Sets) -> ParameterSet | None:
     units = (unit for unit in sets.values() if unit.kind != "channel")
-    return next((unit for unit in units if number and unit.number("P-AXIS-00016") == number), None)
+    return next((unit for unit in units if number and unit.number(ids.KOPF_ACHS_NR) == number), None)
 
 
 def unlisted(unit: ParameterSet) -> ChannelAxisEntry:
     name = program_name(unit)
-    return ChannelAxisEntry(name, unit.node, int(unit.number("P-AXIS-00016")), (), name)
+    return ChannelAxisEntry(name, unit.node, int(unit.number(ids.KOPF_ACHS_NR)), (), name)
 
 
 def program_name(unit: ParameterSet | None) -> str:
     """What a program calls a unit that the channel gives no name: P-AXIS-00297 or the node name in capitals."""
-    return (unit.text("P-AXIS-00297") or unit.node.upper()) if unit else ""
+    return (unit.text(ids.KOPF_LOG_ACHS_NAME) or unit.node.upper()) if unit else ""

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, axis_entries, main_spindle_number, spindle_entries
@@ -96,20 +97,26 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Cha
         spindles=tuple(channel_spindle(channel, entry) for entry in spindles),
         main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
         m_functions=m_functions(channel),
-        max_override_percent=channel.percent("P-CHAN-00056"),
-        circle_center_tolerance=channel.kernel("P-CHAN-00059"),
-        circle_center_ratio=channel.kernel("P-CHAN-00060"),
-        gear_change=bool(channel.number("P-CHAN-00052")),
+        max_override_percent=channel.percent(ids.MAX_VB_OVERRIDE),
+        circle_center_tolerance=channel.kernel(ids.MITTELPKT_DIFF),
+        circle_center_ratio=channel.kernel(ids.MITTELPKT_FAKTOR),
+        gear_change=bool(channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE)),
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
         tool_records=frozenset(channel.used_indexes("wz")),
-        slope="TRAPEZ" if channel.number("P-CHAN-00071") else "STEP",
+        slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
     )
 
 
 def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSpindle:
     """One of spindel[i], or one that the channel has without listing it: then all parameters have their defaults."""
-    numbers = ("P-CHAN-00045", "P-CHAN-00047", "P-CHAN-00049", "P-CHAN-00043", "P-CHAN-00081")
+    numbers = (
+        ids.SPINDEL_M3_SYNCH,
+        ids.SPINDEL_M4_SYNCH,
+        ids.SPINDEL_M5_SYNCH,
+        ids.SPINDEL_M19_SYNCH,
+        ids.SPINDEL_S_SYNCH,
+    )
     m3, m4, m5, m19, s = (synchronisation(channel.text(number, *entry.indexes)) for number in numbers)
     node = "" if entry.plc_control else str(entry.node)
     spindle = ChannelSpindle(entry.name, node, m3, m4, m5, m19, s, entry.own_name, entry.number)
@@ -117,8 +124,8 @@ def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSp
         return spindle
     return spindle._replace(
         ranges=speed_ranges(channel, *entry.indexes),
-        from_top=bool(channel.number("P-CHAN-00074", *entry.indexes)),
-        automatic=bool(channel.number("P-CHAN-00004", *entry.indexes)),
+        from_top=bool(channel.number(ids.SPINDEL_RANGE_WAY, *entry.indexes)),
+        automatic=bool(channel.number(ids.SPINDEL_AUTOM_RANGE, *entry.indexes)),
     )
 
 
@@ -126,7 +133,10 @@ def speed_ranges(channel: ParameterSet, spindle: int) -> tuple[tuple[float, floa
     """(lowest, highest) speed of the gear stages up to the last one that the file gives, rpm."""
     given = channel.used_indexes(f"spindel.{spindle}.range_table")
     return tuple(
-        (float(channel.number("P-CHAN-00058", spindle, gear)), float(channel.number("P-CHAN-00055", spindle, gear)))
+        (
+            float(channel.number(ids.RANGE_TABLE_MIN_SPEED, spindle, gear)),
+            float(channel.number(ids.RANGE_TABLE_MAX_SPEED, spindle, gear)),
+        )
         for gear in range(max(given, default=-1) + 1)
     )
 
@@ -136,8 +146,11 @@ def coupled_spindles(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]
     name = {entry.number: entry.name for entry in spindles}
     pairs = []
     for pair in channel.used_indexes("synchro_data.koppel_gruppe.0.paar"):
-        if channel.number("P-CHAN-00061", 0, pair) == SPINDLES:
-            slave, master = (int(channel.number(number, 0, pair)) for number in ("P-CHAN-00038", "P-CHAN-00037"))
+        if channel.number(ids.PAAR_MODE, 0, pair) == SPINDLES:
+            slave, master = (
+                int(channel.number(number, 0, pair))
+                for number in (ids.PAAR_LOG_ACHS_NR_SLAVE, ids.PAAR_LOG_ACHS_NR_MASTER)
+            )
             pairs.append((name.get(slave, ""), name.get(master, "")))
     return tuple(pairs)
 
@@ -147,14 +160,14 @@ def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> 
     node = {entry.number: str(entry.node) for entry in spindles}
     tools = {}
     for tool in channel.used_indexes("wz"):
-        number = int(channel.number("P-TOOL-00012", tool))
+        number = int(channel.number(ids.WZ_LOG_AX_NR_SPDL, tool))
         if number:
-            low, high = (limit(channel, parameter, tool) for parameter in ("P-TOOL-00013", "P-TOOL-00014"))
+            low, high = (limit(channel, parameter, tool) for parameter in (ids.WZ_VB_MIN, ids.WZ_VB_MAX))
             tools[tool] = ToolLimits(
                 node.get(number, ""),
                 None if low is None else low / DEG_S_PER_RPM,
                 None if high is None else high / DEG_S_PER_RPM,
-                limit(channel, "P-TOOL-00015", tool),
+                limit(channel, ids.WZ_A_MAX, tool),
             )
     return tools
 
@@ -166,10 +179,10 @@ def limit(channel: ParameterSet, number: str, tool: int) -> float | None:
 
 def m_functions(channel: ParameterSet) -> dict[int, Synchronisation]:
     functions = dict.fromkeys(INTERNAL_M_FUNCTIONS, Synchronisation.NO_SYNCH)
-    if channel.number("P-CHAN-00052"):
+    if channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         functions |= dict.fromkeys(GEAR_M_FUNCTIONS, Synchronisation.MVS_SVS)
     for number in channel.used_indexes("m_synch"):
-        constants = channel.text("P-CHAN-00041", number)
+        constants = channel.text(ids.M_SYNCH, number)
         if constants != "NOT_VALID":
             functions[number] = synchronisation(constants)
     return dict(sorted(functions.items()))

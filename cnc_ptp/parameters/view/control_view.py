@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view import telegram
 from cnc_ptp.parameters.view.encoder import encoder_increment, resolution, uses_feed_constant
@@ -15,6 +16,9 @@ ADD_VEL, ADD_ACC, ADD_JERK = 0x100, 0x200, 0x800
 DELAY_CYCLES = 6
 """A feedforward delay must be below so many cycles (P-AXIS-00389, 00390)."""
 DEFAULT_JERK_DENOMINATOR = 100
+DEFAULT_TABLE_SIZE = 20
+MONITORING_TYPES = (1, 2, 4)
+"""P-AXIS-00172: estimated, linear, fixed; 0 is off."""
 SIMULATION, VIRTUAL, PROFIDRIVE = 4, 16, 3
 TIME_BASES = {0: 60.0, 1: 1.0}
 
@@ -166,7 +170,7 @@ def control_view(parameters: ParameterSet, gear: int, cycle_time: float) -> Cont
     """The parameters of record `gear` (0 …); `cycle_time` in s."""
     scaling = drive_scaling(parameters, gear, cycle_time)
     return ControlParameters(
-        kv=parameters.kernel("P-AXIS-00099", gear),
+        kv=parameters.kernel(ids.GETRIEBE_KV, gear),
         monitoring=lag_monitoring(parameters, gear),
         drive=drive_parameters(parameters, gear),
         scaling=scaling,
@@ -179,16 +183,16 @@ def control_view(parameters: ParameterSet, gear: int, cycle_time: float) -> Cont
 
 def lag_monitoring(parameters: ParameterSet, gear: int) -> LagMonitoring:
     return LagMonitoring(
-        kind=int(parameters.number("P-AXIS-00172", gear)),
-        moving_limit=parameters.kernel("P-AXIS-00168", gear),
-        standstill_limit=parameters.kernel("P-AXIS-00169", gear),
-        dynamic=int(parameters.number("P-AXIS-00167", gear)),
-        filter_time=parameters.kernel("P-MACH-00031"),
+        kind=int(parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear)),
+        moving_limit=parameters.kernel(ids.GETRIEBE_SLEP_MAX, gear),
+        standstill_limit=parameters.kernel(ids.GETRIEBE_SLEP_MIN, gear),
+        dynamic=int(parameters.number(ids.GETRIEBE_SLEP_DYN, gear)),
+        filter_time=parameters.kernel(ids.LR_PARAM_POSITION_LAG_FILTER_TIME),
     )
 
 
 def drive_parameters(parameters: ParameterSet, gear: int) -> DriveParameters:
-    kind = int(parameters.number("P-AXIS-00020"))
+    kind = int(parameters.number(ids.KENNGR_ANTR_TYP))
     commands, feedback = telegram.commands(parameters), telegram.feedback(parameters)
     return DriveParameters(
         kind=kind,
@@ -197,9 +201,9 @@ def drive_parameters(parameters: ParameterSet, gear: int) -> DriveParameters:
         feedback=feedback,
         analogue=kind in telegram.ANALOGUE,
         ideal=kind in (SIMULATION, VIRTUAL),
-        reverse=parameters.axis_type == "S" and bool(parameters.number("P-AXIS-00159", gear)),
-        velocity_gain=parameters.number("P-MACH-00028"),
-        velocity_integral_time=parameters.kernel("P-MACH-00029"),
+        reverse=parameters.axis_type == "S" and bool(parameters.number(ids.GETRIEBE_REVERSE, gear)),
+        velocity_gain=parameters.number(ids.LR_PARAM_VELOCITY_GAIN),
+        velocity_integral_time=parameters.kernel(ids.LR_PARAM_VELOCITY_INTEGRAL_TIME),
         command_bits=telegram.command_bits(parameters),
         feedback_bits=telegram.feedback_bits(parameters),
     )
@@ -212,7 +216,7 @@ def drive_scaling(parameters: ParameterSet, gear: int, cycle_time: float) -> Dri
         velocity=velocity_scale(parameters, cycle_time),
         torque=torque_scale(parameters),
         analogue=analogue_scale(parameters, gear, cycle_time),
-        torque_per_acceleration=torque_per_acceleration(parameters, gear, parameters.number("P-AXIS-00391", gear)),
+        torque_per_acceleration=torque_per_acceleration(parameters, gear, parameters.number(ids.GETRIEBE_LOAD, gear)),
     )
 
 
@@ -221,21 +225,29 @@ def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> fl
 
     An axis whose position loop stays open (P-AXIS-00320) puts its speed out with P-AXIS-00205 to 00207 (spindle 2.2.4).
     """
-    if parameters.text("P-AXIS-00320").startswith("OPEN_POSITION_LOOP"):
+    if parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP"):
         return velocity_scale(parameters, cycle_time)
-    return parameters.number("P-AXIS-00129", gear) / parameters.number("P-AXIS-00128", gear) * 60.0 / 1000.0
+    return (
+        parameters.number(ids.GETRIEBE_MULTI_GAIN_Z, gear)
+        / parameters.number(ids.GETRIEBE_MULTI_GAIN_N, gear)
+        * 60.0
+        / 1000.0
+    )
 
 
 def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:
     """Digits a mm/s (deg/s): v_reso_num digits are v_reso_denom µm (0.001°) in the time base."""
-    base = TIME_BASES.get(int(parameters.number("P-AXIS-00207")), cycle_time)
-    return parameters.number("P-AXIS-00206") * base / parameters.kernel("P-AXIS-00205")
+    base = TIME_BASES.get(int(parameters.number(ids.ANTR_V_TIME_BASE)), cycle_time)
+    return parameters.number(ids.ANTR_V_RESO_NUM) * base / parameters.kernel(ids.ANTR_V_RESO_DENOM)
 
 
 def torque_scale(parameters: ParameterSet) -> float:
     """Digits a Nm (N): P-AXIS-00325 / P-AXIS-00326 digits are P-AXIS-00392; 0.0 with a zero denominator (110465)."""
-    denominator, reference = parameters.number("P-AXIS-00326"), parameters.number("P-AXIS-00392")
-    return parameters.number("P-AXIS-00325") / denominator / reference if denominator and reference else 0.0
+    denominator, reference = (
+        parameters.number(ids.ANTR_TORQUE_SCALE_DENOM),
+        parameters.number(ids.ANTR_ACC_REFERENCE_VALUE),
+    )
+    return parameters.number(ids.ANTR_TORQUE_SCALE_NUM) / denominator / reference if denominator and reference else 0.0
 
 
 def torque_per_acceleration(parameters: ParameterSet, gear: int, load: float) -> float:
@@ -244,27 +256,32 @@ def torque_per_acceleration(parameters: ParameterSet, gear: int, load: float) ->
     M = J · 2π · i / h · a, h the feed constant and i the gear ratio (TF5200 feedforward 4.2).
     """
     if uses_feed_constant(parameters):
-        turn = parameters.number("P-AXIS-00362") / parameters.number("P-AXIS-00363") / 10_000.0
-        gear_ratio = parameters.number("P-AXIS-00511", gear) / parameters.number("P-AXIS-00512", gear)
+        turn = parameters.number(ids.ANTR_FEED_CONST_NUM) / parameters.number(ids.ANTR_FEED_CONST_DENOM) / 10_000.0
+        gear_ratio = parameters.number(ids.GETRIEBE_GEAR_FACT_NUM, gear) / parameters.number(
+            ids.GETRIEBE_GEAR_FACT_DENOM, gear
+        )
         return load * 2.0 * math.pi * gear_ratio / turn
     return load / 1000.0 if parameters.axis_type == "T" else load * math.pi / 180.0
 
 
 def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> FeedforwardParameters:
-    acceleration_factor = quotient(parameters, "P-AXIS-00225", "P-AXIS-00226")
-    profidrive = parameters.number("P-AXIS-00020") == PROFIDRIVE
+    acceleration_factor = quotient(parameters, ids.VORSTEUER_VS_A_FAKTOR, ids.VORSTEUER_VS_A_NENNER)
+    profidrive = parameters.number(ids.KENNGR_ANTR_TYP) == PROFIDRIVE
     return FeedforwardParameters(
         mode=feedforward_mode(parameters),
-        weight=quotient(parameters, "P-AXIS-00228", "P-AXIS-00229"),
-        velocity_weight=quotient(parameters, "P-AXIS-00514", "P-AXIS-00515"),
+        weight=quotient(parameters, ids.VORSTEUER_VS_V_FAKTOR, ids.VORSTEUER_VS_V_NENNER),
+        velocity_weight=quotient(
+            parameters, ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM, ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM
+        ),
         time_constant=acceleration_factor / 1e6,
         torque_weight=acceleration_factor,
-        jerk_weight=parameters.number("P-AXIS-00337") / (parameters.number("P-AXIS-00338") or DEFAULT_JERK_DENOMINATOR),
-        velocity_delay=permitted_delay(parameters, "P-AXIS-00389", cycle_time),
-        acceleration_delay=permitted_delay(parameters, "P-AXIS-00390", cycle_time),
-        lead_cycles=int(parameters.number("P-AXIS-00165")) if profidrive else 0,
-        prefilter_cycles=int(parameters.number("P-MACH-00030")),
-        always_active=bool(parameters.number("P-AXIS-00255")),
+        jerk_weight=parameters.number(ids.VORSTEUER_JERK_FACT_NUM)
+        / (parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) or DEFAULT_JERK_DENOMINATOR),
+        velocity_delay=permitted_delay(parameters, ids.VORSTEUER_VELOCITY_DELAY_TIME, cycle_time),
+        acceleration_delay=permitted_delay(parameters, ids.VORSTEUER_ACCELERATION_DELAY_TIME, cycle_time),
+        lead_cycles=int(parameters.number(ids.VORSTEUER_SHIFT_TIME)) if profidrive else 0,
+        prefilter_cycles=int(parameters.number(ids.VORSTEUER_PREFILTER_CYCLES)),
+        always_active=bool(parameters.number(ids.VORSTEUER_DEFAULT_ACTIVE)),
     )
 
 
@@ -274,7 +291,7 @@ def quotient(parameters: ParameterSet, numerator: str, denominator: str) -> floa
 
 def feedforward_mode(parameters: ParameterSet) -> int:
     """The bits of P-AXIS-00223."""
-    return flag_bits(parameters, "P-AXIS-00223")
+    return flag_bits(parameters, ids.VORSTEUER_VORSTEUERUNG)
 
 
 def flag_bits(parameters: ParameterSet, number: str) -> int:
@@ -293,49 +310,54 @@ def permitted_delay(parameters: ParameterSet, number: str, cycle_time: float) ->
 
 def friction_parameters(parameters: ParameterSet) -> FrictionParameters:
     """Source: TF5200 friction 2.2. Values are scaled by P-COMP-00045 / 1000."""
-    scale = parameters.kernel("P-COMP-00045")
-    entries = range(int(parameters.number("P-COMP-00042")))
-    permitted = bool(parameters.number("P-AXIS-00522")) if parameters.axis_type != "S" else False
+    scale = parameters.kernel(ids.FRICT_COMP_SCALING_FACTOR)
+    entries = range(int(parameters.number(ids.FRICT_COMP_TABLE_ENTRIES)))
+    permitted = bool(parameters.number(ids.LR_PARAM_FRICT_COMP)) if parameters.axis_type != "S" else False
     return FrictionParameters(
         permitted=permitted,
-        active=permitted and parameters.number("P-COMP-00041") != 0,
-        velocities=tuple(parameters.kernel("P-COMP-00046", index) for index in entries),
-        currents=tuple(parameters.number("P-COMP-00047", index) * scale for index in entries),
-        position_delay=parameters.kernel("P-COMP-00043"),
-        reversal_lookahead=int(parameters.number("P-COMP-00044")),
-        delay_cycles=int(parameters.number("P-COMP-00058")),
+        active=permitted and parameters.number(ids.FRICT_COMP_MODE) != 0,
+        velocities=tuple(parameters.kernel(ids.TABLE_IN, index) for index in entries),
+        currents=tuple(parameters.number(ids.TABLE_OUT, index) * scale for index in entries),
+        position_delay=parameters.kernel(ids.FRICT_COMP_POSITION_DELAY),
+        reversal_lookahead=int(parameters.number(ids.FRICT_COMP_REVERSAL_LOOKAHEAD)),
+        delay_cycles=int(parameters.number(ids.FRICT_COMP_DELAY_CYCLES)),
     )
+
+
+def friction_table_size(parameters: ParameterSet) -> int:
+    """Largest number of entries of the friction table, P-COMP-00062; 0 counts as 20."""
+    return int(parameters.number(ids.FRICT_COMP_MAX_POINTS)) or DEFAULT_TABLE_SIZE
 
 
 def modulo_error(parameters: ParameterSet, gear: int) -> ModuloError:
     """P-AXIS-00124 increments in P-AXIS-00125 turns, where P-AXIS-00120 switches the compensation on."""
-    turns = parameters.number("P-AXIS-00125", gear) if parameters.axis_type != "T" else 0
-    if not turns or not parameters.number("P-AXIS-00120"):
+    turns = parameters.number(ids.GETRIEBE_MODULO_UMDREH, gear) if parameters.axis_type != "T" else 0
+    if not turns or not parameters.number(ids.LR_PARAM_MOD_KOMP):
         return ModuloError(0.0, 0.0, 0.0)
-    turn = parameters.kernel("P-AXIS-00126", gear) - parameters.kernel("P-AXIS-00127", gear)
+    turn = parameters.kernel(ids.GETRIEBE_MODULOO, gear) - parameters.kernel(ids.GETRIEBE_MODULOU, gear)
     increment = float(1 / (10_000 * resolution(parameters, gear)))
-    return ModuloError(turn, increment, parameters.number("P-AXIS-00124", gear) / turns)
+    return ModuloError(turn, increment, parameters.number(ids.GETRIEBE_MODULO_FEHLER, gear) / turns)
 
 
 def plant_parameters(parameters: ParameterSet, gear: int) -> PlantParameters:
-    load = parameters.number("P-SIM-00007") or parameters.number("P-AXIS-00391", gear)
-    coulomb = parameters.number("P-SIM-00012")
+    load = parameters.number(ids.SIMULATION_INERTIA) or parameters.number(ids.GETRIEBE_LOAD, gear)
+    coulomb = parameters.number(ids.FRICTION_COULOMB)
     return PlantParameters(
-        cascaded=parameters.text("P-SIM-00006") == "CASCADED",
-        time_constant=parameters.kernel("P-SIM-00001"),
+        cascaded=parameters.text(ids.SIMULATION_MODEL) == "CASCADED",
+        time_constant=parameters.kernel(ids.SIMULATION_DRIVE_TIME_CONSTANT),
         torque_per_acceleration=torque_per_acceleration(parameters, gear, load),
-        velocity_gain=parameters.number("P-SIM-00008"),
-        velocity_integral_time=parameters.kernel("P-SIM-00009"),
-        current_time_constant=parameters.kernel("P-SIM-00010"),
-        torque_limit=parameters.number("P-SIM-00011") or math.inf,
+        velocity_gain=parameters.number(ids.SIMULATION_VELOCITY_GAIN),
+        velocity_integral_time=parameters.kernel(ids.SIMULATION_VELOCITY_INTEGRAL_TIME),
+        current_time_constant=parameters.kernel(ids.SIMULATION_CURRENT_TIME_CONSTANT),
+        torque_limit=parameters.number(ids.SIMULATION_TORQUE_LIMIT) or math.inf,
         coulomb=coulomb,
-        static=max(coulomb, parameters.number("P-SIM-00013")),
-        stribeck_velocity=parameters.number("P-SIM-00014"),
-        viscous=parameters.number("P-SIM-00015") / 1000.0,
-        backlash=parameters.kernel("P-SIM-00016"),
-        encoder_at_load=parameters.text("P-SIM-00017") == "LOAD",
-        bus_delay_cycles=int(parameters.number("P-SIM-00018")),
-        kv=parameters.kernel("P-SIM-00019") or parameters.kernel("P-AXIS-00099", gear),
+        static=max(coulomb, parameters.number(ids.FRICTION_STATIC)),
+        stribeck_velocity=parameters.number(ids.FRICTION_STRIBECK_VELOCITY),
+        viscous=parameters.number(ids.FRICTION_VISCOUS) / 1000.0,
+        backlash=parameters.kernel(ids.SIMULATION_BACKLASH),
+        encoder_at_load=parameters.text(ids.SIMULATION_ENCODER_AT) == "LOAD",
+        bus_delay_cycles=int(parameters.number(ids.SIMULATION_BUS_DELAY_CYCLES)),
+        kv=parameters.kernel(ids.SIMULATION_DRIVE_KV) or parameters.kernel(ids.GETRIEBE_KV, gear),
         encoder_increment=encoder_increment(parameters, gear),
-        start_position=parameters.kernel("P-SIM-00003"),
+        start_position=parameters.kernel(ids.SIMULATION_START_POSITION),
     )

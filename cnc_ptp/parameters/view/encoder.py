@@ -2,15 +2,16 @@
 
 from fractions import Fraction
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
-CORRECTED = {"P-AXIS-00234": 110386, "P-AXIS-00233": 110086}
+CORRECTED = {ids.GETRIEBE_WEGAUFZ: 110386, ids.GETRIEBE_WEGAUFN: 110086}
 """Parameters of which a 0 counts as 1, with the number of the warning."""
 
 
 def uses_feed_constant(parameters: ParameterSet) -> bool:
     """Whether the resolution comes from incr_per_rev, gear ratio and feed constant."""
-    return parameters.number("P-AXIS-00362") != 1 or parameters.number("P-AXIS-00363") != 1
+    return parameters.number(ids.ANTR_FEED_CONST_NUM) != 1 or parameters.number(ids.ANTR_FEED_CONST_DENOM) != 1
 
 
 def resolution(parameters: ParameterSet, gear: int) -> Fraction:
@@ -20,11 +21,15 @@ def resolution(parameters: ParameterSet, gear: int) -> Fraction:
         return int(parameters.number(number, gear)) or int(number in CORRECTED)
 
     if uses_feed_constant(parameters):
-        ratio = Fraction(whole("P-AXIS-00511"), whole("P-AXIS-00512"))
-        return whole("P-AXIS-00092") * ratio / Fraction(whole("P-AXIS-00362"), whole("P-AXIS-00363"))
-    return Fraction(whole("P-AXIS-00234"), whole("P-AXIS-00233"))
+        ratio = Fraction(whole(ids.GETRIEBE_GEAR_FACT_NUM), whole(ids.GETRIEBE_GEAR_FACT_DENOM))
+        return (
+            whole(ids.GETRIEBE_INCR_PER_REV)
+            * ratio
+            / Fraction(whole(ids.ANTR_FEED_CONST_NUM), whole(ids.ANTR_FEED_CONST_DENOM))
+        )
+    return Fraction(whole(ids.GETRIEBE_WEGAUFZ), whole(ids.GETRIEBE_WEGAUFN))
 
 
 def encoder_increment(parameters: ParameterSet, gear: int) -> float:
     """mm or ° an increment, 1e-4 / R; 0.0 when the simulated encoder is off."""
-    return float(1 / (10_000 * resolution(parameters, gear))) if parameters.number("P-SIM-00002") else 0.0
+    return float(1 / (10_000 * resolution(parameters, gear))) if parameters.number(ids.SIMULATION_ENCODER) else 0.0

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters, axis_view
@@ -39,16 +40,16 @@ def machine_view(
 ) -> MachineParameters:
     """The machine of the parameters of /machine and of its units by node name."""
     of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
-    cycle_time = machine.kernel("P-MACH-00001")
+    cycle_time = machine.kernel(ids.CYCLE_TIME_US)
     channels = {unit.node: channel_view(unit, sets) for unit in of_kind["channel"]}
     axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
     return MachineParameters(
-        cycle_time_us=int(machine.number("P-MACH-00001")),
-        block_cycles=int(machine.number("P-MACH-00002")),
-        watchdog_ms=int(machine.number("P-MACH-00003")),
-        life_sign_timeout_ms=int(machine.number("P-MACH-00009")),
-        state_rate_hz=float(machine.number("P-MACH-00070")),
-        handshake_timeout_ms=int(machine.number("P-MACH-00060")),
+        cycle_time_us=int(machine.number(ids.CYCLE_TIME_US)),
+        block_cycles=int(machine.number(ids.BLOCK_CYCLES)),
+        watchdog_ms=int(machine.number(ids.WATCHDOG_MS)),
+        life_sign_timeout_ms=int(machine.number(ids.LIFE_SIGN_TIMEOUT_MS)),
+        state_rate_hz=float(machine.number(ids.STATE_RATE_HZ)),
+        handshake_timeout_ms=int(machine.number(ids.HANDSHAKE_TIMEOUT_MS)),
         channels=channels,
         axes=equally_late(axes, channels.values()),
         spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},

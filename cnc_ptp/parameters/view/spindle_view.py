@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
 
@@ -17,6 +18,8 @@ OPEN_LOOP_FEEDBACK = {
     "OPEN_POSITION_LOOP_VEL_FEEDBACK": "SPEED",
     "OPEN_POSITION_LOOP_NO_FEEDBACK": "NONE",
 }
+COEFFICIENTS = (ids.BESCHL_KENNLINIE_B1, ids.BESCHL_KENNLINIE_B2, ids.BESCHL_KENNLINIE_B3)
+"""Of a hyperbola or polynomial: b1, b2, b3."""
 CURVE_TYPES = {1: "hyperbola", 2: "polynomial", 3: "asynchronous"}
 
 
@@ -123,33 +126,34 @@ class SpindleParameters:
 
 def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParameters:
     """`cycle_time` in s."""
-    mode = int(parameters.number("P-AXIS-00015"))
-    stage = int(parameters.number("P-AXIS-00079"))
+    mode = int(parameters.number(ids.KENNGR_ACHS_MODE))
+    stage = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE))
     stages = sorted({stage, *(index + 1 for index in parameters.used_indexes("getriebe"))})
     return SpindleParameters(
         name=parameters.node,
-        number=int(parameters.number("P-AXIS-00016")),
-        drive_type=int(parameters.number("P-AXIS-00020")),
+        number=int(parameters.number(ids.KOPF_ACHS_NR)),
+        drive_type=int(parameters.number(ids.KENNGR_ANTR_TYP)),
         plc_controlled=bool(mode & EXTERNALLY_CONTROLLED),
         automatic_homing=not mode & NO_AUTOMATIC_HOMING,
         open_loop=is_open_loop(parameters),
         feedback=feedback(parameters),
-        speed_reached_band=parameters.kernel("P-AXIS-00217"),
+        speed_reached_band=parameters.kernel(ids.KENNGR_VB_PROZENT),
         preferred_direction=preferred_direction(parameters),
-        velocity_control_on=parameters.kernel("P-AXIS-00265"),
-        velocity_control_off=parameters.kernel("P-AXIS-00266"),
+        velocity_control_on=parameters.kernel(ids.ANTR_VELOCITY_POSITION_CONTROL_ON),
+        velocity_control_off=parameters.kernel(ids.ANTR_VELOCITY_POSITION_CONTROL_OFF),
         gear=stage,
         gears={stage: gear_view(parameters, stage - 1, cycle_time) for stage in stages},
-        stops_at_reset=not parameters.number("P-AXIS-00455"),
-        target_time=parameters.number("P-MACH-00014") / 1000.0,
-        settling_time=parameters.number("P-MACH-00052") / 1000.0,
-        speed_time=parameters.number("P-MACH-00050") / 1000.0,
-        gear_change_time=parameters.number("P-MACH-00051") / 1000.0,
-        zero_pulse=parameters.kernel("P-SIM-00051"),
-        max_override_percent=parameters.percent("P-AXIS-00109"),
-        powered_at_start=bool(parameters.number("P-SIM-00004")),
-        referenced_at_start=bool(parameters.number("P-SIM-00005")) and feedback(parameters) == "POSITION",
-        start_position=parameters.kernel("P-SIM-00003"),
+        stops_at_reset=not parameters.number(ids.KENNGR_NO_STOP_BY_CHANNEL_RESET),
+        target_time=parameters.number(ids.PTP_TARGET_TIME_MS) / 1000.0,
+        settling_time=parameters.number(ids.MONITORING_SETTLING_TIME_MS) / 1000.0,
+        speed_time=parameters.number(ids.MONITORING_SPEED_TIME_MS) / 1000.0,
+        gear_change_time=parameters.number(ids.GEAR_CHANGE_TIME_MS) / 1000.0,
+        zero_pulse=parameters.kernel(ids.SIMULATION_ZERO_PULSE),
+        max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
+        powered_at_start=bool(parameters.number(ids.SIMULATION_POWERED_AT_START)),
+        referenced_at_start=bool(parameters.number(ids.SIMULATION_REFERENCED_AT_START))
+        and feedback(parameters) == "POSITION",
+        start_position=parameters.kernel(ids.SIMULATION_START_POSITION),
     )
 
 
@@ -157,27 +161,28 @@ def gear_view(parameters: ParameterSet, gear: int, cycle_time: float) -> GearPar
     """The record getriebe[gear]; `cycle_time` in s."""
     return GearParameters(
         stage=gear + 1,
-        max_speed=parameters.kernel("P-AXIS-00212", gear),
-        positioning_speed=parameters.kernel("P-AXIS-00209", gear),
-        max_acceleration=parameters.kernel("P-AXIS-00008", gear),
-        acceleration=parameters.kernel("P-AXIS-00001", gear),
-        deceleration=parameters.kernel("P-AXIS-00002", gear),
-        emergency_deceleration=parameters.kernel("P-AXIS-00003", gear) or parameters.kernel("P-AXIS-00008", gear),
+        max_speed=parameters.kernel(ids.DYNAMIK_VB_MAX, gear),
+        positioning_speed=parameters.kernel(ids.GETRIEBE_VB_EILGANG, gear),
+        max_acceleration=parameters.kernel(ids.DYNAMIK_A_MAX, gear),
+        acceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BESCHL, gear),
+        deceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BREMS, gear),
+        emergency_deceleration=parameters.kernel(ids.DYNAMIK_A_EMERGENCY, gear)
+        or parameters.kernel(ids.DYNAMIK_A_MAX, gear),
         curve=curve_view(parameters, gear),
-        zero_speed=parameters.kernel("P-AXIS-00216", gear),
+        zero_speed=parameters.kernel(ids.GETRIEBE_VB_MIN_NULL, gear),
         control_limit=control_limit(parameters, gear),
-        change_position=parameters.kernel("P-AXIS-00078", gear),
-        reference_position=parameters.kernel("P-AXIS-00152", gear),
-        homing_speed=parameters.kernel("P-AXIS-00218", gear),
-        modulo_low=parameters.kernel("P-AXIS-00127", gear),
-        modulo_high=parameters.kernel("P-AXIS-00126", gear),
-        position_window=parameters.kernel("P-AXIS-00236", gear),
+        change_position=parameters.kernel(ids.GETRIEBE_GETR_SCHALT_POS, gear),
+        reference_position=parameters.kernel(ids.GETRIEBE_POS_REFPKT, gear),
+        homing_speed=parameters.kernel(ids.GETRIEBE_VB_REFLOW, gear),
+        modulo_low=parameters.kernel(ids.GETRIEBE_MODULOU, gear),
+        modulo_high=parameters.kernel(ids.GETRIEBE_MODULOO, gear),
+        position_window=parameters.kernel(ids.GETRIEBE_WINDOW, gear),
         control=control_view(parameters, gear, cycle_time),
     )
 
 
 def curve_view(parameters: ParameterSet, gear: int) -> CurveParameters | None:
-    kind = int(parameters.number("P-AXIS-00202", gear))
+    kind = int(parameters.number(ids.BESCHL_KENNLINIE_TYP, gear))
     if kind not in CURVE_TYPES:
         return None
     numbers = ("00010", "00130", "00007", "00026", "00027", "00028", "00240", "00241", "00242")
@@ -186,21 +191,21 @@ def curve_view(parameters: ParameterSet, gear: int) -> CurveParameters | None:
 
 def control_limit(parameters: ParameterSet, gear: int) -> float:
     """P-AXIS-00220 where the drive type has it, infinity for 0 and the other types."""
-    if parameters.number("P-AXIS-00020") not in CONTROL_LIMIT_DRIVES:
+    if parameters.number(ids.KENNGR_ANTR_TYP) not in CONTROL_LIMIT_DRIVES:
         return math.inf
-    return parameters.kernel("P-AXIS-00220", gear) or math.inf
+    return parameters.kernel(ids.GETRIEBE_VB_REGELGRENZE, gear) or math.inf
 
 
 def is_open_loop(parameters: ParameterSet) -> bool:
-    return parameters.text("P-AXIS-00320").startswith("OPEN_POSITION_LOOP")
+    return parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP")
 
 
 def feedback(parameters: ParameterSet) -> str:
     """POSITION, SPEED or NONE: what the operation mode says itself, else the telegram of the drive."""
-    return OPEN_LOOP_FEEDBACK.get(parameters.text("P-AXIS-00320"), parameters.text("P-SIM-00050"))
+    return OPEN_LOOP_FEEDBACK.get(parameters.text(ids.ANTR_OPERATION_MODE), parameters.text(ids.SIMULATION_TELEGRAM))
 
 
 def preferred_direction(parameters: ParameterSet) -> int:
-    if not parameters.number("P-AXIS-00224"):
+    if not parameters.number(ids.KENNGR_VORZ_RICHTUNG):
         return 0
-    return 1 if parameters.number("P-AXIS-00031") else -1
+    return 1 if parameters.number(ids.KENNGR_BEWEG_RICHT) else -1

@@ -2,6 +2,7 @@
 
 from enum import IntFlag
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import catalogue
 
 
@@ -21,7 +22,7 @@ class Synchronisation(IntFlag):
 
 def synchronisation(constants: str) -> Synchronisation:
     """The value of constants joined by |, in the spelling that the loader makes; NOT_VALID counts as NO_SYNCH."""
-    choices = catalogue().by_id["P-CHAN-00041"].choices
+    choices = catalogue().by_id[ids.M_SYNCH].choices
     value = Synchronisation.NO_SYNCH
     for name in constants.split(" | "):
         value |= Synchronisation(choices.get(name, 0))

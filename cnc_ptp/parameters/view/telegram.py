@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 COMMAND_OBJECTS: dict[str, str] = {
@@ -88,12 +89,12 @@ class Configured(NamedTuple):
 
 def configured_commands(parameters: ParameterSet) -> tuple[Configured, ...]:
     """The objects of the command telegram by name, S-0-0037."""
-    return _objects(parameters, "P-MACH-00020", "mdt", ("P-MACH-00022", "P-MACH-00023"))
+    return _objects(parameters, ids.TELEGRAM_COMMANDS, "mdt", (ids.MDT_NC_REF, ids.MDT_IDENT_NR))
 
 
 def configured_feedback(parameters: ParameterSet) -> tuple[Configured, ...]:
     """The objects of the feedback telegram by name, S-0-0051."""
-    return _objects(parameters, "P-MACH-00021", "at", ("P-MACH-00025", "P-MACH-00026"))
+    return _objects(parameters, ids.TELEGRAM_FEEDBACK, "at", (ids.AT_NC_REF, ids.AT_IDENT_NR))
 
 
 def command_objects(parameters: ParameterSet) -> tuple[str, ...]:
@@ -111,13 +112,13 @@ def default_bits() -> dict[str, int]:
 
 def command_bits(parameters: ParameterSet) -> dict[str, int]:
     """Lengths in bits: 16 for a DA word, P-MACH-00024 where it is given."""
-    bits = default_bits() | _lengths(parameters, "mdt", ("P-MACH-00022", "P-MACH-00023", "P-MACH-00024"))
-    return bits | {"velocity": 16} if parameters.number("P-AXIS-00020") in ANALOGUE else bits
+    bits = default_bits() | _lengths(parameters, "mdt", (ids.MDT_NC_REF, ids.MDT_IDENT_NR, ids.MDT_IDENT_LEN))
+    return bits | {"velocity": 16} if parameters.number(ids.KENNGR_ANTR_TYP) in ANALOGUE else bits
 
 
 def feedback_bits(parameters: ParameterSet) -> dict[str, int]:
     """Lengths in bits: P-MACH-00027 where it is given."""
-    return default_bits() | _lengths(parameters, "at", ("P-MACH-00025", "P-MACH-00026", "P-MACH-00027"))
+    return default_bits() | _lengths(parameters, "at", (ids.AT_NC_REF, ids.AT_IDENT_NR, ids.AT_IDENT_LEN))
 
 
 def _lengths(parameters: ParameterSet, array: str, elements: tuple[str, str, str]) -> dict[str, int]:
@@ -135,7 +136,7 @@ def commands(parameters: ParameterSet) -> frozenset[str]:
 
     A telegram that names additive values alone (TF5200 feedforward 4) has them beside the drive type's own command.
     """
-    objects, preset = command_objects(parameters), PRESETS[int(parameters.number("P-AXIS-00020"))][0]
+    objects, preset = command_objects(parameters), PRESETS[int(parameters.number(ids.KENNGR_ANTR_TYP))][0]
     if not objects:
         return preset
     quantities = {COMMAND_OBJECTS[name] for name in objects if name in COMMAND_OBJECTS}
@@ -155,13 +156,13 @@ def feedback(parameters: ParameterSet) -> frozenset[str]:
     """Actual values that come back; the position always does."""
     objects = feedback_objects(parameters)
     if not objects:
-        return PRESETS[int(parameters.number("P-AXIS-00020"))][1]
+        return PRESETS[int(parameters.number(ids.KENNGR_ANTR_TYP))][1]
     return frozenset({"position", *(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)})
 
 
 def interface(parameters: ParameterSet) -> str:
     """What the NC commands: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
-    mode = OPERATION_MODES.get(parameters.text("P-AXIS-00320"))
+    mode = OPERATION_MODES.get(parameters.text(ids.ANTR_OPERATION_MODE))
     return mode or next(iter(main_command(commands(parameters))), "none")
 
 
