@@ -17,6 +17,7 @@ from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.view.control_view import MONITORING_TYPES
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.reader import AXIS_STATE, Recorded, read_recording
@@ -51,7 +52,7 @@ class AxisData:
     @property
     def gear(self) -> int:
         """Index of the gear record in use."""
-        return int(self.raw.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
+        return active_gear(self.raw)
 
     @property
     def kv(self) -> float:

@@ -14,7 +14,14 @@ from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view import telegram
-from cnc_ptp.parameters.view.control_view import ADD_ACC, ADD_JERK, ADD_VEL, flag_bits, friction_table_size
+from cnc_ptp.parameters.view.control_view import (
+    ADD_ACC,
+    ADD_JERK,
+    ADD_VEL,
+    flag_bits,
+    friction_permitted,
+    friction_table_size,
+)
 
 NO_ADDITIVE_VELOCITY = 70350
 NO_ADDITIVE_TORQUE = 70351
@@ -175,7 +182,7 @@ def friction(parameters: ParameterSet) -> Iterator[Problem]:
         text = f"mode {mode} has no values, P-COMP-00042 frict_comp.table_entries is 0"
         yield problem(parameters, TABLE_MISSING, ids.FRICT_COMP_MODE, (), text)
     yield from ascending(parameters, int(entries))
-    permitted = parameters.axis_type != "S" and parameters.number(ids.LR_PARAM_FRICT_COMP)
+    permitted = friction_permitted(parameters)
     takes_torque = {"additive_torque"} & telegram.commands(parameters) or telegram.interface(parameters) == "torque"
     if permitted and mode and not takes_torque:
         text = f"friction compensation needs an additive torque command (S-0-0081, 60B2, M_ADD1), {carried(parameters)}"

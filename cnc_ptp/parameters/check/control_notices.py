@@ -15,6 +15,8 @@ from cnc_ptp.parameters.view.control_view import (
     ADD_VEL,
     DEFAULT_JERK_DENOMINATOR,
     DELAY_CYCLES,
+    ESTIMATED,
+    FIXED,
     JERK,
     MONITORING_TYPES,
     VEL,
@@ -27,7 +29,8 @@ from cnc_ptp.parameters.view.control_view import (
     torque_per_acceleration,
 )
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
-from cnc_ptp.parameters.view.telegram import ANALOGUE
+from cnc_ptp.parameters.view.gears import active_gear, gear_records
+from cnc_ptp.parameters.view.telegram import ANALOGUE, is_open_loop
 
 MANUAL_POSITION_DELAY = 10
 PARTS = ((VEL, ADD_VEL), (ACC, ADD_ACC), (JERK, ADD_JERK))
@@ -113,32 +116,27 @@ def monitoring_type(parameters: ParameterSet) -> Iterator[Notice]:
 
 def following_error(parameters: ParameterSet) -> Iterator[Notice]:
     """Monitoring that would trip in plain motion: vb_max / kv above slep_max, where the limit is a fixed one."""
-    gear = (int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1,)
-    if parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, *gear) not in MONITORING_TYPES or parameters.kind != "axis":
+    gear = active_gear(parameters)
+    if parameters.kind != "axis" or parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear) not in (ESTIMATED, FIXED):
         return
-    expected = parameters.kernel(ids.DYNAMIK_VB_MAX, *gear) / parameters.kernel(ids.GETRIEBE_KV, *gear)
-    limit = parameters.kernel(ids.GETRIEBE_SLEP_MAX, *gear)
-    if (
-        expected >= limit and parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, *gear) != 2
-    ):  # the linear one grows with the velocity
+    expected = parameters.kernel(ids.DYNAMIK_VB_MAX, gear) / parameters.kernel(ids.GETRIEBE_KV, gear)
+    limit = parameters.kernel(ids.GETRIEBE_SLEP_MAX, gear)
+    if expected >= limit:
         unit = "mm" if parameters.axis_type == "T" else "deg"
         text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
-        yield notice(parameters, ids.GETRIEBE_SLEP_MAX, gear, text)
+        yield notice(parameters, ids.GETRIEBE_SLEP_MAX, (gear,), text)
 
 
 def open_loop(parameters: ParameterSet) -> Iterator[Notice]:
     """The open position loop is for spindles (TF5200 spindle 2.2.4)."""
-    mode = parameters.text(ids.ANTR_OPERATION_MODE)
-    if mode.startswith("OPEN_POSITION_LOOP") and parameters.kind != "spindle":
-        yield notice(
-            parameters, ids.ANTR_OPERATION_MODE, (), f"mode {mode} is accepted, but the position loop stays closed"
-        )
+    if is_open_loop(parameters) and parameters.kind != "spindle":
+        text = f"mode {parameters.text(ids.ANTR_OPERATION_MODE)} is accepted, but the position loop stays closed"
+        yield notice(parameters, ids.ANTR_OPERATION_MODE, (), text)
 
 
 def used_gears(parameters: ParameterSet) -> list[int]:
-    """Records that can be in work: of an axis the one after start-up, of a spindle all that there are."""
-    start = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
-    return sorted({start, *parameters.used_indexes("getriebe")}) if parameters.kind == "spindle" else [start]
+    """Records that can be active: of an axis the one after start-up, of a spindle all that there are."""
+    return gear_records(parameters) if parameters.kind == "spindle" else [active_gear(parameters)]
 
 
 def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:

@@ -11,16 +11,16 @@ from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.axis_view import is_modulo
 from cnc_ptp.parameters.view.channel_members import spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
-from cnc_ptp.parameters.view.spindle_view import COEFFICIENTS, control_limit, feedback, is_open_loop
+from cnc_ptp.parameters.view.gears import active_gear
+from cnc_ptp.parameters.view.spindle_view import COEFFICIENTS, CURVE_TYPES, control_limit, has_position
+from cnc_ptp.parameters.view.telegram import DriveType, is_open_loop
 
 UNIT_LISTS = {"channel": ids.CHANNELS, "axis": ids.AXES, "spindle": ids.SPINDLES}
-SERCOS = 2
-HOMED_BY_THE_NC = (1, 5, 6)
+HOMED_BY_THE_NC = (DriveType.CONVENTIONAL, DriveType.LIGHTBUS, DriveType.TERMINAL)
 """Drive types of what TF5200 spindle 2.3 calls analogue spindles: conventional, Lightbus, terminal (P-AXIS-00156)."""
 UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
 UPPER_END = ids.GETRIEBE_MODULOO
 GEAR_RATIO = (ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM)
-HYPERBOLA = 1
 SMALL_STEP = 0.001
 """Part of the constant acceleration."""
 
@@ -135,7 +135,7 @@ def spindle_notices(parameters: ParameterSet) -> Iterator[Notice]:
 def homing_mode(parameters: ParameterSet) -> Iterator[Notice]:
     """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
     drive, no_automatic = parameters.number(ids.KENNGR_ANTR_TYP), int(parameters.number(ids.KENNGR_ACHS_MODE)) & 0x100
-    if drive == SERCOS and not no_automatic:
+    if drive == DriveType.SERCOS and not no_automatic:
         text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
         yield notice(parameters, ids.KENNGR_ACHS_MODE, (), text)
     elif drive in HOMED_BY_THE_NC and no_automatic:
@@ -150,11 +150,6 @@ def drive_type(parameters: ParameterSet) -> str:
     """Drive type 6 (+-10 V terminal)."""
     number = int(parameters.number(ids.KENNGR_ANTR_TYP))
     return f"drive type {number} ({parameters.catalogue.by_id[ids.KENNGR_ANTR_TYP].choices[number]})"
-
-
-def has_position(parameters: ParameterSet) -> bool:
-    """False: the spindle cannot be homed."""
-    return feedback(parameters) == "POSITION"
 
 
 def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
@@ -175,7 +170,7 @@ def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
 def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
     """A hyperbola that does not begin with the constant acceleration."""
     for gear in parameters.used_indexes("getriebe"):
-        if parameters.number(ids.BESCHL_KENNLINIE_TYP, gear) != HYPERBOLA:
+        if CURVE_TYPES.get(int(parameters.number(ids.BESCHL_KENNLINIE_TYP, gear))) != "hyperbola":
             continue
         b1, b2, b3 = (parameters.kernel(number, gear) for number in COEFFICIENTS)
         begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
@@ -189,7 +184,7 @@ def range_of_a_conveyor(parameters: ParameterSet) -> Iterator[Notice]:
     """The default suits a turntable, hardly a conveyor."""
     if parameters.axis_type != "T" or not is_modulo(parameters):
         return
-    gear = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
+    gear = active_gear(parameters)
     if not parameters.is_given(UPPER_END, gear):
         end = parameters.kernel(UPPER_END, gear)
         yield notice(parameters, UPPER_END, (gear,), f"not given, the modulo range of the axis ends at {end:g} mm")

@@ -8,18 +8,24 @@ from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.gears import active_gear, gear_records
 from cnc_ptp.parameters.view.spindle_view import (
     COEFFICIENTS,
     CURVE_TYPES,
     EXTERNALLY_CONTROLLED,
     OPEN_LOOP_FEEDBACK,
     control_limit,
-    feedback,
-    is_open_loop,
+    has_position,
 )
+from cnc_ptp.parameters.view.telegram import WITHOUT_FORMAT, DriveType, is_open_loop
 
-SIMULATED_DRIVES = (4, 16)
-OPEN_LOOP_DRIVES = (4, 5, 6, 7, 8)
+OPEN_LOOP_DRIVES = (
+    DriveType.SIMULATION,
+    DriveType.LIGHTBUS,
+    DriveType.TERMINAL,
+    DriveType.ETHERNET,
+    DriveType.CANOPEN,
+)
 ROUNDING = 1e-6
 """Part of the largest acceleration by which rounded coefficients of a curve may pass it."""
 STEPS = 1000
@@ -31,7 +37,7 @@ def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
     checks = plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution, gear_at_start
     for check in checks:
         yield from check(parameters)
-    for gear in sorted({int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1, *parameters.used_indexes("getriebe")}):
+    for gear in gear_records(parameters):
         yield from homing_speed(parameters, gear)
         yield from curve(parameters, gear)
 
@@ -39,7 +45,7 @@ def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
 def plc_spindle(parameters: ParameterSet) -> Iterator[Problem]:
     """A spindle that the PLC controls has no drive of the NC."""
     drive = parameters.number(ids.KENNGR_ANTR_TYP)
-    if int(parameters.number(ids.KENNGR_ACHS_MODE)) & EXTERNALLY_CONTROLLED and drive not in SIMULATED_DRIVES:
+    if int(parameters.number(ids.KENNGR_ACHS_MODE)) & EXTERNALLY_CONTROLLED and drive not in WITHOUT_FORMAT:
         text = f"value {drive} must be 4 (simulation) or 16 (virtual axis), the PLC controls the spindle (P-AXIS-00015)"
         yield problem(parameters, errors.CONTRADICTION, ids.KENNGR_ANTR_TYP, (), text)
 
@@ -76,9 +82,9 @@ def feedback_of_the_mode(parameters: ParameterSet) -> Iterator[Problem]:
 
 def open_loop_resolution(parameters: ParameterSet) -> Iterator[Problem]:
     """An actual speed that is computed from positions needs a resolution that somebody has thought of."""
-    if not is_open_loop(parameters) or feedback(parameters) != "POSITION" or uses_feed_constant(parameters):
+    if not is_open_loop(parameters) or not has_position(parameters) or uses_feed_constant(parameters):
         return
-    gear = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)) - 1
+    gear = active_gear(parameters)
     if not (parameters.is_given(ids.GETRIEBE_WEGAUFZ, gear) or parameters.is_given(ids.GETRIEBE_WEGAUFN, gear)):
         text = "no resolution is given, but the actual speed of the open position loop comes from positions"
         yield problem(parameters, errors.RESOLUTION, ids.GETRIEBE_WEGAUFZ, (gear,), text)
@@ -97,7 +103,7 @@ def gear_at_start(parameters: ParameterSet) -> Iterator[Problem]:
 def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
     """The zero pulse can be seen below the control limit only."""
     speed, limit = parameters.kernel(ids.GETRIEBE_VB_REFLOW, gear), control_limit(parameters, gear)
-    if speed > limit and feedback(parameters) == "POSITION" and not is_open_loop(parameters):
+    if speed > limit and has_position(parameters) and not is_open_loop(parameters):
         text = (
             f"value {parameters.number(ids.GETRIEBE_VB_REFLOW, gear)} is above the control limit "
             f"{parameters.number(ids.GETRIEBE_VB_REGELGRENZE, gear)} (0.001°/s) of P-AXIS-00220 "

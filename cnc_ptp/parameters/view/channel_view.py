@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, axis_entries, main_spindle_number, spindle_entries
+from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
 
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
@@ -34,16 +35,16 @@ class ChannelSpindle(NamedTuple):
 
     name: str
     node: str
-    m3: Synchronisation
-    m4: Synchronisation
-    m5: Synchronisation
-    m19: Synchronisation
-    s: Synchronisation
+    m3: Annotated[Synchronisation, ids.SPINDEL_M3_SYNCH]
+    m4: Annotated[Synchronisation, ids.SPINDEL_M4_SYNCH]
+    m5: Annotated[Synchronisation, ids.SPINDEL_M5_SYNCH]
+    m19: Annotated[Synchronisation, ids.SPINDEL_M19_SYNCH]
+    s: Annotated[Synchronisation, ids.SPINDEL_S_SYNCH]
     own_name: str = ""
     number: int = 0
     ranges: tuple[tuple[float, float], ...] = ()
-    from_top: bool = False
-    automatic: bool = False
+    from_top: Annotated[bool, ids.SPINDEL_RANGE_WAY] = False
+    automatic: Annotated[bool, ids.SPINDEL_AUTOM_RANGE] = False
 
     @property
     def plc_control(self) -> bool:
@@ -72,11 +73,11 @@ class ChannelParameters:
     m_functions: Mapping[int, Synchronisation]
     """Synchronisation by M number; an M function that is missing here does not exist on the machine."""
     max_override_percent: float
-    circle_center_tolerance: float
+    circle_center_tolerance: Annotated[float, ids.MITTELPKT_DIFF]
     """Largest shift of an arc's centre in mm …"""
-    circle_center_ratio: float
+    circle_center_ratio: Annotated[float, ids.MITTELPKT_FAKTOR]
     """… and as a part of its radius."""
-    gear_change: bool = False
+    gear_change: Annotated[bool, ids.MAIN_SPINDLE_GEAR_CHANGE] = False
     """M40 to M45 and S change the gear of the main spindle (P-CHAN-00052)."""
     coupled: tuple[tuple[str, str], ...] = ()
     """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
@@ -98,34 +99,23 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Cha
         main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
         m_functions=m_functions(channel),
         max_override_percent=channel.percent(ids.MAX_VB_OVERRIDE),
-        circle_center_tolerance=channel.kernel(ids.MITTELPKT_DIFF),
-        circle_center_ratio=channel.kernel(ids.MITTELPKT_FAKTOR),
-        gear_change=bool(channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE)),
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
         tool_records=frozenset(channel.used_indexes("wz")),
         slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
+        **given_fields(ChannelParameters, channel),
     )
 
 
 def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSpindle:
     """One of spindel[i], or one that the channel has without listing it: then all parameters have their defaults."""
-    numbers = (
-        ids.SPINDEL_M3_SYNCH,
-        ids.SPINDEL_M4_SYNCH,
-        ids.SPINDEL_M5_SYNCH,
-        ids.SPINDEL_M19_SYNCH,
-        ids.SPINDEL_S_SYNCH,
-    )
-    m3, m4, m5, m19, s = (synchronisation(channel.text(number, *entry.indexes)) for number in numbers)
-    node = "" if entry.plc_control else str(entry.node)
-    spindle = ChannelSpindle(entry.name, node, m3, m4, m5, m19, s, entry.own_name, entry.number)
-    if not entry.indexes:
-        return spindle
-    return spindle._replace(
-        ranges=speed_ranges(channel, *entry.indexes),
-        from_top=bool(channel.number(ids.SPINDEL_RANGE_WAY, *entry.indexes)),
-        automatic=bool(channel.number(ids.SPINDEL_AUTOM_RANGE, *entry.indexes)),
+    return ChannelSpindle(
+        name=entry.name,
+        node="" if entry.plc_control else str(entry.node),
+        own_name=entry.own_name,
+        number=entry.number,
+        ranges=speed_ranges(channel, *entry.indexes) if entry.indexes else (),
+        **given_fields(ChannelSpindle, channel, *entry.indexes),
     )
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view import telegram
-from cnc_ptp.parameters.view.encoder import encoder_increment, resolution, uses_feed_constant
+from cnc_ptp.parameters.view.encoder import encoder_increment, increment, resolution, uses_feed_constant
+from cnc_ptp.parameters.view.fields import given_fields
 
 VEL, ACC, JERK = 0x001, 0x002, 0x004
 ADD_VEL, ADD_ACC, ADD_JERK = 0x100, 0x200, 0x800
@@ -17,9 +19,8 @@ DELAY_CYCLES = 6
 """A feedforward delay must be below so many cycles (P-AXIS-00389, 00390)."""
 DEFAULT_JERK_DENOMINATOR = 100
 DEFAULT_TABLE_SIZE = 20
-MONITORING_TYPES = (1, 2, 4)
-"""P-AXIS-00172: estimated, linear, fixed; 0 is off."""
-SIMULATION, VIRTUAL, PROFIDRIVE = 4, 16, 3
+MONITORING_TYPES = ESTIMATED, LINEAR, FIXED = 1, 2, 4
+"""P-AXIS-00172; 0 is off."""
 TIME_BASES = {0: 60.0, 1: 1.0}
 
 
@@ -27,12 +28,12 @@ TIME_BASES = {0: 60.0, 1: 1.0}
 class LagMonitoring:
     """Monitoring of the following error (P-AXIS-00172: 0 off, 1 estimated, 2 linear, 4 fixed). mm, deg, s."""
 
-    kind: int
-    moving_limit: float
-    standstill_limit: float
-    dynamic: int
-    """P-AXIS-00167 in 1/1024."""
-    filter_time: float
+    kind: Annotated[int, ids.GETRIEBE_SLEP_UEBERW_TYP]
+    moving_limit: Annotated[float, ids.GETRIEBE_SLEP_MAX]
+    standstill_limit: Annotated[float, ids.GETRIEBE_SLEP_MIN]
+    dynamic: Annotated[int, ids.GETRIEBE_SLEP_DYN]
+    """In 1/1024."""
+    filter_time: Annotated[float, ids.LR_PARAM_POSITION_LAG_FILTER_TIME]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +56,7 @@ class DriveScaling:
 class DriveParameters:
     """The drive and what its telegram carries."""
 
-    kind: int
-    """P-AXIS-00020."""
+    kind: Annotated[int, ids.KENNGR_ANTR_TYP]
     interface: str
     """What is commanded: velocity, position, lag (DSC), torque, or none (virtual axis)."""
     commands: frozenset[str]
@@ -67,8 +67,8 @@ class DriveParameters:
     ideal: bool
     """No format between NC and drive: nothing is rounded (simulated and virtual drives)."""
     reverse: bool
-    velocity_gain: float
-    velocity_integral_time: float
+    velocity_gain: Annotated[float, ids.LR_PARAM_VELOCITY_GAIN]
+    velocity_integral_time: Annotated[float, ids.LR_PARAM_VELOCITY_INTEGRAL_TIME]
     command_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
     """Length of each quantity in the command telegram."""
     feedback_bits: Mapping[str, int] = field(default_factory=telegram.default_bits)
@@ -91,8 +91,8 @@ class FeedforwardParameters:
     acceleration_delay: float
     lead_cycles: int
     """By how many cycles the feedforward leaves before its setpoint (PROFIdrive)."""
-    prefilter_cycles: int
-    always_active: bool
+    prefilter_cycles: Annotated[int, ids.VORSTEUER_PREFILTER_CYCLES]
+    always_active: Annotated[bool, ids.VORSTEUER_DEFAULT_ACTIVE]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +104,9 @@ class FrictionParameters:
     """P-AXIS-00522 and P-COMP-00041 are set."""
     velocities: tuple[float, ...]
     currents: tuple[float, ...]
-    position_delay: float
-    reversal_lookahead: int
-    delay_cycles: int
+    position_delay: Annotated[float, ids.FRICT_COMP_POSITION_DELAY]
+    reversal_lookahead: Annotated[int, ids.FRICT_COMP_REVERSAL_LOOKAHEAD]
+    delay_cycles: Annotated[int, ids.FRICT_COMP_DELAY_CYCLES]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,23 +114,23 @@ class PlantParameters:
     """The simulated drive and mechanics (P-SIM-…). Torques in Nm (N), times in s."""
 
     cascaded: bool
-    time_constant: float
+    time_constant: Annotated[float, ids.SIMULATION_DRIVE_TIME_CONSTANT]
     torque_per_acceleration: float
-    velocity_gain: float
-    velocity_integral_time: float
-    current_time_constant: float
+    velocity_gain: Annotated[float, ids.SIMULATION_VELOCITY_GAIN]
+    velocity_integral_time: Annotated[float, ids.SIMULATION_VELOCITY_INTEGRAL_TIME]
+    current_time_constant: Annotated[float, ids.SIMULATION_CURRENT_TIME_CONSTANT]
     torque_limit: float
     coulomb: float
     static: float
-    stribeck_velocity: float
+    stribeck_velocity: Annotated[float, ids.FRICTION_STRIBECK_VELOCITY]
     viscous: float
     """Nm (N) a mm/s (deg/s)."""
-    backlash: float
+    backlash: Annotated[float, ids.SIMULATION_BACKLASH]
     encoder_at_load: bool
-    bus_delay_cycles: int
+    bus_delay_cycles: Annotated[int, ids.SIMULATION_BUS_DELAY_CYCLES]
     kv: float
     encoder_increment: float
-    start_position: float
+    start_position: Annotated[float, ids.SIMULATION_START_POSITION]
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +148,7 @@ class ModuloError:
 class ControlParameters:
     """Everything below the setpoint of an axis or spindle in one gear."""
 
-    kv: float
+    kv: Annotated[float, ids.GETRIEBE_KV]
     monitoring: LagMonitoring
     drive: DriveParameters
     scaling: DriveScaling
@@ -168,44 +168,30 @@ class ControlParameters:
 
 def control_view(parameters: ParameterSet, gear: int, cycle_time: float) -> ControlParameters:
     """The parameters of record `gear` (0 …); `cycle_time` in s."""
-    scaling = drive_scaling(parameters, gear, cycle_time)
     return ControlParameters(
-        kv=parameters.kernel(ids.GETRIEBE_KV, gear),
-        monitoring=lag_monitoring(parameters, gear),
+        monitoring=LagMonitoring(**given_fields(LagMonitoring, parameters, gear)),
         drive=drive_parameters(parameters, gear),
-        scaling=scaling,
+        scaling=drive_scaling(parameters, gear, cycle_time),
         feedforward=feedforward_parameters(parameters, cycle_time),
         friction=friction_parameters(parameters),
         modulo_error=modulo_error(parameters, gear),
         plant=plant_parameters(parameters, gear),
-    )
-
-
-def lag_monitoring(parameters: ParameterSet, gear: int) -> LagMonitoring:
-    return LagMonitoring(
-        kind=int(parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear)),
-        moving_limit=parameters.kernel(ids.GETRIEBE_SLEP_MAX, gear),
-        standstill_limit=parameters.kernel(ids.GETRIEBE_SLEP_MIN, gear),
-        dynamic=int(parameters.number(ids.GETRIEBE_SLEP_DYN, gear)),
-        filter_time=parameters.kernel(ids.LR_PARAM_POSITION_LAG_FILTER_TIME),
+        **given_fields(ControlParameters, parameters, gear),
     )
 
 
 def drive_parameters(parameters: ParameterSet, gear: int) -> DriveParameters:
-    kind = int(parameters.number(ids.KENNGR_ANTR_TYP))
-    commands, feedback = telegram.commands(parameters), telegram.feedback(parameters)
+    kind = parameters.number(ids.KENNGR_ANTR_TYP)
     return DriveParameters(
-        kind=kind,
         interface=telegram.interface(parameters),
-        commands=commands,
-        feedback=feedback,
+        commands=telegram.commands(parameters),
+        feedback=telegram.feedback(parameters),
         analogue=kind in telegram.ANALOGUE,
-        ideal=kind in (SIMULATION, VIRTUAL),
+        ideal=kind in telegram.WITHOUT_FORMAT,
         reverse=parameters.axis_type == "S" and bool(parameters.number(ids.GETRIEBE_REVERSE, gear)),
-        velocity_gain=parameters.number(ids.LR_PARAM_VELOCITY_GAIN),
-        velocity_integral_time=parameters.kernel(ids.LR_PARAM_VELOCITY_INTEGRAL_TIME),
         command_bits=telegram.command_bits(parameters),
         feedback_bits=telegram.feedback_bits(parameters),
+        **given_fields(DriveParameters, parameters, gear),
     )
 
 
@@ -225,14 +211,9 @@ def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> fl
 
     An axis whose position loop stays open (P-AXIS-00320) puts its speed out with P-AXIS-00205 to 00207 (spindle 2.2.4).
     """
-    if parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP"):
+    if telegram.is_open_loop(parameters):
         return velocity_scale(parameters, cycle_time)
-    return (
-        parameters.number(ids.GETRIEBE_MULTI_GAIN_Z, gear)
-        / parameters.number(ids.GETRIEBE_MULTI_GAIN_N, gear)
-        * 60.0
-        / 1000.0
-    )
+    return quotient(parameters, ids.GETRIEBE_MULTI_GAIN_Z, ids.GETRIEBE_MULTI_GAIN_N, gear) * 60.0 / 1000.0
 
 
 def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:
@@ -243,11 +224,10 @@ def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:
 
 def torque_scale(parameters: ParameterSet) -> float:
     """Digits a Nm (N): P-AXIS-00325 / P-AXIS-00326 digits are P-AXIS-00392; 0.0 with a zero denominator (110465)."""
-    denominator, reference = (
-        parameters.number(ids.ANTR_TORQUE_SCALE_DENOM),
-        parameters.number(ids.ANTR_ACC_REFERENCE_VALUE),
-    )
-    return parameters.number(ids.ANTR_TORQUE_SCALE_NUM) / denominator / reference if denominator and reference else 0.0
+    reference = parameters.number(ids.ANTR_ACC_REFERENCE_VALUE)
+    if not reference or not parameters.number(ids.ANTR_TORQUE_SCALE_DENOM):
+        return 0.0
+    return quotient(parameters, ids.ANTR_TORQUE_SCALE_NUM, ids.ANTR_TORQUE_SCALE_DENOM) / reference
 
 
 def torque_per_acceleration(parameters: ParameterSet, gear: int, load: float) -> float:
@@ -256,17 +236,16 @@ def torque_per_acceleration(parameters: ParameterSet, gear: int, load: float) ->
     M = J · 2π · i / h · a, h the feed constant and i the gear ratio (TF5200 feedforward 4.2).
     """
     if uses_feed_constant(parameters):
-        turn = parameters.number(ids.ANTR_FEED_CONST_NUM) / parameters.number(ids.ANTR_FEED_CONST_DENOM) / 10_000.0
-        gear_ratio = parameters.number(ids.GETRIEBE_GEAR_FACT_NUM, gear) / parameters.number(
-            ids.GETRIEBE_GEAR_FACT_DENOM, gear
-        )
+        turn = quotient(parameters, ids.ANTR_FEED_CONST_NUM, ids.ANTR_FEED_CONST_DENOM) / 10_000.0
+        gear_ratio = quotient(parameters, ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM, gear)
         return load * 2.0 * math.pi * gear_ratio / turn
     return load / 1000.0 if parameters.axis_type == "T" else load * math.pi / 180.0
 
 
 def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> FeedforwardParameters:
     acceleration_factor = quotient(parameters, ids.VORSTEUER_VS_A_FAKTOR, ids.VORSTEUER_VS_A_NENNER)
-    profidrive = parameters.number(ids.KENNGR_ANTR_TYP) == PROFIDRIVE
+    jerk_denominator = parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) or DEFAULT_JERK_DENOMINATOR
+    profidrive = parameters.number(ids.KENNGR_ANTR_TYP) == telegram.DriveType.PROFIDRIVE
     return FeedforwardParameters(
         mode=feedforward_mode(parameters),
         weight=quotient(parameters, ids.VORSTEUER_VS_V_FAKTOR, ids.VORSTEUER_VS_V_NENNER),
@@ -275,18 +254,16 @@ def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> Feedf
         ),
         time_constant=acceleration_factor / 1e6,
         torque_weight=acceleration_factor,
-        jerk_weight=parameters.number(ids.VORSTEUER_JERK_FACT_NUM)
-        / (parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) or DEFAULT_JERK_DENOMINATOR),
+        jerk_weight=parameters.number(ids.VORSTEUER_JERK_FACT_NUM) / jerk_denominator,
         velocity_delay=permitted_delay(parameters, ids.VORSTEUER_VELOCITY_DELAY_TIME, cycle_time),
         acceleration_delay=permitted_delay(parameters, ids.VORSTEUER_ACCELERATION_DELAY_TIME, cycle_time),
         lead_cycles=int(parameters.number(ids.VORSTEUER_SHIFT_TIME)) if profidrive else 0,
-        prefilter_cycles=int(parameters.number(ids.VORSTEUER_PREFILTER_CYCLES)),
-        always_active=bool(parameters.number(ids.VORSTEUER_DEFAULT_ACTIVE)),
+        **given_fields(FeedforwardParameters, parameters),
     )
 
 
-def quotient(parameters: ParameterSet, numerator: str, denominator: str) -> float:
-    return parameters.number(numerator) / parameters.number(denominator)
+def quotient(parameters: ParameterSet, numerator: str, denominator: str, *gear: int) -> float:
+    return parameters.number(numerator, *gear) / parameters.number(denominator, *gear)
 
 
 def feedforward_mode(parameters: ParameterSet) -> int:
@@ -312,16 +289,19 @@ def friction_parameters(parameters: ParameterSet) -> FrictionParameters:
     """Source: TF5200 friction 2.2. Values are scaled by P-COMP-00045 / 1000."""
     scale = parameters.kernel(ids.FRICT_COMP_SCALING_FACTOR)
     entries = range(int(parameters.number(ids.FRICT_COMP_TABLE_ENTRIES)))
-    permitted = bool(parameters.number(ids.LR_PARAM_FRICT_COMP)) if parameters.axis_type != "S" else False
+    permitted = friction_permitted(parameters)
     return FrictionParameters(
         permitted=permitted,
         active=permitted and parameters.number(ids.FRICT_COMP_MODE) != 0,
         velocities=tuple(parameters.kernel(ids.TABLE_IN, index) for index in entries),
         currents=tuple(parameters.number(ids.TABLE_OUT, index) * scale for index in entries),
-        position_delay=parameters.kernel(ids.FRICT_COMP_POSITION_DELAY),
-        reversal_lookahead=int(parameters.number(ids.FRICT_COMP_REVERSAL_LOOKAHEAD)),
-        delay_cycles=int(parameters.number(ids.FRICT_COMP_DELAY_CYCLES)),
+        **given_fields(FrictionParameters, parameters),
     )
+
+
+def friction_permitted(parameters: ParameterSet) -> bool:
+    """P-AXIS-00522; spindles have no friction compensation."""
+    return parameters.axis_type != "S" and bool(parameters.number(ids.LR_PARAM_FRICT_COMP))
 
 
 def friction_table_size(parameters: ParameterSet) -> int:
@@ -335,8 +315,7 @@ def modulo_error(parameters: ParameterSet, gear: int) -> ModuloError:
     if not turns or not parameters.number(ids.LR_PARAM_MOD_KOMP):
         return ModuloError(0.0, 0.0, 0.0)
     turn = parameters.kernel(ids.GETRIEBE_MODULOO, gear) - parameters.kernel(ids.GETRIEBE_MODULOU, gear)
-    increment = float(1 / (10_000 * resolution(parameters, gear)))
-    return ModuloError(turn, increment, parameters.number(ids.GETRIEBE_MODULO_FEHLER, gear) / turns)
+    return ModuloError(turn, increment(parameters, gear), parameters.number(ids.GETRIEBE_MODULO_FEHLER, gear) / turns)
 
 
 def plant_parameters(parameters: ParameterSet, gear: int) -> PlantParameters:
@@ -344,20 +323,13 @@ def plant_parameters(parameters: ParameterSet, gear: int) -> PlantParameters:
     coulomb = parameters.number(ids.FRICTION_COULOMB)
     return PlantParameters(
         cascaded=parameters.text(ids.SIMULATION_MODEL) == "CASCADED",
-        time_constant=parameters.kernel(ids.SIMULATION_DRIVE_TIME_CONSTANT),
         torque_per_acceleration=torque_per_acceleration(parameters, gear, load),
-        velocity_gain=parameters.number(ids.SIMULATION_VELOCITY_GAIN),
-        velocity_integral_time=parameters.kernel(ids.SIMULATION_VELOCITY_INTEGRAL_TIME),
-        current_time_constant=parameters.kernel(ids.SIMULATION_CURRENT_TIME_CONSTANT),
         torque_limit=parameters.number(ids.SIMULATION_TORQUE_LIMIT) or math.inf,
         coulomb=coulomb,
         static=max(coulomb, parameters.number(ids.FRICTION_STATIC)),
-        stribeck_velocity=parameters.number(ids.FRICTION_STRIBECK_VELOCITY),
         viscous=parameters.number(ids.FRICTION_VISCOUS) / 1000.0,
-        backlash=parameters.kernel(ids.SIMULATION_BACKLASH),
         encoder_at_load=parameters.text(ids.SIMULATION_ENCODER_AT) == "LOAD",
-        bus_delay_cycles=int(parameters.number(ids.SIMULATION_BUS_DELAY_CYCLES)),
         kv=parameters.kernel(ids.SIMULATION_DRIVE_KV) or parameters.kernel(ids.GETRIEBE_KV, gear),
         encoder_increment=encoder_increment(parameters, gear),
-        start_position=parameters.kernel(ids.SIMULATION_START_POSITION),
+        **given_fields(PlantParameters, parameters, gear),
     )

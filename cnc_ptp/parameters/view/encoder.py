@@ -30,6 +30,11 @@ def resolution(parameters: ParameterSet, gear: int) -> Fraction:
     return Fraction(whole(ids.GETRIEBE_WEGAUFZ), whole(ids.GETRIEBE_WEGAUFN))
 
 
+def increment(parameters: ParameterSet, gear: int) -> float:
+    """mm or ° an increment, 1e-4 / R."""
+    return float(1 / (10_000 * resolution(parameters, gear)))
+
+
 def encoder_increment(parameters: ParameterSet, gear: int) -> float:
-    """mm or ° an increment, 1e-4 / R; 0.0 when the simulated encoder is off."""
-    return float(1 / (10_000 * resolution(parameters, gear))) if parameters.number(ids.SIMULATION_ENCODER) else 0.0
+    """mm or ° an increment of the simulated encoder; 0.0 when it is off."""
+    return increment(parameters, gear) if parameters.number(ids.SIMULATION_ENCODER) else 0.0

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters, axis_view
 from cnc_ptp.parameters.view.channel_view import ChannelParameters, channel_view
+from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.spindle_view import SpindleParameters, spindle_view
 
 
@@ -15,13 +17,13 @@ from cnc_ptp.parameters.view.spindle_view import SpindleParameters, spindle_view
 class MachineParameters:
     """A whole machine. Channels, axes and spindles by node name, in the order of /machine."""
 
-    cycle_time_us: int
-    block_cycles: int
-    watchdog_ms: int
-    life_sign_timeout_ms: int
-    state_rate_hz: float
+    cycle_time_us: Annotated[int, ids.CYCLE_TIME_US]
+    block_cycles: Annotated[int, ids.BLOCK_CYCLES]
+    watchdog_ms: Annotated[int, ids.WATCHDOG_MS]
+    life_sign_timeout_ms: Annotated[int, ids.LIFE_SIGN_TIMEOUT_MS]
+    state_rate_hz: Annotated[float, ids.STATE_RATE_HZ]
     """Live states a second of each unit, 0 = none."""
-    handshake_timeout_ms: int
+    handshake_timeout_ms: Annotated[int, ids.HANDSHAKE_TIMEOUT_MS]
     """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
@@ -44,17 +46,12 @@ def machine_view(
     channels = {unit.node: channel_view(unit, sets) for unit in of_kind["channel"]}
     axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
     return MachineParameters(
-        cycle_time_us=int(machine.number(ids.CYCLE_TIME_US)),
-        block_cycles=int(machine.number(ids.BLOCK_CYCLES)),
-        watchdog_ms=int(machine.number(ids.WATCHDOG_MS)),
-        life_sign_timeout_ms=int(machine.number(ids.LIFE_SIGN_TIMEOUT_MS)),
-        state_rate_hz=float(machine.number(ids.STATE_RATE_HZ)),
-        handshake_timeout_ms=int(machine.number(ids.HANDSHAKE_TIMEOUT_MS)),
         channels=channels,
         axes=equally_late(axes, channels.values()),
         spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
         warnings=warnings,
         sets={"machine": machine, **sets},
+        **given_fields(MachineParameters, machine),
     )
 
 

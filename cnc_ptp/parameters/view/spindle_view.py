@@ -3,15 +3,24 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
+from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.gears import active_gear, emergency_deceleration, gear_records
+from cnc_ptp.parameters.view.telegram import DriveType, is_open_loop
 
 NO_AUTOMATIC_HOMING = 0x100
 EXTERNALLY_CONTROLLED = 0x40000
-CONTROL_LIMIT_DRIVES = (1, 3, 4, 5, 6)
+CONTROL_LIMIT_DRIVES = (
+    DriveType.CONVENTIONAL,
+    DriveType.PROFIDRIVE,
+    DriveType.SIMULATION,
+    DriveType.LIGHTBUS,
+    DriveType.TERMINAL,
+)
 """Drive types (P-AXIS-00020) for which P-AXIS-00220 exists; the others watch their measuring system themselves."""
 OPEN_LOOP_FEEDBACK = {
     "OPEN_POSITION_LOOP_POS_FEEDBACK": "POSITION",
@@ -28,18 +37,18 @@ class CurveParameters(NamedTuple):
 
     kind: str
     """hyperbola, polynomial or asynchronous."""
-    minimum: float
+    minimum: Annotated[float, ids.BESCHL_KENNLINIE_A_MIN]
     """Floor of the whole curve."""
-    limit_speed: float
+    limit_speed: Annotated[float, ids.BESCHL_KENNLINIE_N_GRENZ]
     """Below it hyperbola and polynomial have constant acceleration."""
-    constant: float
-    b1: float
-    b2: float
-    b3: float
-    maximum: float
+    constant: Annotated[float, ids.BESCHL_KENNLINIE_A_KONST]
+    b1: Annotated[float, ids.BESCHL_KENNLINIE_B1]
+    b2: Annotated[float, ids.BESCHL_KENNLINIE_B2]
+    b3: Annotated[float, ids.BESCHL_KENNLINIE_B3]
+    maximum: Annotated[float, ids.BESCHL_KENNLINIE_A_MAX]
     """Acceleration of an asynchronous drive below n1."""
-    n1: float
-    n2: float
+    n1: Annotated[float, ids.BESCHL_KENNLINIE_N1]
+    n2: Annotated[float, ids.BESCHL_KENNLINIE_N2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,26 +56,26 @@ class GearParameters:
     """What depends on the gear stage. Positions in °, speeds in °/s, accelerations in °/s²."""
 
     stage: int
-    max_speed: float
-    positioning_speed: float
+    max_speed: Annotated[float, ids.DYNAMIK_VB_MAX]
+    positioning_speed: Annotated[float, ids.GETRIEBE_VB_EILGANG]
     """Rapid traverse: M19 without a speed, and the way to the change position."""
-    max_acceleration: float
-    acceleration: float
-    deceleration: float
+    max_acceleration: Annotated[float, ids.DYNAMIK_A_MAX]
+    acceleration: Annotated[float, ids.SLOPE_PROFIL_A_BESCHL]
+    deceleration: Annotated[float, ids.SLOPE_PROFIL_A_BREMS]
     emergency_deceleration: float
     curve: CurveParameters | None
     """In place of acceleration and deceleration in endless rotation."""
-    zero_speed: float
+    zero_speed: Annotated[float, ids.GETRIEBE_VB_MIN_NULL]
     """Below this actual speed the spindle stands."""
     control_limit: float
     """Above it the measuring system fails; infinite where there is no such limit."""
-    change_position: float
-    reference_position: float
+    change_position: Annotated[float, ids.GETRIEBE_GETR_SCHALT_POS]
+    reference_position: Annotated[float, ids.GETRIEBE_POS_REFPKT]
     """Of the zero pulse."""
-    homing_speed: float
-    modulo_low: float
-    modulo_high: float
-    position_window: float
+    homing_speed: Annotated[float, ids.GETRIEBE_VB_REFLOW]
+    modulo_low: Annotated[float, ids.GETRIEBE_MODULOU]
+    modulo_high: Annotated[float, ids.GETRIEBE_MODULOO]
+    position_window: Annotated[float, ids.GETRIEBE_WINDOW]
     control: ControlParameters
     """Position control and drive."""
 
@@ -76,8 +85,8 @@ class SpindleParameters:
     """A spindle. Speeds in °/s, times in s."""
 
     name: str
-    number: int
-    drive_type: int
+    number: Annotated[int, ids.KOPF_ACHS_NR]
+    drive_type: Annotated[int, ids.KENNGR_ANTR_TYP]
     plc_controlled: bool
     """The PLC controls it; the NC gets nothing but acknowledgements (P-AXIS-00015 0x40000)."""
     automatic_homing: bool
@@ -86,32 +95,32 @@ class SpindleParameters:
     """Under position control for positioning and homing only, if at all (P-AXIS-00320)."""
     feedback: str
     """What the drive sends: POSITION, SPEED or NONE."""
-    speed_reached_band: float
+    speed_reached_band: Annotated[float, ids.KENNGR_VB_PROZENT]
     """Speed reached within (1 ± band) times the commanded speed."""
     preferred_direction: int
     """+1 or -1 where only that direction is permitted (P-AXIS-00224), 0 otherwise."""
-    velocity_control_on: float
+    velocity_control_on: Annotated[float, ids.ANTR_VELOCITY_POSITION_CONTROL_ON]
     """A speed command above it switches the drive to velocity control …"""
-    velocity_control_off: float
+    velocity_control_off: Annotated[float, ids.ANTR_VELOCITY_POSITION_CONTROL_OFF]
     """… and this is the actual speed at which it is switched back."""
     gear: int
     """Gear stage at start, from 1."""
     gears: Mapping[int, GearParameters]
     """By stage: those the machine file describes, and the one at start."""
     stops_at_reset: bool
-    target_time: float
+    target_time: Annotated[float, ids.PTP_TARGET_TIME_MS]
     """In which the actual position must have come into the window after M19; 0 = not monitored."""
-    settling_time: float
+    settling_time: Annotated[float, ids.MONITORING_SETTLING_TIME_MS]
     """For which position and speed must have been in their windows before M19 is reached."""
-    speed_time: float
+    speed_time: Annotated[float, ids.MONITORING_SPEED_TIME_MS]
     """The same for the speed of endless rotation."""
-    gear_change_time: float
+    gear_change_time: Annotated[float, ids.GEAR_CHANGE_TIME_MS]
     """In which the PLC must have acknowledged a gear change; 0 = for ever."""
-    zero_pulse: float
+    zero_pulse: Annotated[float, ids.SIMULATION_ZERO_PULSE]
     max_override_percent: float
-    powered_at_start: bool
+    powered_at_start: Annotated[bool, ids.SIMULATION_POWERED_AT_START]
     referenced_at_start: bool
-    start_position: float
+    start_position: Annotated[float, ids.SIMULATION_START_POSITION]
 
     @property
     def max_speed_deg_s(self) -> float:
@@ -127,33 +136,19 @@ class SpindleParameters:
 def spindle_view(parameters: ParameterSet, cycle_time: float) -> SpindleParameters:
     """`cycle_time` in s."""
     mode = int(parameters.number(ids.KENNGR_ACHS_MODE))
-    stage = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE))
-    stages = sorted({stage, *(index + 1 for index in parameters.used_indexes("getriebe"))})
     return SpindleParameters(
         name=parameters.node,
-        number=int(parameters.number(ids.KOPF_ACHS_NR)),
-        drive_type=int(parameters.number(ids.KENNGR_ANTR_TYP)),
         plc_controlled=bool(mode & EXTERNALLY_CONTROLLED),
         automatic_homing=not mode & NO_AUTOMATIC_HOMING,
         open_loop=is_open_loop(parameters),
         feedback=feedback(parameters),
-        speed_reached_band=parameters.kernel(ids.KENNGR_VB_PROZENT),
         preferred_direction=preferred_direction(parameters),
-        velocity_control_on=parameters.kernel(ids.ANTR_VELOCITY_POSITION_CONTROL_ON),
-        velocity_control_off=parameters.kernel(ids.ANTR_VELOCITY_POSITION_CONTROL_OFF),
-        gear=stage,
-        gears={stage: gear_view(parameters, stage - 1, cycle_time) for stage in stages},
+        gear=active_gear(parameters) + 1,
+        gears={gear + 1: gear_view(parameters, gear, cycle_time) for gear in gear_records(parameters)},
         stops_at_reset=not parameters.number(ids.KENNGR_NO_STOP_BY_CHANNEL_RESET),
-        target_time=parameters.number(ids.PTP_TARGET_TIME_MS) / 1000.0,
-        settling_time=parameters.number(ids.MONITORING_SETTLING_TIME_MS) / 1000.0,
-        speed_time=parameters.number(ids.MONITORING_SPEED_TIME_MS) / 1000.0,
-        gear_change_time=parameters.number(ids.GEAR_CHANGE_TIME_MS) / 1000.0,
-        zero_pulse=parameters.kernel(ids.SIMULATION_ZERO_PULSE),
         max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
-        powered_at_start=bool(parameters.number(ids.SIMULATION_POWERED_AT_START)),
-        referenced_at_start=bool(parameters.number(ids.SIMULATION_REFERENCED_AT_START))
-        and feedback(parameters) == "POSITION",
-        start_position=parameters.kernel(ids.SIMULATION_START_POSITION),
+        referenced_at_start=has_position(parameters) and bool(parameters.number(ids.SIMULATION_REFERENCED_AT_START)),
+        **given_fields(SpindleParameters, parameters),
     )
 
 
@@ -161,23 +156,11 @@ def gear_view(parameters: ParameterSet, gear: int, cycle_time: float) -> GearPar
     """The record getriebe[gear]; `cycle_time` in s."""
     return GearParameters(
         stage=gear + 1,
-        max_speed=parameters.kernel(ids.DYNAMIK_VB_MAX, gear),
-        positioning_speed=parameters.kernel(ids.GETRIEBE_VB_EILGANG, gear),
-        max_acceleration=parameters.kernel(ids.DYNAMIK_A_MAX, gear),
-        acceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BESCHL, gear),
-        deceleration=parameters.kernel(ids.SLOPE_PROFIL_A_BREMS, gear),
-        emergency_deceleration=parameters.kernel(ids.DYNAMIK_A_EMERGENCY, gear)
-        or parameters.kernel(ids.DYNAMIK_A_MAX, gear),
+        emergency_deceleration=emergency_deceleration(parameters, gear),
         curve=curve_view(parameters, gear),
-        zero_speed=parameters.kernel(ids.GETRIEBE_VB_MIN_NULL, gear),
         control_limit=control_limit(parameters, gear),
-        change_position=parameters.kernel(ids.GETRIEBE_GETR_SCHALT_POS, gear),
-        reference_position=parameters.kernel(ids.GETRIEBE_POS_REFPKT, gear),
-        homing_speed=parameters.kernel(ids.GETRIEBE_VB_REFLOW, gear),
-        modulo_low=parameters.kernel(ids.GETRIEBE_MODULOU, gear),
-        modulo_high=parameters.kernel(ids.GETRIEBE_MODULOO, gear),
-        position_window=parameters.kernel(ids.GETRIEBE_WINDOW, gear),
         control=control_view(parameters, gear, cycle_time),
+        **given_fields(GearParameters, parameters, gear),
     )
 
 
@@ -185,8 +168,7 @@ def curve_view(parameters: ParameterSet, gear: int) -> CurveParameters | None:
     kind = int(parameters.number(ids.BESCHL_KENNLINIE_TYP, gear))
     if kind not in CURVE_TYPES:
         return None
-    numbers = ("00010", "00130", "00007", "00026", "00027", "00028", "00240", "00241", "00242")
-    return CurveParameters(CURVE_TYPES[kind], *(parameters.kernel(f"P-AXIS-{number}", gear) for number in numbers))
+    return CurveParameters(kind=CURVE_TYPES[kind], **given_fields(CurveParameters, parameters, gear))
 
 
 def control_limit(parameters: ParameterSet, gear: int) -> float:
@@ -196,13 +178,14 @@ def control_limit(parameters: ParameterSet, gear: int) -> float:
     return parameters.kernel(ids.GETRIEBE_VB_REGELGRENZE, gear) or math.inf
 
 
-def is_open_loop(parameters: ParameterSet) -> bool:
-    return parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP")
-
-
 def feedback(parameters: ParameterSet) -> str:
     """POSITION, SPEED or NONE: what the operation mode says itself, else the telegram of the drive."""
     return OPEN_LOOP_FEEDBACK.get(parameters.text(ids.ANTR_OPERATION_MODE), parameters.text(ids.SIMULATION_TELEGRAM))
+
+
+def has_position(parameters: ParameterSet) -> bool:
+    """False: the spindle can be neither homed nor positioned."""
+    return feedback(parameters) == "POSITION"
 
 
 def preferred_direction(parameters: ParameterSet) -> int:

@@ -5,10 +5,27 @@ Sources: TF5200 feedforward 4, friction 2.4; SERCOS IDN and CiA 402 object numbe
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import NamedTuple
 
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
+
+
+class DriveType(IntEnum):
+    """P-AXIS-00020."""
+
+    CONVENTIONAL = 1
+    SERCOS = 2
+    PROFIDRIVE = 3
+    SIMULATION = 4
+    LIGHTBUS = 5
+    TERMINAL = 6
+    ETHERNET = 7
+    CANOPEN = 8
+    VIRTUAL = 16
+    CAN = 32
+
 
 COMMAND_OBJECTS: dict[str, str] = {
     "S-0-0036": "velocity",
@@ -41,31 +58,33 @@ EVERYTHING = frozenset({"velocity", "position", "torque", "lag", "additive_veloc
 ALL_FEEDBACK = frozenset({"position", "velocity", "torque"})
 PLAIN = (frozenset({"velocity"}), frozenset({"position"}))
 PRESETS: dict[int, tuple[frozenset[str], frozenset[str]]] = {
-    1: PLAIN,
-    2: PLAIN,
-    3: (frozenset({"lag", "additive_velocity"}), frozenset({"position", "velocity"})),
-    4: (EVERYTHING, ALL_FEEDBACK),
-    5: PLAIN,
-    6: PLAIN,
-    7: PLAIN,
-    8: PLAIN,
-    16: (frozenset(), frozenset()),
-    32: PLAIN,
+    DriveType.CONVENTIONAL: PLAIN,
+    DriveType.SERCOS: PLAIN,
+    DriveType.PROFIDRIVE: (frozenset({"lag", "additive_velocity"}), frozenset({"position", "velocity"})),
+    DriveType.SIMULATION: (EVERYTHING, ALL_FEEDBACK),
+    DriveType.LIGHTBUS: PLAIN,
+    DriveType.TERMINAL: PLAIN,
+    DriveType.ETHERNET: PLAIN,
+    DriveType.CANOPEN: PLAIN,
+    DriveType.VIRTUAL: (frozenset(), frozenset()),
+    DriveType.CAN: PLAIN,
 }
 """What a drive type (P-AXIS-00020) exchanges where no telegram is configured."""
 BUSES: dict[int, tuple[str, ...]] = {
-    1: ("DA",),
-    2: ("S-",),
-    3: ("NSOLL", "XERR", "M_ADD", "G1", "NIST", "MIST"),
-    5: ("S-",),
-    6: ("DA",),
-    7: ("S-", "6"),
-    8: ("6",),
-    32: ("6",),
+    DriveType.CONVENTIONAL: ("DA",),
+    DriveType.SERCOS: ("S-",),
+    DriveType.PROFIDRIVE: ("NSOLL", "XERR", "M_ADD", "G1", "NIST", "MIST"),
+    DriveType.LIGHTBUS: ("S-",),
+    DriveType.TERMINAL: ("DA",),
+    DriveType.ETHERNET: ("S-", "6"),
+    DriveType.CANOPEN: ("6",),
+    DriveType.CAN: ("6",),
 }
 """How the objects of a drive type begin; the simulated drive (4) takes them all, the virtual axis (16) none."""
-ANALOGUE = (1, 6)
+ANALOGUE = (DriveType.CONVENTIONAL, DriveType.TERMINAL)
 """Drive types whose command is a voltage of ±10 V."""
+WITHOUT_FORMAT = (DriveType.SIMULATION, DriveType.VIRTUAL)
+"""Drive types that take kernel units: nothing is rounded between NC and drive."""
 OPERATION_MODES = {
     "DRIVE_POSITION_CONTROL": "position",
     "CNC_POSITION_CONTROL": "velocity",
@@ -76,7 +95,7 @@ INTERFACES = ("velocity", "lag", "position", "torque")
 
 def fits(name: str, kind: int) -> bool:
     """Whether an object can be exchanged with a drive of type `kind` (P-AXIS-00020)."""
-    return kind == 4 or name.startswith(BUSES.get(kind, ("-",)))
+    return kind == DriveType.SIMULATION or name.startswith(BUSES.get(kind, ("-",)))
 
 
 class Configured(NamedTuple):
@@ -158,6 +177,11 @@ def feedback(parameters: ParameterSet) -> frozenset[str]:
     if not objects:
         return PRESETS[int(parameters.number(ids.KENNGR_ANTR_TYP))][1]
     return frozenset({"position", *(FEEDBACK_OBJECTS[name] for name in objects if name in FEEDBACK_OBJECTS)})
+
+
+def is_open_loop(parameters: ParameterSet) -> bool:
+    """The position loop stays open, but for positioning and homing of a spindle (P-AXIS-00320; spindle 2.2.4)."""
+    return parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP")
 
 
 def interface(parameters: ParameterSet) -> str:
