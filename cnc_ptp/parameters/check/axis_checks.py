@@ -18,9 +18,8 @@ def emergency_ramp(parameters: ParameterSet) -> Iterator[Problem]:
         value, limit = parameters.number(ids.DYNAMIK_A_EMERGENCY, gear), 2 * parameters.number(ids.DYNAMIK_A_MAX, gear)
         if value > limit:
             name = other_name(parameters, parameters.catalogue.by_id[ids.DYNAMIK_A_MAX], (gear,))
-            text = (
-                f"value {value} is above the maximum {limit} {parameters.unit(ids.DYNAMIK_A_EMERGENCY)}, twice {name}"
-            )
+            unit = parameters.unit(ids.DYNAMIK_A_EMERGENCY)
+            text = f"value {value} is above the maximum {limit} {unit}, twice {name}"
             yield problem(parameters, errors.CONTRADICTION, ids.DYNAMIK_A_EMERGENCY, (gear,), text)
 
 

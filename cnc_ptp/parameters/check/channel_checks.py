@@ -18,14 +18,14 @@ Sets = Mapping[str, ParameterSet]
 
 def channel_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """Each listed axis exists, is a path axis, is listed once, has a name of its own."""
-    yield from listed_units(channel, axis_entries(channel, sets), ids.ACHSE_LOG_ACHS_NR, ids.ACHSE_BEZEICHNUNG, sets)
+    entries = axis_entries(channel, sets)
+    yield from listed_units(channel, entries, ids.ACHSE_LOG_ACHS_NR, ids.ACHSE_BEZEICHNUNG, sets)
 
 
 def channel_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """The same for spindles."""
-    yield from listed_units(
-        channel, spindle_entries(channel, sets), ids.SPINDEL_LOG_ACHS_NR, ids.SPINDEL_BEZEICHNUNG, sets
-    )
+    entries = spindle_entries(channel, sets)
+    yield from listed_units(channel, entries, ids.SPINDEL_LOG_ACHS_NR, ids.SPINDEL_BEZEICHNUNG, sets)
 
 
 def listed_units(
@@ -84,9 +84,8 @@ def name_trouble(
 
 
 def wrong_name(entry: ChannelAxisEntry, name: str) -> str:
-    letters, listed_as = (
-        ("S", "spindel[i]") if name == ids.SPINDEL_BEZEICHNUNG else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
-    )
+    spindle = name == ids.SPINDEL_BEZEICHNUNG
+    letters, listed_as = ("S", "spindel[i]") if spindle else ("ABCUVWXYZQ", "gruppe[i].achse[j]")
     if entry.plc_control and not entry.own_name:
         return f"a spindle with P-CHAN-00069 (plc_control) has no node name: give {listed_as}.bezeichnung"
     if entry.name and entry.name[0] not in letters:

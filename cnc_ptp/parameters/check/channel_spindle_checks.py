@@ -9,11 +9,16 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, main_spindle_number, spindle_entries
-from cnc_ptp.parameters.view.channel_view import GEAR_M_FUNCTIONS, SPINDLES
+from cnc_ptp.parameters.view.channel_members import (
+    COUPLING_GROUP,
+    ChannelAxisEntry,
+    coupled_spindle_pairs,
+    main_spindle_number,
+    spindle_entries,
+)
+from cnc_ptp.parameters.view.channel_view import GEAR_M_FUNCTIONS
 
 Sets = Mapping[str, ParameterSet]
-COUPLING_GROUP = 0
 SYNCHRONISATIONS = (
     ids.M_SYNCH,
     ids.SPINDEL_M19_SYNCH,
@@ -63,17 +68,7 @@ def gear_records(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
 
 def coupled_pairs(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """Pairs of spindles: both are in the channel, none follows itself or two masters, none is slave and master."""
-    pairs = [
-        (
-            pair,
-            *(
-                int(channel.number(number, COUPLING_GROUP, pair))
-                for number in (ids.PAAR_LOG_ACHS_NR_SLAVE, ids.PAAR_LOG_ACHS_NR_MASTER)
-            ),
-        )
-        for pair in channel.used_indexes(f"synchro_data.koppel_gruppe.{COUPLING_GROUP}.paar")
-        if channel.number(ids.PAAR_MODE, COUPLING_GROUP, pair) == SPINDLES
-    ]
+    pairs = coupled_spindle_pairs(channel)
     entries = spindle_entries(channel, sets)
     slaves = [slave for _, slave, _ in pairs]
     for position, (pair, slave, master) in enumerate(pairs):

@@ -76,10 +76,8 @@ def inertia(parameters: ParameterSet) -> Iterator[Problem]:
 
 def velocity_controller(parameters: ParameterSet) -> Iterator[Problem]:
     """The velocity loop of a cascaded plant, s³ Ti + s² + Kp s + Kp/Tn, is stable for Ti < Tn (Routh)."""
-    lag, integral = (
-        parameters.number(ids.SIMULATION_CURRENT_TIME_CONSTANT),
-        parameters.number(ids.SIMULATION_VELOCITY_INTEGRAL_TIME),
-    )
+    lag = parameters.number(ids.SIMULATION_CURRENT_TIME_CONSTANT)
+    integral = parameters.number(ids.SIMULATION_VELOCITY_INTEGRAL_TIME)
     used = parameters.text(ids.SIMULATION_MODEL) == "CASCADED" and telegram.interface(parameters) != "torque"
     if used and integral and lag >= integral:
         where = f"the {lag} µs of P-SIM-00010 simulation.current_time_constant"

@@ -27,6 +27,7 @@ from cnc_ptp.parameters.view.control_view import (
     friction_parameters,
     permitted_delay,
     torque_per_acceleration,
+    velocity_weight,
 )
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear, gear_records
@@ -87,9 +88,7 @@ def weight(parameters: ParameterSet) -> Iterator[Notice]:
     if value > denominator:
         text = f"weight {value / denominator:g} of the feedforward is above 1, the axis leads its setpoint"
         yield notice(parameters, ids.VORSTEUER_VS_V_FAKTOR, (), text)
-    own = parameters.number(ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM) / parameters.number(
-        ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM
-    )
+    own = velocity_weight(parameters)
     if own > 1 and own * value > denominator:
         text = (
             f"weight {own * value / denominator:g} of the velocity feedforward is above 1, the axis leads its setpoint"
@@ -153,9 +152,7 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
     drive, scaling = control.drive, control.scaling
     if drive.ideal or drive.interface != "velocity":
         return
-    scale, number = (
-        (scaling.analogue, ids.GETRIEBE_MULTI_GAIN_Z) if drive.analogue else (scaling.velocity, ids.ANTR_V_RESO_NUM)
-    )
+    scale = scaling.analogue if drive.analogue else scaling.velocity
     bits = drive.command_bits["velocity"]
     limit = largest_digit(bits) / scale if scale else 0.0
     largest = parameters.kernel(ids.DYNAMIK_VB_MAX, gear)
@@ -164,7 +161,8 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
         text = (
             f"the {bits} bits of the command carry {limit:g} {unit}, less than the {largest:g} {unit} of P-AXIS-00212"
         )
-        yield notice(parameters, number, (gear,) if drive.analogue else (), text)
+        number, indexes = (ids.GETRIEBE_MULTI_GAIN_Z, (gear,)) if drive.analogue else (ids.ANTR_V_RESO_NUM, ())
+        yield notice(parameters, number, indexes, text)
 
 
 def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:

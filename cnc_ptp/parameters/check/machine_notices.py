@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from cnc_ptp.parameters.check.control_notices import control_notices
 from cnc_ptp.parameters.check.friction_notices import friction_notices
+from cnc_ptp.parameters.check.spindle_checks import above_control_limit
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
@@ -12,8 +13,8 @@ from cnc_ptp.parameters.view.axis_view import is_modulo
 from cnc_ptp.parameters.view.channel_members import spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear
-from cnc_ptp.parameters.view.spindle_view import COEFFICIENTS, CURVE_TYPES, control_limit, has_position
-from cnc_ptp.parameters.view.telegram import DriveType, is_open_loop
+from cnc_ptp.parameters.view.spindle_view import curve_view, has_position
+from cnc_ptp.parameters.view.telegram import DriveType
 
 UNIT_LISTS = {"channel": ids.CHANNELS, "axis": ids.AXES, "spindle": ids.SPINDLES}
 HOMED_BY_THE_NC = (DriveType.CONVENTIONAL, DriveType.LIGHTBUS, DriveType.TERMINAL)
@@ -82,9 +83,8 @@ def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
     for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
         for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
             if group:
-                yield notice(
-                    parameters, ids.PAAR_LOG_ACHS_NR_SLAVE, (group, pair), "only coupling group 0 is taken from here"
-                )
+                text = "only coupling group 0 is taken from here"
+                yield notice(parameters, ids.PAAR_LOG_ACHS_NR_SLAVE, (group, pair), text)
             elif not parameters.number(ids.PAAR_MODE, group, pair):
                 yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled here")
 
@@ -155,28 +155,21 @@ def drive_type(parameters: ParameterSet) -> str:
 def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
     """The way to a position is measured, which ends at the control limit."""
     for gear in parameters.used_indexes("getriebe"):
-        rapid, limit = (
-            parameters.number(number, gear) for number in (ids.GETRIEBE_VB_EILGANG, ids.GETRIEBE_VB_REGELGRENZE)
-        )
-        above = parameters.kernel(ids.GETRIEBE_VB_EILGANG, gear) > control_limit(parameters, gear)
-        if above and not is_open_loop(parameters):
-            text = (
-                f"value {rapid} is above the control limit {limit} (0.001°/s) of P-AXIS-00220 "
-                f"getriebe[{gear}].vb_regelgrenze; positionings are that much slower"
-            )
-            yield notice(parameters, ids.GETRIEBE_VB_EILGANG, (gear,), text)
+        text = above_control_limit(parameters, ids.GETRIEBE_VB_EILGANG, gear)
+        if text:
+            yield notice(parameters, ids.GETRIEBE_VB_EILGANG, (gear,), f"{text}; positionings are that much slower")
 
 
 def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
     """A hyperbola that does not begin with the constant acceleration."""
     for gear in parameters.used_indexes("getriebe"):
-        if CURVE_TYPES.get(int(parameters.number(ids.BESCHL_KENNLINIE_TYP, gear))) != "hyperbola":
+        curve = curve_view(parameters, gear)
+        if curve is None or curve.kind != "hyperbola":
             continue
-        b1, b2, b3 = (parameters.kernel(number, gear) for number in COEFFICIENTS)
-        begin = b1 / (1.0 + b2 * (1.0 + b3) or 1.0)
-        constant = parameters.kernel(ids.BESCHL_KENNLINIE_A_KONST, gear)
-        if abs(begin - constant) > SMALL_STEP * constant:
-            text = f"the hyperbola begins with {begin:g} °/s², P-AXIS-00007 is {constant:g} °/s²: a step in the curve"
+        begin = curve.b1 / (1.0 + curve.b2 * (1.0 + curve.b3) or 1.0)
+        if abs(begin - curve.constant) > SMALL_STEP * curve.constant:
+            steps = f"begins with {begin:g} °/s², P-AXIS-00007 is {curve.constant:g} °/s²"
+            text = f"the hyperbola {steps}: a step in the curve"
             yield notice(parameters, ids.BESCHL_KENNLINIE_B1, (gear,), text)
 
 

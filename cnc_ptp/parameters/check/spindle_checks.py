@@ -1,6 +1,6 @@
 """What no single value of a spindle shows: curves, homing, drive and feedback against each other."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
@@ -10,11 +10,11 @@ from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear, gear_records
 from cnc_ptp.parameters.view.spindle_view import (
-    COEFFICIENTS,
-    CURVE_TYPES,
     EXTERNALLY_CONTROLLED,
     OPEN_LOOP_FEEDBACK,
+    CurveParameters,
     control_limit,
+    curve_view,
     has_position,
 )
 from cnc_ptp.parameters.view.telegram import WITHOUT_FORMAT, DriveType, is_open_loop
@@ -26,6 +26,9 @@ OPEN_LOOP_DRIVES = (
     DriveType.ETHERNET,
     DriveType.CANOPEN,
 )
+NEEDED = (ids.BESCHL_KENNLINIE_A_KONST, ids.BESCHL_KENNLINIE_N_GRENZ)
+"""What a hyperbola or polynomial cannot do without."""
+NEEDED_OF_ASYNCHRONOUS = (ids.BESCHL_KENNLINIE_A_MAX, ids.BESCHL_KENNLINIE_N1)
 ROUNDING = 1e-6
 """Part of the largest acceleration by which rounded coefficients of a curve may pass it."""
 STEPS = 1000
@@ -102,14 +105,18 @@ def gear_at_start(parameters: ParameterSet) -> Iterator[Problem]:
 
 def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
     """The zero pulse can be seen below the control limit only."""
-    speed, limit = parameters.kernel(ids.GETRIEBE_VB_REFLOW, gear), control_limit(parameters, gear)
-    if speed > limit and has_position(parameters) and not is_open_loop(parameters):
-        text = (
-            f"value {parameters.number(ids.GETRIEBE_VB_REFLOW, gear)} is above the control limit "
-            f"{parameters.number(ids.GETRIEBE_VB_REGELGRENZE, gear)} (0.001°/s) of P-AXIS-00220 "
-            f"getriebe[{gear}].vb_regelgrenze"
-        )
+    text = above_control_limit(parameters, ids.GETRIEBE_VB_REFLOW, gear)
+    if text and has_position(parameters):
         yield problem(parameters, errors.CONTRADICTION, ids.GETRIEBE_VB_REFLOW, (gear,), text)
+
+
+def above_control_limit(parameters: ParameterSet, number: str, gear: int) -> str:
+    """Text where a speed is above the control limit of a closed position loop, else empty."""
+    if is_open_loop(parameters) or parameters.kernel(number, gear) <= control_limit(parameters, gear):
+        return ""
+    limit = f"{parameters.number(ids.GETRIEBE_VB_REGELGRENZE, gear)} (0.001°/s)"
+    name = f"P-AXIS-00220 getriebe[{gear}].vb_regelgrenze"
+    return f"value {parameters.number(number, gear)} is above the control limit {limit} of {name}"
 
 
 # ---------------------------------------------------------------- acceleration curves
@@ -117,62 +124,51 @@ def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
 
 def curve(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
     """A curve must be whole and bring the spindle to its largest speed."""
-    kind = CURVE_TYPES.get(int(parameters.number(ids.BESCHL_KENNLINIE_TYP, gear)), "")
-    if not kind:
+    curve = curve_view(parameters, gear)
+    if curve is None:
         return
-    own = (
-        (ids.BESCHL_KENNLINIE_A_MAX, ids.BESCHL_KENNLINIE_N1)
-        if kind == "asynchronous"
-        else (ids.BESCHL_KENNLINIE_A_KONST, ids.BESCHL_KENNLINIE_N_GRENZ)
-    )
+    own = NEEDED_OF_ASYNCHRONOUS if curve.kind == "asynchronous" else NEEDED
     missing = [number for number in own if parameters.number(number, gear) == 0]
     for number in missing:
-        yield problem(
-            parameters, errors.CONTRADICTION, number, (gear,), f"value 0 makes no {kind} curve (P-AXIS-00202)"
-        )
-    least = parameters.number(ids.BESCHL_KENNLINIE_A_MIN, gear)
-    if not missing and least > parameters.number(own[0], gear):
-        text = f"value {least} is above {parameters.number(own[0], gear):g} °/s² of {own[0]}"
+        text = f"value 0 makes no {curve.kind} curve (P-AXIS-00202)"
+        yield problem(parameters, errors.CONTRADICTION, number, (gear,), text)
+    least, most = parameters.number(ids.BESCHL_KENNLINIE_A_MIN, gear), parameters.number(own[0], gear)
+    if not missing and least > most:
+        text = f"value {least} is above {most:g} °/s² of {own[0]}"
         yield problem(parameters, errors.CONTRADICTION, ids.BESCHL_KENNLINIE_A_MIN, (gear,), text)
-    elif not missing and kind != "asynchronous":
-        yield from curve_to_the_top(parameters, gear, kind)
+    elif not missing and curve.kind != "asynchronous":
+        yield from curve_to_the_top(parameters, gear, curve)
 
 
-def curve_to_the_top(parameters: ParameterSet, gear: int, kind: str) -> Iterator[Problem]:
+def curve_to_the_top(parameters: ParameterSet, gear: int, curve: CurveParameters) -> Iterator[Problem]:
     """No acceleration up to the largest speed may be zero, negative, infinite or above the largest one.
 
     The constant acceleration has that bound as its range.
     """
-    value: Callable[[ParameterSet, int, float], float] = hyperbola if kind == "hyperbola" else polynomial
-    limit, top = parameters.kernel(ids.BESCHL_KENNLINIE_N_GRENZ, gear), parameters.kernel(ids.DYNAMIK_VB_MAX, gear)
-    least, constant, most = (
-        parameters.kernel(number, gear)
-        for number in (ids.BESCHL_KENNLINIE_A_MIN, ids.BESCHL_KENNLINIE_A_KONST, ids.DYNAMIK_A_MAX)
-    )
+    value = hyperbola if curve.kind == "hyperbola" else polynomial
+    top, most = parameters.kernel(ids.DYNAMIK_VB_MAX, gear), parameters.kernel(ids.DYNAMIK_A_MAX, gear)
     for step in range(STEPS + 1):
-        speed = limit + (top - limit) * step / STEPS
-        acceleration = value(parameters, gear, speed) if speed >= limit else 1.0
-        if not 0.0 < max(acceleration, least) < float("inf"):
+        speed = curve.limit_speed + (top - curve.limit_speed) * step / STEPS
+        acceleration = value(curve, speed) if speed >= curve.limit_speed else 1.0
+        if not 0.0 < max(acceleration, curve.minimum) < float("inf"):
             bound = f"within P-AXIS-00212 ({top:g} °/s)"
-        elif acceleration > max(constant, most) * (1.0 + ROUNDING):
+        elif acceleration > max(curve.constant, most) * (1.0 + ROUNDING):
             bound = f"above P-AXIS-00008 getriebe[{gear}].dynamik.a_max ({most:g} °/s²)"
         else:
             continue
-        text = f"the {kind} gives {acceleration:g} °/s² at {speed:g} °/s, {bound}"
+        text = f"the {curve.kind} gives {acceleration:g} °/s² at {speed:g} °/s, {bound}"
         yield problem(parameters, errors.CONTRADICTION, ids.BESCHL_KENNLINIE_B1, (gear,), text)
         return
 
 
-def polynomial(parameters: ParameterSet, gear: int, speed: float) -> float:
+def polynomial(curve: CurveParameters, speed: float) -> float:
     """a(n) above the limit speed (2.8.4.1)."""
-    d = speed - parameters.kernel(ids.BESCHL_KENNLINIE_N_GRENZ, gear)
-    b1, b2, b3 = (parameters.kernel(number, gear) for number in COEFFICIENTS)
-    return parameters.kernel(ids.BESCHL_KENNLINIE_A_KONST, gear) + d * (b1 + d * (b2 + d * b3))
+    d = speed - curve.limit_speed
+    return curve.constant + d * (curve.b1 + d * (curve.b2 + d * curve.b3))
 
 
-def hyperbola(parameters: ParameterSet, gear: int, speed: float) -> float:
+def hyperbola(curve: CurveParameters, speed: float) -> float:
     """a(n) above the limit speed; infinite where the denominator is not positive."""
-    x = speed / parameters.kernel(ids.BESCHL_KENNLINIE_N_GRENZ, gear)
-    b1, b2, b3 = (parameters.kernel(number, gear) for number in COEFFICIENTS)
-    denominator = 1.0 + b2 * x * x * (1.0 + b3 * x * x)
-    return b1 / denominator if denominator > 0.0 else float("inf")
+    x = speed / curve.limit_speed
+    denominator = 1.0 + curve.b2 * x * x * (1.0 + curve.b3 * x * x)
+    return curve.b1 / denominator if denominator > 0.0 else float("inf")

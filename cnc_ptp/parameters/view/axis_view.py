@@ -98,11 +98,8 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
 
 def jerk(parameters: ParameterSet, gear: int) -> float:
     """J = a_beschl / tr_beschl_zu, in mm/s³ or °/s³."""
-    return (
-        parameters.number(ids.SLOPE_PROFIL_A_BESCHL, gear)
-        * 1_000_000
-        / parameters.number(ids.SLOPE_PROFIL_TR_BESCHL_ZU, gear)
-    )
+    ramp_time_us = parameters.number(ids.SLOPE_PROFIL_TR_BESCHL_ZU, gear)
+    return parameters.number(ids.SLOPE_PROFIL_A_BESCHL, gear) * 1_000_000 / ramp_time_us
 
 
 def is_modulo(parameters: ParameterSet) -> bool:

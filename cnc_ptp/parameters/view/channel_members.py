@@ -7,6 +7,10 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 Sets = Mapping[str, ParameterSet]
+COUPLING_GROUP = 0
+"""Of the groups, the one that programs can enable."""
+SPINDLES = 1
+"""P-CHAN-00061: the pair consists of spindles."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +80,20 @@ def main_spindle_number(channel: ParameterSet, entries: list[ChannelAxisEntry]) 
     if entries and not entries[0].indexes and not channel.is_given(ids.MAIN_SPINDLE_AX_NR):
         return entries[0].number
     return int(channel.number(ids.MAIN_SPINDLE_AX_NR))
+
+
+def coupled_spindle_pairs(channel: ParameterSet) -> list[tuple[int, int, int]]:
+    """(index of the pair, slave, master) by logical number: the pairs of spindles in coupling group 0."""
+    pairs = channel.used_indexes(f"synchro_data.koppel_gruppe.{COUPLING_GROUP}.paar")
+    return [
+        (
+            pair,
+            int(channel.number(ids.PAAR_LOG_ACHS_NR_SLAVE, COUPLING_GROUP, pair)),
+            int(channel.number(ids.PAAR_LOG_ACHS_NR_MASTER, COUPLING_GROUP, pair)),
+        )
+        for pair in pairs
+        if channel.number(ids.PAAR_MODE, COUPLING_GROUP, pair) == SPINDLES
+    ]
 
 
 def unit_with(number: int, sets: Sets) -> ParameterSet | None:

@@ -7,14 +7,18 @@ from typing import Annotated, NamedTuple
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
-from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, axis_entries, main_spindle_number, spindle_entries
+from cnc_ptp.parameters.view.channel_members import (
+    ChannelAxisEntry,
+    axis_entries,
+    coupled_spindle_pairs,
+    main_spindle_number,
+    spindle_entries,
+)
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
 
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
 GEAR_M_FUNCTIONS = range(40, 46)
-SPINDLES = 1
-"""P-CHAN-00061: the pair consists of spindles."""
 
 
 class ChannelAxis(NamedTuple):
@@ -122,27 +126,15 @@ def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSp
 def speed_ranges(channel: ParameterSet, spindle: int) -> tuple[tuple[float, float], ...]:
     """(lowest, highest) speed of the gear stages up to the last one that the file gives, rpm."""
     given = channel.used_indexes(f"spindel.{spindle}.range_table")
-    return tuple(
-        (
-            float(channel.number(ids.RANGE_TABLE_MIN_SPEED, spindle, gear)),
-            float(channel.number(ids.RANGE_TABLE_MAX_SPEED, spindle, gear)),
-        )
-        for gear in range(max(given, default=-1) + 1)
-    )
+    ends = (ids.RANGE_TABLE_MIN_SPEED, ids.RANGE_TABLE_MAX_SPEED)
+    speeds = [[float(channel.number(end, spindle, gear)) for end in ends] for gear in range(max(given, default=-1) + 1)]
+    return tuple((lowest, highest) for lowest, highest in speeds)
 
 
 def coupled_spindles(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> tuple[tuple[str, str], ...]:
     """The pairs of spindles in coupling group 0."""
     name = {entry.number: entry.name for entry in spindles}
-    pairs = []
-    for pair in channel.used_indexes("synchro_data.koppel_gruppe.0.paar"):
-        if channel.number(ids.PAAR_MODE, 0, pair) == SPINDLES:
-            slave, master = (
-                int(channel.number(number, 0, pair))
-                for number in (ids.PAAR_LOG_ACHS_NR_SLAVE, ids.PAAR_LOG_ACHS_NR_MASTER)
-            )
-            pairs.append((name.get(slave, ""), name.get(master, "")))
-    return tuple(pairs)
+    return tuple((name.get(slave, ""), name.get(master, "")) for _, slave, master in coupled_spindle_pairs(channel))
 
 
 def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> dict[int, ToolLimits]:

@@ -249,9 +249,7 @@ def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> Feedf
     return FeedforwardParameters(
         mode=feedforward_mode(parameters),
         weight=quotient(parameters, ids.VORSTEUER_VS_V_FAKTOR, ids.VORSTEUER_VS_V_NENNER),
-        velocity_weight=quotient(
-            parameters, ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM, ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM
-        ),
+        velocity_weight=velocity_weight(parameters),
         time_constant=acceleration_factor / 1e6,
         torque_weight=acceleration_factor,
         jerk_weight=parameters.number(ids.VORSTEUER_JERK_FACT_NUM) / jerk_denominator,
@@ -264,6 +262,11 @@ def feedforward_parameters(parameters: ParameterSet, cycle_time: float) -> Feedf
 
 def quotient(parameters: ParameterSet, numerator: str, denominator: str, *gear: int) -> float:
     return parameters.number(numerator, *gear) / parameters.number(denominator, *gear)
+
+
+def velocity_weight(parameters: ParameterSet) -> float:
+    """P-AXIS-00514 / P-AXIS-00515, beside the global weight."""
+    return quotient(parameters, ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM, ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM)
 
 
 def feedforward_mode(parameters: ParameterSet) -> int:

@@ -22,11 +22,8 @@ def resolution(parameters: ParameterSet, gear: int) -> Fraction:
 
     if uses_feed_constant(parameters):
         ratio = Fraction(whole(ids.GETRIEBE_GEAR_FACT_NUM), whole(ids.GETRIEBE_GEAR_FACT_DENOM))
-        return (
-            whole(ids.GETRIEBE_INCR_PER_REV)
-            * ratio
-            / Fraction(whole(ids.ANTR_FEED_CONST_NUM), whole(ids.ANTR_FEED_CONST_DENOM))
-        )
+        feed_constant = Fraction(whole(ids.ANTR_FEED_CONST_NUM), whole(ids.ANTR_FEED_CONST_DENOM))
+        return whole(ids.GETRIEBE_INCR_PER_REV) * ratio / feed_constant
     return Fraction(whole(ids.GETRIEBE_WEGAUFZ), whole(ids.GETRIEBE_WEGAUFN))
 
 

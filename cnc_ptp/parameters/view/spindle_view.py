@@ -27,8 +27,6 @@ OPEN_LOOP_FEEDBACK = {
     "OPEN_POSITION_LOOP_VEL_FEEDBACK": "SPEED",
     "OPEN_POSITION_LOOP_NO_FEEDBACK": "NONE",
 }
-COEFFICIENTS = (ids.BESCHL_KENNLINIE_B1, ids.BESCHL_KENNLINIE_B2, ids.BESCHL_KENNLINIE_B3)
-"""Of a hyperbola or polynomial: b1, b2, b3."""
 CURVE_TYPES = {1: "hyperbola", 2: "polynomial", 3: "asynchronous"}
 
 
