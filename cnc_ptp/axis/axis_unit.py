@@ -83,6 +83,7 @@ class AxisUnit(Unit):
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
             ControlCommands(self._loop, f"axis {parameters.name}"),
         )
+        self._last_block: AxisBlock | None = None
 
     def _report_error(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.ERROR, error_id, text)
@@ -92,8 +93,21 @@ class AxisUnit(Unit):
 
     @property
     def master(self) -> str | None:
-        """The axis whose block of the same cycles is needed before this one's can be computed."""
+        """See Unit."""
         return self._axis.coupling.master if self._axis.coupled and self._axis.coupling is not None else None
+
+    @property
+    def led(self) -> bool:
+        """See Unit."""
+        return self._last_block is not None and self._last_block.state[-1] == S.SYNCHRONIZED_MOTION
+
+    def waits_for(self) -> str:
+        """See Unit: only a command ends the motion of a slave that was decoupled while it moved."""
+        block = self._last_block
+        if block is None or block.state[-1] != S.CONTINUOUS_MOTION:
+            return ""
+        endless = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
+        return f"axis {self.name} drives on without an end" if endless else ""
 
     # commands
 
@@ -143,6 +157,7 @@ class AxisUnit(Unit):
             self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
         block.master = axis.coupling.master if axis.coupling is not None else ""
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
+        self._last_block = block
         return block
 
     def _led(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:

@@ -12,7 +12,6 @@ from typing import NamedTuple
 from cnc_ptp.channel.spindle_reports import (
     Condition,
     carries_out,
-    held_by_override,
     is_there,
     must_wait,
     turns,
@@ -22,6 +21,7 @@ from cnc_ptp.channel.spindle_reports import (
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import Synchronisation
 from cnc_ptp.protocol.blocks import Block, Command, HandshakeRequest, SpindleBlock
+from cnc_ptp.protocol.spindle_states import held_by_override
 
 NOT_COUPLED = 22019
 NOT_CARRIED_OUT = 22021

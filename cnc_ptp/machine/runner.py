@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import Unit
-from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 LIFE_SIGN = "plc"
 CLOCK = "clock"
@@ -40,8 +38,7 @@ class UnitRunner:
     @property
     def master(self) -> str | None:
         """The axis or spindle whose block of the same tick `compute` needs besides; known after the commands."""
-        unit = self.unit
-        return unit.master if isinstance(unit, (AxisUnit, SpindleUnit)) and unit.master not in unit.lost else None
+        return None if self.unit.master in self.unit.lost else self.unit.master
 
     def apply(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
         """Applies the commands that `inputs` carry for this unit."""
