@@ -267,8 +267,7 @@ class SpindleUnit(Unit):
         if isinstance(master, SpindleBlock):
             self._follow(first_cycle, master)
         self._take_turns(first_cycle)
-        columns = self._cycles.block(first_cycle, count)
-        block = SpindleBlock(first_cycle, count, *columns)
+        block = self._cycles.block(first_cycle, count)
         warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
         if warning is not None:
             self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
