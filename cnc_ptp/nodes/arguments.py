@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import click
@@ -51,7 +51,7 @@ def call(command: click.Command) -> None:
     command.main(args=own, obj=ros)
 
 
-def require_unit(machine: MachineParameters, name: str, kinds: Iterable[str]) -> None:
+def require_unit(machine: MachineParameters, name: str, kinds: Collection[str]) -> None:
     """Raises CncError 26111 when the machine has no unit `name` of these kinds."""
     units = unit_kinds(machine)
     if units.get(name) not in kinds:

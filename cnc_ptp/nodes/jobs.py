@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord
+from cnc_ptp.protocol.blocks import Block, Command
 
+if TYPE_CHECKING:
+    from cnc_ptp.nodes.unit_node import UnitNode
+
+Goal: TypeAlias = "ServerGoalHandle[Any, Any, Any]"
 FEEDBACK_BLOCKS = 10
 """Blocks between two feedback messages."""
 
@@ -22,7 +26,7 @@ class JobServer:
 
     def __init__(
         self,
-        node: Any,
+        node: UnitNode,
         action_type: Any,
         name: str,
         *,
@@ -39,20 +43,20 @@ class JobServer:
         self._halt = halt
         self._feedback = feedback
         self._result = result
-        self._goal: ServerGoalHandle | None = None
+        self._goal: Goal | None = None
         self._first_cycle = 0
         self._blocks = 0
         self._server = ActionServer(
             node,
             action_type,
             name,
-            conclude,
+            lambda goal: conclude(goal, action_type.Result()),  # not asked: `_begin` takes every goal
             goal_callback=lambda goal: GoalResponse.ACCEPT if self._goal is None else GoalResponse.REJECT,
             handle_accepted_callback=self._begin,
             cancel_callback=self._cancel,
         )
 
-    def _begin(self, goal: ServerGoalHandle) -> None:
+    def _begin(self, goal: Goal) -> None:
         """Gives the start commands; the result follows from the blocks.
 
         No coroutine that awaits the end: EventsExecutor would poll it without a pause.
@@ -60,7 +64,7 @@ class JobServer:
         goal._update_state(GoalEvent.EXECUTE)
         self._goal, self._blocks = goal, 0
         for command in self._start(goal.request):
-            record: CommandRecord = self._node.command(command)
+            record = self._node.command(command)
             if not record.accepted:
                 self._finish(self._type.Result(success=False, error_id=record.error_id, message=record.message))
                 return
@@ -69,9 +73,10 @@ class JobServer:
     def _finish(self, result: Any) -> None:
         """Answers the goal; the next one may come."""
         goal, self._goal = self._goal, None
+        assert goal is not None
         self._server.notify_execute(goal, lambda goal: conclude(goal, result))
 
-    def _cancel(self, goal: ServerGoalHandle) -> CancelResponse:
+    def _cancel(self, goal: Goal) -> CancelResponse:
         if goal is not self._goal:
             return CancelResponse.REJECT
         self._node.command(self._halt)
@@ -99,7 +104,7 @@ class JobServer:
             self._goal.publish_feedback(feedback)
 
 
-def conclude(goal: ServerGoalHandle, result: Any) -> Any:
+def conclude(goal: Goal, result: Any) -> Any:
     """Brings a goal into its last state."""
     if goal.is_cancel_requested:
         goal.canceled()

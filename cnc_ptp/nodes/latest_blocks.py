@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
@@ -30,8 +30,8 @@ class LatestBlocks:
         self._serialised: dict[str, bytes] = {}
         self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
-            durability = "TRANSIENT_LOCAL" if kind in REMEMBERED else "VOLATILE"
-            quality = QoSProfile(depth=1, durability=QoSDurabilityPolicy[durability])
+            durability = DurabilityPolicy.TRANSIENT_LOCAL if kind in REMEMBERED else DurabilityPolicy.VOLATILE
+            quality = QoSProfile(depth=1, durability=durability)
             node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), quality, raw=True)
 
     def _keeper(self, unit: str) -> Any:

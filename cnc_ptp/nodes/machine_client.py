@@ -11,6 +11,7 @@ from typing import Any
 
 import rclpy
 from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
@@ -81,7 +82,7 @@ class MachineClient(Node):
 
     def _parameters_of(self, node: str, names: list[str], patience: float = PATIENCE) -> Any:
         """Values; None when the node does not answer."""
-        client = self.create_client(GetParameters, f"{node}/get_parameters")
+        client: Client[Any, Any] = self.create_client(GetParameters, f"{node}/get_parameters")
         answer = self._answer(client, GetParameters.Request(names=names), patience)
         self.destroy_client(client)
         return None if answer is None else answer.values
@@ -108,14 +109,14 @@ class MachineClient(Node):
         service = services_of(self.kinds[unit])[command]
         check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
         patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
-        client = self.create_client(service, f"{unit}/{command}")
+        client: Client[Any, Any] = self.create_client(service, f"{unit}/{command}")
         answer = self._answer(client, request_of(service, arguments), patience)
         if answer is None:
             text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
             raise CncError(NO_ANSWER, f"{text}; whether it was carried out is not known, see `cnc_ptp status`")
         return answer
 
-    def _answer(self, client: Any, request: Any, patience: float = PATIENCE) -> Any:
+    def _answer(self, client: Client[Any, Any], request: Any, patience: float = PATIENCE) -> Any:
         """None when the service does not answer in time."""
         if not self.spin_until(client.service_is_ready, patience):
             return None

@@ -6,6 +6,7 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.channel.program_report import ProgramReport
@@ -58,7 +59,7 @@ class RunMonitor(Node):
         self.diagnostics: dict[str, dict[str, str]] = {}
         self._histograms: dict[str, msg.LatenessHistogram] = {}
         self.standing: dict[str, bool] = {}
-        self._needed = []
+        self._needed: list[Subscription[Any]] = []
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
         for channel, program in self.programs.items():

@@ -84,7 +84,7 @@ def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersRes
 
 
 def _value(entry: RosDescriptor) -> Any:
-    return list(entry.value) if entry.type == "strings" else entry.value
+    return list(entry.value) if isinstance(entry.value, tuple) else entry.value
 
 
 def _descriptor(entry: RosDescriptor) -> ParameterDescriptor:

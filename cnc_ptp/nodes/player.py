@@ -14,7 +14,7 @@ import click
 import rclpy
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -127,8 +127,8 @@ def qos_of(info: TopicInfo) -> QoSProfile:
     offered = parse_profiles(info.qos, info.type_name)
     return QoSProfile(
         depth=offered.depth,
-        reliability=QoSReliabilityPolicy[offered.reliability.upper()],
-        durability=QoSDurabilityPolicy[offered.durability.upper()],
+        reliability=ReliabilityPolicy[offered.reliability.upper()],
+        durability=DurabilityPolicy[offered.durability.upper()],
         lifespan=Duration(seconds=offered.lifespan),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
@@ -24,7 +24,7 @@ from cnc_ptp.nodes.sequence import is_newer
 from cnc_ptp.nodes.silence import SilentTopics
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
 from cnc_ptp.nodes.unit_node import UnitNode
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Block, Command, Severity
@@ -61,6 +61,7 @@ class PlcBridgeNode(UnitNode):
         self._life_sign_seen = 0.0
         self._life_sign_lost = False
         self._channels = list(machine.channels)
+        units: Mapping[str, ChannelParameters | AxisParameters | SpindleParameters]
         units = {**machine.channels, **machine.axes, **machine.spindles}
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
         self._spindles = list(machine.spindles)

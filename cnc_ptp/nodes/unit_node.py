@@ -15,8 +15,8 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.gate import CLOCK, BlockGate
-from cnc_ptp.machine.runner import UnitRunner
+from cnc_ptp.machine.gate import BlockGate
+from cnc_ptp.machine.runner import CLOCK, UnitRunner
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.claim import claim_unit
@@ -308,7 +308,7 @@ class UnitNode(Node):
         if isinstance(plc, PlcBlock) and plc.run_done:
             self._gate.close()
         self.after_block(block)
-        if self._live_state is not None:
+        if self._live_state is not None and not isinstance(block, PlcBlock):
             self._live_state.publish(block, self._start_ns, self._cycle_ns)
         self._end_if_over()
 
