@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from cnc_ptp.machine.silence import Silence
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -17,13 +18,11 @@ class UnitRunner:
     """A unit with the cycle number at which the next command would act."""
 
     def __init__(self, unit: Unit, *, watchdog_cycles: int) -> None:
-        """`watchdog_cycles`: for so long the life sign of the PLC may stand still."""
+        """`watchdog_cycles`: a life sign of the PLC that stands still for so long is lost."""
         self.unit = unit
         self.next_cycle = 0
-        self._watchdog_cycles = watchdog_cycles
         self._life_sign = -1
-        self._life_sign_cycle = 0
-        self._life_sign_lost = False
+        self._silence = Silence(watchdog_cycles - 1)
         self._state: int | None = None
 
     def command(self, command: Command) -> CommandRecord:
@@ -78,10 +77,9 @@ class UnitRunner:
         if not isinstance(plc, PlcBlock):
             return
         if plc.life_sign != self._life_sign:
-            self._life_sign, self._life_sign_cycle = plc.life_sign, tick.first_cycle
-            self._life_sign_lost = False
-        elif not self._life_sign_lost and tick.first_cycle - self._life_sign_cycle >= self._watchdog_cycles:
-            self._life_sign_lost = True
+            self._life_sign = plc.life_sign
+            self._silence.heard(LIFE_SIGN, tick.first_cycle)
+        elif self._silence.fallen_silent(tick.first_cycle):
             self.unit.command(Command(self.unit.name, "upstream_lost", {"source": "plc"}), tick.first_cycle)
 
 

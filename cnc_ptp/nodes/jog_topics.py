@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from cnc_ptp import msg
+from cnc_ptp.machine.silence import Silence
 from cnc_ptp.nodes.sequence import is_newer
 from cnc_ptp.nodes.topics import jog_topic
 
@@ -30,7 +31,7 @@ class JogTopics:
         self._told: set[tuple[int, str, str]] = set()
         self._sequence: dict[tuple[str, str], int] = {}
         self._velocity: dict[str, float] = {}
-        self._heard: dict[str, float] = {}
+        self._silence = Silence(PATIENCE)
         self._client: dict[str, str] = {}
 
     def heard(self, axis: str, message: msg.Jog, now: float, *, paced: bool) -> float | None:
@@ -52,26 +53,24 @@ class JogTopics:
             return None
         self._sequence[axis, client] = message.sequence
         self._client[axis] = client
-        self._heard[axis] = now
         velocity = message.velocity if message.valid and math.isfinite(message.velocity) else 0.0
-        return None if velocity == self._velocity.get(axis, 0.0) else self._set(axis, velocity)
+        if velocity:
+            self._silence.heard(axis, now)
+        else:
+            self._silence.forget(axis)
+        before, self._velocity[axis] = self._velocity.get(axis, 0.0), velocity
+        return None if velocity == before else velocity
 
     def fallen_silent(self, now: float) -> list[str]:
         """Each axis once; its jog ends, and the next message begins a new one."""
-        jogged = [axis for axis, velocity in self._velocity.items() if velocity]
-        silent = [axis for axis in jogged if now - self._heard[axis] > PATIENCE]
+        silent = self._silence.fallen_silent(now)
         for axis in silent:
-            self._set(axis, 0.0)
+            self._velocity[axis] = 0.0
             self._warn(JOG_SILENT, f"plc: no message on /{jog_topic(axis)} for {SILENCE}; the jog of {axis} ends")
         return silent
 
-    def _set(self, axis: str, velocity: float) -> float:
-        self._velocity[axis] = velocity
-        return velocity
-
     def _is_foreign(self, axis: str, client: str, now: float) -> bool:
-        held = bool(self._velocity.get(axis)) and now - self._heard[axis] <= PATIENCE
-        return held and client != self._client[axis]
+        return self._silence.is_heard(axis, now) and client != self._client[axis]
 
     def _tell(self, error_id: int, axis: str, client: str, text: str) -> None:
         if (error_id, axis, client) not in self._told:
