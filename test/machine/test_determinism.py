@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from machine_support import MILL, PTP, ROOT, MachineBench
 
-from cnc_ptp.commands.replay import is_refused_coupling
+from cnc_ptp.commands.run.replay import is_refused_coupling
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters

@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 import plotly.graph_objects as go
 
-from cnc_ptp.commands.circle_report import UM, CircleTest, circle_lines, direction_name, magnification_for
+from cnc_ptp.commands.commissioning.circle_report import UM, CircleTest, circle_lines, direction_name, magnification_for
 from cnc_ptp.commands.picture_file import COLOURS, plot_page
 from cnc_ptp.plots.colours import INK
 

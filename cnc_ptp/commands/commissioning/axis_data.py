@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cnc_ptp.commands.trial_run import Trial, run_trial
+from cnc_ptp.commands.commissioning.trial_run import Trial, run_trial
 from cnc_ptp.commissioning.excitation import PAUSE, Motion, Room
 from cnc_ptp.commissioning.faults import NOT_RECORDED, UNKNOWN_AXIS
 from cnc_ptp.commissioning.trace import AxisTrace

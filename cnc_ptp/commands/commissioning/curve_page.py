@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import plotly.graph_objects as go
 
-from cnc_ptp.commands.curve_report import RPM, curve_lines, drawn_curve
+from cnc_ptp.commands.commissioning.curve_report import RPM, curve_lines, drawn_curve
 from cnc_ptp.commands.picture_file import COLOURS, plot_page
 from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault
 from cnc_ptp.plots.colours import SOFT

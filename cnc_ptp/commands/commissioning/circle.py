@@ -11,13 +11,13 @@ import numpy as np
 from rich.console import Console
 
 from cnc_ptp.channel.program_check import NO_CHANNEL
-from cnc_ptp.commands.circle_page import circle_page
-from cnc_ptp.commands.circle_picture import circle_picture
-from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, circle_lines
+from cnc_ptp.commands.commissioning.circle_page import circle_page
+from cnc_ptp.commands.commissioning.circle_picture import circle_picture
+from cnc_ptp.commands.commissioning.circle_report import CircleTest, Variant, VariantResult, circle_lines
+from cnc_ptp.commands.commissioning.trial_run import run_trial
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.commands.output_file import check_output, write_output
 from cnc_ptp.commands.picture_file import check_picture, picture_kind
-from cnc_ptp.commands.trial_run import run_trial
 from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_program, find_plane, measured_turn
 from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_PLANE, NOTHING_TO_COMPARE
 from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_circle

@@ -6,7 +6,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from cnc_ptp.commands.curve_report import RPM, drawn_curve, title
+from cnc_ptp.commands.commissioning.curve_report import RPM, drawn_curve, title
 from cnc_ptp.commands.picture_file import COLOURS, picture_bytes
 from cnc_ptp.commissioning.curve_fit import CurveFit
 from cnc_ptp.plots.colours import EDGE, INK, SOFT

@@ -6,8 +6,8 @@ from rich.console import Console
 
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
-from cnc_ptp.commands.paths import keep_inputs
-from cnc_ptp.commands.progress import RunProgress
+from cnc_ptp.commands.output_file import check_recording
+from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
@@ -33,7 +33,7 @@ def run(
     `stay`: until it is told to end (Ctrl-C), which is no error where everything stands. `strict`: status 1 also when a
     command was refused.
     """
-    keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     read_job(parameters, program=program, scenario=scenario)
     job = Job(machine, program, scenario, duration, record, free_run, stay, state_rate)

@@ -8,7 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 
-from cnc_ptp.commands.circle_report import UM, CircleTest, VariantResult, direction_name, magnification_for
+from cnc_ptp.commands.commissioning.circle_report import (
+    UM,
+    CircleTest,
+    VariantResult,
+    direction_name,
+    magnification_for,
+)
 from cnc_ptp.commands.picture_file import COLOURS, picture_bytes
 from cnc_ptp.commissioning.roundness import CircleResult
 from cnc_ptp.plots.colours import EDGE, INK, SOFT

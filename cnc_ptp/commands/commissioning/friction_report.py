@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cnc_ptp.commands.axis_data import AxisData
+from cnc_ptp.commands.commissioning.axis_data import AxisData
 from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
 from cnc_ptp.commissioning.friction_table import MODE, FrictionTable, Scaling
 

@@ -6,10 +6,16 @@ from collections.abc import Iterator, Sequence
 
 from rich.console import Console
 
-from cnc_ptp.commands.axis_data import AxisData, drive, open_axis, recorded_trace
+from cnc_ptp.commands.commissioning.axis_data import AxisData, drive, open_axis, recorded_trace
+from cnc_ptp.commands.commissioning.dynamics_report import dynamics_yaml, found_lines
+from cnc_ptp.commands.commissioning.friction_report import (
+    curve_lines,
+    friction_yaml,
+    max_points,
+    scaling_of,
+    speeds_shown,
+)
 from cnc_ptp.commands.console import RUN_FAILED
-from cnc_ptp.commands.dynamics_report import dynamics_yaml, found_lines
-from cnc_ptp.commands.friction_report import curve_lines, friction_yaml, max_points, scaling_of, speeds_shown
 from cnc_ptp.commands.output_file import check_output, deliver
 from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
 from cnc_ptp.commissioning.dynamics import fit_drive

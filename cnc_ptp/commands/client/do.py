@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from cnc_ptp.commands.command_words import read_arguments
+from cnc_ptp.commands.client.command_words import read_arguments
+from cnc_ptp.commands.client.unit_table import line
 from cnc_ptp.commands.console import RUN_FAILED, print_error
-from cnc_ptp.commands.unit_table import line
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.latest_blocks import GONE_TEXT

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
+from cnc_ptp.commands.commissioning.curve_page import curve_page
+from cnc_ptp.commands.commissioning.curve_picture import curve_picture
+from cnc_ptp.commands.commissioning.curve_report import curve_lines, curve_yaml
 from cnc_ptp.commands.console import RUN_FAILED, print_error
-from cnc_ptp.commands.curve_page import curve_page
-from cnc_ptp.commands.curve_picture import curve_picture
-from cnc_ptp.commands.curve_report import curve_lines, curve_yaml
 from cnc_ptp.commands.output_file import check_output, deliver, write_output
 from cnc_ptp.commands.picture_file import KINDS, picture_kind
 from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault, fit_curve

@@ -11,8 +11,8 @@ from rich.console import Console
 
 from cnc_ptp.channel.program_report import ProgramReport, cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
-from cnc_ptp.commands.paths import keep_inputs
-from cnc_ptp.commands.progress import RunProgress
+from cnc_ptp.commands.output_file import check_recording
+from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.job import read_file, read_job
@@ -81,7 +81,7 @@ def simulate(
     strict: bool = False,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
-    keep_inputs(record, machine_file=machine, NC_program=program, scenario=scenario)
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     job = read_job(parameters, program=program, scenario=scenario)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))

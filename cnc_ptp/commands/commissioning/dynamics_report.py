@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cnc_ptp.commands.axis_data import AxisData
+from cnc_ptp.commands.commissioning.axis_data import AxisData
 from cnc_ptp.commissioning.dynamics import DriveFit
 from cnc_ptp.commissioning.excitation import highest_velocity
 from cnc_ptp.commissioning.gain import GainProposal

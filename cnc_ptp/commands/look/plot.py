@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from cnc_ptp.commands.look.report import program_of
 from cnc_ptp.commands.output_file import write_output
 from cnc_ptp.commands.picture_file import check_picture, picture_bytes, picture_kind
-from cnc_ptp.commands.report import program_of
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.recording_picture import Heading, draw_rows
 from cnc_ptp.plots.report import plots_page

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from cnc_ptp.commands.console import print_faults
-from cnc_ptp.commands.simulate import Result, interrupted, write
+from cnc_ptp.commands.run.simulate import Result, interrupted, write
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import PLC, build_units
