@@ -3,12 +3,11 @@
 Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
 All types are immutable and cheap to create (one of each per program block).
 
-Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, main spindle (gear
-first), other spindles, other M, however the line orders them; behind them feedforward and compensations. When it goes
-out and who waits for it (before the motion, after it, at the next G01) is decided at run time by its synchronisation
-type (P-CHAN-00041, 00043, 00045, 00047, 00049, 00081), which the language does not know. `after` is kept for functions
-that the language itself binds to the block's end. M00, M01 and the program end stand in `stop` and act when motion and
-functions are done.
+Functions of a block stand in the order T, D, main spindle (gear first), other spindles, other M, however the line
+orders them; behind them feedforward and compensations. When they go out and who waits for them (before the motion,
+after it, at the next G01) is decided at run time by their synchronisation type (P-CHAN-00041, 00043, 00045, 00047,
+00049, 00081), which the language does not know. M00, M01 and the program end stand in `stop` and act when motion and
+functions have finished.
 """
 
 from typing import NamedTuple
@@ -175,19 +174,17 @@ class CanonicalBlock(NamedTuple):
     """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30)."""
 
     source: Source
-    before: tuple[Function, ...]
+    functions: tuple[Function, ...]
     motion: Motion | None
-    after: tuple[Function, ...]
     stop: str
 
 
 def format_block(block: CanonicalBlock) -> str:
-    """One line for golden streams: line, block number, functions, motion, functions after it, stop; 6 decimals."""
+    """One line for golden streams: line, block number, functions, motion, stop; 6 decimals."""
     parts = [f"{block.source.line}:N{block.source.block_number}"]
-    parts += [_function(function) for function in block.before]
+    parts += [_function(function) for function in block.functions]
     if block.motion is not None:
         parts.append(_motion(block.motion))
-    parts += ["after " + _function(function) for function in block.after]
     if block.stop:
         parts.append(block.stop)
     return " | ".join(parts)

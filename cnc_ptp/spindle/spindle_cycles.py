@@ -9,6 +9,7 @@ from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import Orders
@@ -68,7 +69,7 @@ class SpindleCycles:
             self._jobs.advance(cycle, actual_speed)
             position, speed, acceleration = spindle.motion(cycle)
         elif speed == 0.0 and spindle.state == S.STOPPING:
-            spindle.state = S.STANDSTILL
+            spindle.take(T.FINISH)
         actual = loop.actual_position(position, speed)
         setpoint = position, speed, acceleration, 0.0
         self._watch_following_error(cycle, setpoint)

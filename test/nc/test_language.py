@@ -314,12 +314,7 @@ def test_check_takes_start_limits_and_veto():
     assert [error.error_id for error in check(arc, "a.nc", AXES, centre_offset_ratio=0.001)] == [21035]
 
 
-def test_format_block_shows_functions_after_the_motion():
-    block = CanonicalBlock(
-        Source("a.nc", 4, 30, "N30"),
-        (),
-        LinearMove((0.1 + 0.2, -1e-9, 1e6), True, 0.0),
-        (AuxiliaryFunction("M", 9),),
-        "M00",
-    )
-    assert format_block(block) == "4:N30 | rapid (0.3, 0, 1000000) | after M9 | M00"
+def test_format_block_rounds_to_six_decimals():
+    functions, move = (AuxiliaryFunction("M", 9),), LinearMove((0.1 + 0.2, -1e-9, 1e6), True, 0.0)
+    block = CanonicalBlock(Source("a.nc", 4, 30, "N30"), functions, move, "M00")
+    assert format_block(block) == "4:N30 | M9 | rapid (0.3, 0, 1000000) | M00"
