@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import Unit
 
-LIFE_SIGN = "plc"
 CLOCK = "clock"
 
 
@@ -73,14 +73,14 @@ class UnitRunner:
         self.unit.event(block.first_cycle + index, Severity.INFO, 0, text, line)
 
     def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
-        plc = inputs.get(LIFE_SIGN)
+        plc = inputs.get(PLC)
         if not isinstance(plc, PlcBlock):
             return
         if plc.life_sign != self._life_sign:
             self._life_sign = plc.life_sign
-            self._silence.heard(LIFE_SIGN, tick.first_cycle)
+            self._silence.heard(PLC, tick.first_cycle)
         elif self._silence.fallen_silent(tick.first_cycle):
-            self.unit.command(Command(self.unit.name, "upstream_lost", {"source": "plc"}), tick.first_cycle)
+            self.unit.command(Command(self.unit.name, "upstream_lost", {"source": PLC}), tick.first_cycle)
 
 
 def commands_for(name: str, inputs: Mapping[str, Block]) -> Iterator[Command]:

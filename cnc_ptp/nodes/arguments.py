@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.machine.wiring import UNKNOWN_UNIT, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.number_range import STATES_PER_SECOND
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -57,5 +57,5 @@ def require_unit(machine: MachineParameters, name: str, kinds: Collection[str]) 
     if units.get(name) not in kinds:
         known = ", ".join(unit for unit, kind in units.items() if kind in kinds) or "none"
         raise CncError(
-            26111, f"the machine has no {' or '.join(kinds)} '{name}'; the node does not start. Known: {known}"
+            UNKNOWN_UNIT, f"the machine has no {' or '.join(kinds)} '{name}'; the node does not start. Known: {known}"
         )

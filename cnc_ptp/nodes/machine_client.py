@@ -16,14 +16,13 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import PLC
+from cnc_ptp.machine.wiring import PLC, UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
 
-UNKNOWN_UNIT = 26111
 NO_MACHINE = 26135
 NO_ANSWER = 26136
 PATIENCE = 5.0

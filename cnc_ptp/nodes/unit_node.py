@@ -54,7 +54,6 @@ CAME_TWICE = 26142
 TOO_LATE = 26116
 LONGEST_COMMAND = 2.0
 """Seconds that a command or block may take; after that the node counts as silent."""
-READY_PERIOD = 0.05
 DIAGNOSTICS_PERIOD = 1.0
 
 
@@ -118,7 +117,7 @@ class UnitNode(Node):
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
-        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
+        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         self.create_timer(self._watchdog / 4.0, self._watch)
         self.create_timer(DIAGNOSTICS_PERIOD, self._publish_diagnostics)
         threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
