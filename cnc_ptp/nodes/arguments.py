@@ -33,7 +33,9 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @STATE_RATE
     def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
-            return node_class(read_machine(machine), name, **options)
+            node = node_class(read_machine(machine), name, **options)
+            node.setup()
+            return node
 
         sys.exit(process.run_node(make, name=name))
 

@@ -27,6 +27,11 @@ class AxisNode(UnitNode):
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
         arguments.require_unit(machine, name, ["axis"])
         super().__init__(machine, build_unit(machine, name), **options)
+
+    def setup(self) -> None:
+        """As UnitNode, and the action."""
+        super().setup()
+        name = self.unit.name
         self._move_job = JobServer(
             self,
             action.MoveAxis,

@@ -34,6 +34,11 @@ class ChannelNode(UnitNode):
         if program is not None and isinstance(unit, ChannelUnit):
             unit.prepare(program, read_file("NC program", program))
         super().__init__(machine, unit, **options)
+
+    def setup(self) -> None:
+        """As UnitNode, with handshakes and the action."""
+        super().setup()
+        name = self.unit.name
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
         self._program_job = JobServer(
             self,

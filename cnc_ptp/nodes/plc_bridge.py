@@ -15,7 +15,7 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.silence import Silence
-from cnc_ptp.machine.wiring import PLC, build_unit, unit_kinds
+from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, process
 from cnc_ptp.nodes.coupling_services import CouplingServices
 from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
@@ -67,7 +67,12 @@ class PlcBridgeNode(UnitNode):
         self._overrides = Silence(self._life_sign_timeout, rhythm=True)
         self._factors = Silence(self._life_sign_timeout)
         self._jogs = JogTopics(self._warn)
-        for unit, kind in unit_kinds(machine).items():
+        self._joints_due = 0
+
+    def setup(self) -> None:
+        """As UnitNode, with the topics of the PLC, couplings and joint states."""
+        super().setup()
+        for unit, kind in self._kinds.items():
             for name, message_type in PLC_TOPICS.get(kind, {}).items():
                 self.create_subscription(
                     message_type, plc_topic(unit, name), self._receiver(unit, name), plc_quality(message_type)
@@ -75,9 +80,8 @@ class PlcBridgeNode(UnitNode):
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
-        self._answers = CouplingServices(self, list(machine.axes))
-        self._joints = JointStates(self, machine)
-        self._joints_due = 0
+        self._answers = CouplingServices(self, list(self._machine.axes))
+        self._joints = JointStates(self, self._machine)
 
     def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
         """What is done with the messages of a topic in PLC_TOPICS."""
@@ -245,13 +249,15 @@ def command(
 
     def make() -> PlcBridgeNode:
         parameters = read_machine(machine)
-        return PlcBridgeNode(
+        node = PlcBridgeNode(
             parameters,
             scenario=read_job(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
             recorders=recorders,
             state_rate=state_rate,
         )
+        node.setup()
+        return node
 
     sys.exit(process.run_node(make, name=PLC))
 

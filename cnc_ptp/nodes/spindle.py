@@ -24,8 +24,13 @@ class SpindleNode(UnitNode):
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
         arguments.require_unit(machine, name, ["spindle"])
         super().__init__(machine, build_unit(machine, name), **options)
-        stop = Command(name, "stop", {})
         self._numbers: dict[str, int] = {}
+
+    def setup(self) -> None:
+        """As UnitNode, and the actions."""
+        super().setup()
+        name = self.unit.name
+        stop = Command(name, "stop", {})
         self._jobs = (
             JobServer(
                 self,

@@ -71,17 +71,12 @@ class UnitNode(Node):
     def __init__(
         self, machine: MachineParameters, unit: Unit, *, recorders: int = 0, state_rate: float | None = None
     ) -> None:
-        """`recorders`: with 1, a recorder must have found the blocks too before the node is ready.
+        """Nothing but a name in the graph; with `setup` it takes part.
 
-        `state_rate`: live states a second, None = as the machine file says. Raises CncError 26141 when another process
-        has the unit.
+        `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
+        states a second, None = as the machine file says.
         """
         super().__init__(unit.name, enable_rosout=False)
-        try:
-            self._claim = claim_unit(self, unit.name)
-        except CncError:
-            super().destroy_node()
-            raise
         self._kinds = unit_kinds(machine)
         self._watchdog = machine.watchdog_ms / 1000.0
         self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
@@ -111,9 +106,20 @@ class UnitNode(Node):
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
         self._said = self._checked = now
-        own = MACHINE if unit.kind == PLC else unit.name
-        self._own_parameters = machine.raw(own)
-        declare_parameters(self, machine, own)
+        self._machine = machine
+        self._own_name = MACHINE if unit.kind == PLC else unit.name
+
+    def setup(self) -> None:
+        """Claims the unit, declares its parameters, makes topics, services and timers.
+
+        Raises CncError 26141 when another process has the unit, 26130 for a refused ROS argument.
+        """
+        try:
+            self._claim = claim_unit(self, self.unit.name)
+        except CncError:
+            super().destroy_node()
+            raise
+        declare_parameters(self, self._machine, self._own_name)
         self._make_publishers()
         self._make_subscriptions()
         self._make_services()
@@ -151,7 +157,7 @@ class UnitNode(Node):
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
         """Refuses: all parameters are read-only; those with a reason of their own give it."""
-        refused = refused_change(self._own_parameters, parameter_list)
+        refused = refused_change(self._machine.raw(self._own_name), parameter_list)
         return refused or super().set_parameters_atomically(parameter_list)
 
     def _make_services(self) -> None:

@@ -139,6 +139,7 @@ def test_a_waiting_call_costs_no_processor_time():
     """Without a clock no block goes out: the call waits until its deadline. A polled coroutine took all of a core."""
     process.initialise()
     plc = PlcBridgeNode(read_machine(PTP))
+    plc.setup()
     client = rclpy.create_node("asks", enable_rosout=False)
     executor = process.EventsExecutor()
     try:

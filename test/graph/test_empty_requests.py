@@ -143,6 +143,7 @@ def test_an_empty_message_is_not_valid(message):
 def bridge():
     process.initialise()
     node = PlcBridgeNode(read_machine(MILL))
+    node.setup()
     yield node
     node.destroy_node()
     rclpy.try_shutdown()

@@ -200,6 +200,7 @@ def test_remaps_logs_and_namespace_take_effect():
         process.initialise()
         try:
             node = axis.AxisNode(read_machine(PTP), "x")
+            node.setup()
             topics = {publisher.topic_name for publisher in node.publishers}
             services = {service.service_name for service in node.services}
             level = node.get_logger().get_effective_level()
