@@ -22,7 +22,7 @@ from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
 from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of, only_run
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}

@@ -12,8 +12,7 @@ from cnc_ptp import msg
 from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import process
-from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
@@ -26,6 +25,7 @@ from cnc_ptp.nodes.topics import (
     REPORT,
     block_topic,
 )
+from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Severity, command_note, error_note, event_note, keep_note
 from cnc_ptp.protocol.unit_view import UnitView

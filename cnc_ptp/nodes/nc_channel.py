@@ -13,9 +13,9 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
-from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
 

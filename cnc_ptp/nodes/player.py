@@ -19,9 +19,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from cnc_ptp.nodes import arguments, process
-from cnc_ptp.nodes.claim import claim_unit
 from cnc_ptp.nodes.observed_topics import is_input
 from cnc_ptp.nodes.topics import block_topic, published_topic
+from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.qos import parse_profiles
 from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording

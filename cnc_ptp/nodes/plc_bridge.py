@@ -17,13 +17,13 @@ from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, process
-from cnc_ptp.nodes.coupling_services import CouplingServices
-from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
-from cnc_ptp.nodes.jog_topics import JogTopics
-from cnc_ptp.nodes.joint_states import JointStates
-from cnc_ptp.nodes.sequence import is_newer
+from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
+from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.nodes.bridge.joint_states import JointStates
+from cnc_ptp.nodes.bridge.sequence import is_newer
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry

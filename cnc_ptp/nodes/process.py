@@ -20,7 +20,7 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.parameters import BARE_WORDS, require_known_parameters
+from cnc_ptp.nodes.unit.parameters import BARE_WORDS, require_known_parameters
 from cnc_ptp.ros_arguments import ros_arguments
 
 FAILED = 1

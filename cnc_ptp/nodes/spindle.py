@@ -8,8 +8,8 @@ from typing import Any
 from cnc_ptp import action
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments
-from cnc_ptp.nodes.jobs import JobServer
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Block, Command, SpindleBlock
 from cnc_ptp.spindle.spindle_unit import SpindleUnit

@@ -9,7 +9,7 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands.run import run as command
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.commands.run.run import print_summary
-from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 

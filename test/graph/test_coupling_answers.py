@@ -9,8 +9,9 @@ from graph_support import PTP
 
 from cnc_ptp import msg, srv
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import coupling_services, process
-from cnc_ptp.nodes.coupling_services import CouplingServices
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.bridge import coupling_services
+from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick

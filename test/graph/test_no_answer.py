@@ -8,8 +8,8 @@ from graph_support import MILL, run
 from live_support import call
 
 from cnc_ptp.nodes import player, process
-from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
-from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, integer_range
+from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, integer_range
 
 
 @pytest.fixture

@@ -15,8 +15,8 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import axis, clock, nc_channel, player, plc_bridge, process, recorder, spindle
-from cnc_ptp.nodes.parameters import declare_parameters, require_known_parameters
-from cnc_ptp.nodes.unit_node import MACHINE
+from cnc_ptp.nodes.unit.parameters import declare_parameters, require_known_parameters
+from cnc_ptp.nodes.unit.unit_node import MACHINE
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.recording.writer import Recording

@@ -12,8 +12,8 @@ from cnc_ptp.commands.client.unit_table import line
 from cnc_ptp.commands.console import RUN_FAILED, print_error
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.latest_blocks import GONE_TEXT
-from cnc_ptp.nodes.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
+from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
+from cnc_ptp.nodes.client.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 
 BEGINNINGS = ("move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "start", "mdi")
 """Commands of which a stop before the end is a failure."""

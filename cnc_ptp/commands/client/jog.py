@@ -12,10 +12,10 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.jog_topics import JOG_IN_FREE_RUN, SECOND_JOG
-from cnc_ptp.nodes.jog_topics import PATIENCE as SILENCE
-from cnc_ptp.nodes.latest_blocks import GONE_TEXT
-from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, connected
+from cnc_ptp.nodes.bridge.jog_topics import JOG_IN_FREE_RUN, SECOND_JOG
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as SILENCE
+from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
 from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity

@@ -13,8 +13,8 @@ from rich.text import Text
 from cnc_ptp.commands.client.unit_table import line, unit_table, wide_console
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.latest_blocks import GONE_TEXT, LatestBlocks
-from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, connected
+from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT, LatestBlocks
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
 
 
 def status() -> int:

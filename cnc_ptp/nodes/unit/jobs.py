@@ -11,7 +11,7 @@ from rclpy.action.server import GoalEvent, ServerGoalHandle
 from cnc_ptp.protocol.blocks import Block, Command
 
 if TYPE_CHECKING:
-    from cnc_ptp.nodes.unit_node import UnitNode
+    from cnc_ptp.nodes.unit.unit_node import UnitNode
 
 Goal: TypeAlias = "ServerGoalHandle[Any, Any, Any]"
 FEEDBACK_BLOCKS = 10

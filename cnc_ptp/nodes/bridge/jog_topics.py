@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from cnc_ptp import msg
 from cnc_ptp.machine.silence import Silence
-from cnc_ptp.nodes.sequence import is_newer
+from cnc_ptp.nodes.bridge.sequence import is_newer
 from cnc_ptp.nodes.topics import jog_topic
 
 JOG_SILENT = 26134

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, Event, PlcBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode

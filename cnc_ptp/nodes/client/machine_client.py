@@ -18,8 +18,8 @@ from rclpy.node import Node
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import PLC, UNKNOWN_UNIT
 from cnc_ptp.nodes import process
-from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
-from cnc_ptp.nodes.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
 

@@ -13,8 +13,8 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
-from cnc_ptp.nodes.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
+from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.plc.cam_file import parse_cam
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import COMMANDS

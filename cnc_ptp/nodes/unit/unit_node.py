@@ -19,12 +19,7 @@ from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.runner import CLOCK, UnitRunner
 from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.claim import claim_unit
 from cnc_ptp.nodes.events import EventPublisher
-from cnc_ptp.nodes.health import Health
-from cnc_ptp.nodes.live_state import LiveState, period_cycles
-from cnc_ptp.nodes.parameters import declare_parameters, refused_change
-from cnc_ptp.nodes.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.nodes.topics import (
     BLOCK_TYPES,
     BLOCKS,
@@ -42,6 +37,11 @@ from cnc_ptp.nodes.topics import (
     TICK,
     block_topic,
 )
+from cnc_ptp.nodes.unit.claim import claim_unit
+from cnc_ptp.nodes.unit.health import Health
+from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
+from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
+from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
