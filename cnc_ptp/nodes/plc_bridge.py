@@ -80,8 +80,14 @@ class PlcBridgeNode(UnitNode):
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
-        self._answers = CouplingServices(self, list(self._machine.axes))
+        self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
         self._joints = JointStates(self, self._machine)
+
+    @property
+    def plc(self) -> PlcUnit:
+        """The unit."""
+        assert isinstance(self.unit, PlcUnit)
+        return self.unit
 
     def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
         """What is done with the messages of a topic in PLC_TOPICS."""
@@ -129,7 +135,7 @@ class PlcBridgeNode(UnitNode):
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
         """Not valid, no number, or no slave: nothing changes."""
         topic = f"/{unit}/coupling_factor"
-        coupled = self._is_coupled(unit)
+        coupled = self.plc.is_coupled(unit)
         if not coupled:
             self._last.pop(topic, None)  # what comes first after the next coupling is a change
         if not (coupled and message.valid):
@@ -139,9 +145,6 @@ class PlcBridgeNode(UnitNode):
             return None
         self._factors.heard(topic, time.monotonic())
         return Command(unit, "set_cyclic_factor", {"factor": message.factor})
-
-    def _is_coupled(self, axis: str) -> bool:
-        return isinstance(self.unit, PlcUnit) and self.unit.is_coupled(axis)
 
     def _watch_topics(self) -> None:
         """One timer for all of them: the executor warns of many."""
@@ -166,12 +169,12 @@ class PlcBridgeNode(UnitNode):
     def _on_external_setpoint(self, axis: str, message: msg.ExternalSetpoint) -> None:
         """With a cycle it counts for that one, without (0) for the next block; `valid` = false ends the motion."""
         topic = f"/{axis}/external_setpoint"
-        if not is_newer(message.sequence, self._sequence.get(topic, 0)) or not isinstance(self.unit, PlcUnit):
+        if not is_newer(message.sequence, self._sequence.get(topic, 0)):
             return
         self._sequence[topic] = message.sequence
         direction = message.direction if message.valid else 0
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
-        self.unit.setpoints.arrive(axis, row)
+        self.plc.setpoints.arrive(axis, row)
 
     def _on_jog(self, axis: str, message: msg.Jog) -> None:
         velocity = self._jogs.heard(axis, message, time.monotonic(), paced=self.paced)
@@ -184,8 +187,8 @@ class PlcBridgeNode(UnitNode):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
 
     def input(self, command: Command) -> None:
-        if isinstance(self.unit, PlcUnit):
-            self.unit.input(command)
+        """A command of a person or an outside PLC, for the next block."""
+        self.plc.input(command)
 
     def run_ended(self) -> None:
         self._answers.end()
@@ -196,11 +199,11 @@ class PlcBridgeNode(UnitNode):
 
     def after_block(self, block: Block) -> None:
         """Joint states of the cycle before the block: the last one that axes and spindles have reported."""
-        if not self._state_period or block.first_cycle < max(self._joints_due, 1) or not isinstance(self.unit, PlcUnit):
+        if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return
         self._joints_due = block.first_cycle + self._state_period
         if self._joints.wanted:
-            self._joints.publish(self.unit.reported, self.stamp(block.first_cycle - 1))
+            self._joints.publish(self.plc.reported, self.stamp(block.first_cycle - 1))
 
     def stop_all(self) -> None:
         """Controlled stop of everything; the run ends when all stands, with or without a duration."""

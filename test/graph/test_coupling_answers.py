@@ -25,7 +25,7 @@ class Bridge:
         self.is_over = False
         self.services = {}
         self.answers = []
-        self.couplings = CouplingServices(self, ["x", "y"])
+        self.couplings = CouplingServices(self, self.unit, ["x", "y"])
 
     def create_subscription(self, _type, _topic, record, _quality):
         self.record = record

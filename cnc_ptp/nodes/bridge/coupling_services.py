@@ -15,7 +15,9 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.plc.cam_file import parse_cam
+from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
@@ -45,15 +47,16 @@ class CouplingServices:
     without a pause.
     """
 
-    def __init__(self, node: Any, axes: list[str]) -> None:
+    def __init__(self, node: UnitNode, plc: PlcUnit, axes: list[str]) -> None:
         self._node = node
+        self._plc = plc
         self._open: list[Call] = []
         node.create_subscription(msg.CommandRecord, COMMAND, self._on_record, NEW_RECORDS)
         node.create_timer(WATCH_PERIOD, self._watch)
         for axis in axes:
             for command, service_type in COUPLING_SERVICES.items():
                 asked = partial(self._couple, axis, command)
-                service = node.create_service(service_type, f"{axis}/{command}", asked)
+                service: Any = node.create_service(service_type, f"{axis}/{command}", asked)
                 service.send_response = partial(self._send, service.send_response)
 
     def _couple(self, axis: str, command: str, request: Any, response: Any) -> Any:
@@ -64,11 +67,11 @@ class CouplingServices:
             return answered(response, error.error_id, error.message)
         if self._node.is_over:
             return answered(response, RUN_OVER, f"axis {axis}: {command} refused: the run is over; nothing was changed")
-        if self._node.unit.is_lost(axis):
+        if self._plc.is_lost(axis):
             text = f"axis {axis}: {command} refused: its node is lost; nothing was changed"
             return answered(response, UPSTREAM_LOST, text)
         asked = Command(axis, command, arguments)
-        self._node.input(asked)
+        self._plc.input(asked)
         self._open.append(Call(asked, response, time.monotonic() + PATIENCE))
         return response
 
@@ -99,14 +102,14 @@ class CouplingServices:
     def _watch(self) -> None:
         for call in [*self._open]:
             what = f"axis {call.command.target}: {call.command.command}"
-            if self._node.unit.is_lost(call.command.target):
+            if self._plc.is_lost(call.command.target):
                 self._answer(call, UPSTREAM_LOST, f"{what} without an answer: its node is lost")
             elif time.monotonic() > call.deadline:
                 reason = f"{what} without an answer for {PATIENCE:g} s"
                 self._answer(call, NOT_ANSWERED, f"{reason}; {self._withdraw(call)}")
 
     def _withdraw(self, call: Call) -> str:
-        if self._node.unit.withdraw(call.command):
+        if self._plc.withdraw(call.command):
             return "no block has gone out, the command was taken back"
         return "the command has gone out and may still be carried out"
 
