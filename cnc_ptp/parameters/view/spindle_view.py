@@ -121,11 +121,6 @@ class SpindleParameters:
     start_position: Annotated[float, ids.SIMULATION_START_POSITION]
 
     @property
-    def max_speed_deg_s(self) -> float:
-        """The largest speed of all gears."""
-        return max(gear.max_speed for gear in self.gears.values())
-
-    @property
     def has_position(self) -> bool:
         """False: it can be neither homed nor positioned."""
         return self.feedback == "POSITION"
