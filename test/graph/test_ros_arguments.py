@@ -181,7 +181,7 @@ def overrides_of(path, units, machine):
 
 
 def sections(path):
-    from cnc_ptp.parameters.source import read_sections
+    from cnc_ptp.parameters.read.source import read_sections
 
     return {section.node: section.entries for section in read_sections(Path(path).read_text(), str(path))[0]}
 

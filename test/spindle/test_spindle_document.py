@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.parameters.declarations import catalogue
+from cnc_ptp.parameters.declare.declarations import catalogue
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "spindles.md"

@@ -14,7 +14,10 @@ from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, load_machine
-from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.view.control_view import MONITORING_TYPES
+from cnc_ptp.parameters.view.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.recording.reader import AXIS_STATE, Recorded, read_recording
@@ -28,8 +31,6 @@ FIELDS = (
     "actual_torque",
 )
 NO_MACHINE = 27040
-MONITORED = (1, 2, 4)
-"""P-AXIS-00172: kinds of following error monitoring."""
 LARGEST_LAG = 0.75
 """Part of the permitted following error (P-AXIS-00168) that a trial may use."""
 
@@ -51,7 +52,7 @@ class AxisData:
     @property
     def gear(self) -> int:
         """Index of the gear record in use."""
-        return int(self.raw.number("P-AXIS-00079")) - 1
+        return active_gear(self.raw)
 
     @property
     def kv(self) -> float:
@@ -83,11 +84,11 @@ class AxisData:
     def room(self) -> Room:
         """Where and how fast the axis may be moved for a trial: the lag v/Kv stays well below what is monitored."""
         axis, monitoring = self.axis, self.axis.control.monitoring
-        velocity, limited_by = axis.max_velocity, "P-AXIS-00212"
+        velocity, limited_by = axis.max_velocity, ids.DYNAMIK_VB_MAX
         if axis.reference_velocity < velocity:
-            velocity, limited_by = axis.reference_velocity, "P-MACH-00008"
+            velocity, limited_by = axis.reference_velocity, ids.PTP_REFERENCE_VELOCITY
         bearable = LARGEST_LAG * monitoring.moving_limit * self.kv
-        if monitoring.kind in MONITORED and bearable < velocity:
+        if monitoring.kind in MONITORING_TYPES and bearable < velocity:
             velocity, limited_by = bearable, f"there the lag is {100.0 * LARGEST_LAG:g} % of P-AXIS-00168"
         return Room(
             axis.name,

@@ -17,7 +17,7 @@ from cnc_ptp.commissioning.curve_points import SPEED_UNITS, parse_point, parse_p
 from cnc_ptp.commissioning.faults import BAD_OUTPUT, BAD_SPINDLE_NAME
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
-from cnc_ptp.parameters.loader import name_trouble
+from cnc_ptp.parameters.read.machine_sections import name_trouble
 
 YAML = ("yaml", "yml")
 

@@ -10,7 +10,7 @@ import numpy as np
 from cnc_ptp.commissioning.curve_fit import CurveFit
 from cnc_ptp.commissioning.curve_points import SPEED_UNITS
 from cnc_ptp.commissioning.trace import Array
-from cnc_ptp.parameters.spindle_view import CURVE_TYPES
+from cnc_ptp.parameters.view.spindle_view import CURVE_TYPES
 from cnc_ptp.spindle.acceleration_curves import AccelerationCurve
 from cnc_ptp.spindle.speed_ramp import plan_speed
 

@@ -10,7 +10,7 @@ from cnc_ptp.commissioning.excitation import highest_velocity
 from cnc_ptp.commissioning.gain import GainProposal
 from cnc_ptp.commissioning.inertia import InertiaFit
 from cnc_ptp.commissioning.timing import DYNAMIC_STEADY
-from cnc_ptp.parameters.control_view import ADD_ACC, torque_per_acceleration
+from cnc_ptp.parameters.view.control_view import ADD_ACC, torque_per_acceleration
 
 GAIN_TOLERANCE = 0.01
 ROUGH_MISFIT = 0.01

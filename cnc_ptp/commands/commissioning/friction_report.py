@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from cnc_ptp.commands.commissioning.axis_data import AxisData
 from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
 from cnc_ptp.commissioning.friction_table import MODE, FrictionTable, Scaling
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.view.control_view import friction_table_size
 
 LARGE_SCATTER = 0.03
 """Scatter over friction that is warned about."""
@@ -14,13 +16,8 @@ LARGE_SCATTER = 0.03
 
 def scaling_of(data: AxisData) -> Scaling:
     """How the drive counts torque (P-AXIS-00325, 00326, 00392)."""
-    numbers = (float(data.raw.number(number)) for number in ("P-AXIS-00325", "P-AXIS-00326", "P-AXIS-00392"))
-    return Scaling(*numbers)
-
-
-def max_points(data: AxisData) -> int:
-    """P-COMP-00062; 0 means 20."""
-    return int(data.raw.number("P-COMP-00062")) or 20
+    numbers = (ids.ANTR_TORQUE_SCALE_NUM, ids.ANTR_TORQUE_SCALE_DENOM, ids.ANTR_ACC_REFERENCE_VALUE)
+    return Scaling(*(float(data.raw.number(number)) for number in numbers))
 
 
 def curve_lines(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
@@ -87,11 +84,11 @@ def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, so
         "    lr_param: {frict_comp: 1}",
         "    frict_comp:",
         f"      mode: {MODE}",
-        f"      max_points: {max_points(data)}",
+        f"      max_points: {friction_table_size(data.raw)}",
         f"      table_entries: {len(table.entries)}",
-        f"      position_delay: {raw.number('P-COMP-00043')}  # as it was",
-        f"      reversal_lookahead: {raw.number('P-COMP-00044')}  # as it was",
-        f"      delay_cycles: {raw.number('P-COMP-00058')}  # as it was",
+        f"      position_delay: {raw.number(ids.FRICT_COMP_POSITION_DELAY)}  # as it was",
+        f"      reversal_lookahead: {raw.number(ids.FRICT_COMP_REVERSAL_LOOKAHEAD)}  # as it was",
+        f"      delay_cycles: {raw.number(ids.FRICT_COMP_DELAY_CYCLES)}  # as it was",
         f"      scaling_factor: {table.scaling_factor}",
         "      table:",
     ]

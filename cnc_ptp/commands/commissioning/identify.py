@@ -11,7 +11,6 @@ from cnc_ptp.commands.commissioning.dynamics_report import dynamics_yaml, found_
 from cnc_ptp.commands.commissioning.friction_report import (
     curve_lines,
     friction_yaml,
-    max_points,
     scaling_of,
     speeds_shown,
 )
@@ -27,6 +26,7 @@ from cnc_ptp.commissioning.gain import propose_gain
 from cnc_ptp.commissioning.inertia import fit_inertia
 from cnc_ptp.commissioning.timing import DYNAMIC_STEADY, Timing
 from cnc_ptp.commissioning.trace import AxisTrace
+from cnc_ptp.parameters.view.control_view import friction_table_size
 
 REST = 0.4
 """Seconds of rest before each motion."""
@@ -64,7 +64,7 @@ def identify_friction(
             return RUN_FAILED
         trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
     curve = friction_curve(trace, settling=timing.settling, half_digit=data.half_digit)
-    table = friction_table(curve, scaling_of(data), max_points=max_points(data))
+    table = friction_table(curve, scaling_of(data), max_points=friction_table_size(data.raw))
     console = Console(highlight=False, soft_wrap=True)
     for line in curve_lines(data, curve):
         console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from rich.console import Console
 
-from cnc_ptp.parameters.declarations import Declaration, catalogue
-from cnc_ptp.parameters.reference import HEADLINES, entry_text, find
+from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
+from cnc_ptp.parameters.declare.reference import HEADLINES, entry_text, find
 
 PLAIN_WIDTH = 120
 """Characters of a line that goes to a file or a pipe."""

@@ -11,8 +11,8 @@ from sensor_msgs.msg import JointState
 
 from cnc_ptp.nodes.topics import JOINT_STATES, PLC_INPUT
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.parameters.control_view import torque_per_acceleration
-from cnc_ptp.parameters.views import active_gear
+from cnc_ptp.parameters.view.control_view import torque_per_acceleration
+from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.protocol.blocks import AxisBlock, Block, SpindleBlock
 
 MILLIMETRE = 1e-3

@@ -16,9 +16,9 @@ from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, ParameterSet, RosDescriptor, ros_descriptors
-from cnc_ptp.parameters.runtime_change import change_refusal, start_refusal
-from cnc_ptp.parameters.source import dotted
-from cnc_ptp.parameters.values import shown
+from cnc_ptp.parameters.check.runtime_change import change_refusal, start_refusal
+from cnc_ptp.parameters.declare.declarations import dotted
+from cnc_ptp.parameters.read.values import shown
 from cnc_ptp.ros_arguments import REFUSED
 
 TYPES = {
