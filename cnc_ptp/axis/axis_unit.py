@@ -196,7 +196,8 @@ class AxisUnit(Unit):
         n = len(actual_positions)
         if n == 0:
             return 0
-        setpoints = setpoints[:n]
+        if n < len(setpoints):
+            setpoints = setpoints[:n]
         positions, velocities, accelerations, jerks = zip(*setpoints, strict=True)
         block.set_position += positions
         block.set_velocity += velocities
@@ -206,8 +207,8 @@ class AxisUnit(Unit):
             column += values
         block.override_percent += [axis.override_percent] * n
         block.state += [axis.state] * n
-        common, motion_bits = axis.common_bits(0) | self._control_bits, axis.motion_bits
-        block.status_bits += [common | motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
+        common = axis.common_bits(0) | self._control_bits
+        block.status_bits += [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
         block.error_id += [0] * n
         return n
 
