@@ -15,11 +15,6 @@ class Transition(NamedTuple):
     sources: frozenset[AxisStateCode]
     target: AxisStateCode
 
-    def leave(self, state: AxisStateCode) -> AxisStateCode:
-        """The target, coming from `state`. A state that the table does not know here is a mistake in the kernel."""
-        assert state in self.sources, f"no transition '{self.cause}' from {state_name(state)}"
-        return self.target
-
 
 def transition(cause: str, *sources: AxisStateCode, to: AxisStateCode) -> Transition:
     """From each of `sources`."""
