@@ -106,15 +106,6 @@ def must_wait(block: SpindleBlock) -> bool:
     return orders_wait(block) or block.gear_change_active[-1]
 
 
-def held_by_override(block: SpindleBlock) -> bool:
-    """The spindle is on its way, and stands because of override 0."""
-    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
-        return False
-    turns_on = block.state[-1] == S.CONTINUOUS_MOTION
-    moves = turns_on or (block.state[-1] == S.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
-    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
-
-
 def stands(block: SpindleBlock, channel: str) -> bool:
     """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is done for `channel`."""
     return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel

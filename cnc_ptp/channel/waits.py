@@ -13,13 +13,13 @@ from cnc_ptp.channel.spindle_reports import (
     NOTHING,
     Condition,
     Expectation,
-    held_by_override,
     must_wait,
     what_it_does,
 )
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import Synchronisation
 from cnc_ptp.protocol.blocks import Block, Command, HandshakeRequest, SpindleBlock
+from cnc_ptp.protocol.spindle_states import held_by_override
 
 NOT_COUPLED = 22019
 NOT_CARRIED_OUT = 22021

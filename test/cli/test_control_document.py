@@ -46,7 +46,7 @@ NAMES = {
     27023: ("commissioning.faults", "NOTHING_TO_COMPARE", "nothing to compare"),
     27024: ("commissioning.faults", "BAD_PLANE", "plane"),
     27030: ("commissioning.faults", "BAD_OUTPUT", "overwrite an input"),
-    27040: ("commands.axis_data", "NO_MACHINE", "no machine file"),
+    27040: ("commands.commissioning.axis_data", "NO_MACHINE", "no machine file"),
 }
 """Number: module and name of the constant, and what the document must say of it."""
 PROGRAM = {

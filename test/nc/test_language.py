@@ -1,15 +1,16 @@
 """The language rule by rule: spelling of words, modal state, functions and their order, structure, skip, MDI, veto."""
 
 import pytest
+from canonical_text import format_block
 from nc_support import lines, run
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source, format_block
+from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState
-from cnc_ptp.nc.vocabulary import G_CODES, INITIAL_G
+from cnc_ptp.nc.vocabulary import G_CODES
 
 AXES = ("X", "Y", "Z")
 
@@ -72,11 +73,8 @@ def test_path_function_and_feed_are_modal():
 
 def test_initial_state_is_the_documented_one():
     state = ModalState()
-    path, plane, dimension, centre, correction = INITIAL_G
-    assert (G_CODES[state.path].name, f"G{state.plane}") == (path, plane)
-    assert dimension == ("G90" if state.absolute else "G91")
-    assert centre == ("G161" if state.centre_absolute else "G162")
-    assert correction == "G165"
+    assert (G_CODES[state.path].name, f"G{state.plane}") == ("G00", "G17")
+    assert state.absolute and not state.centre_absolute  # G90, G162
 
 
 def test_blocks_without_anything_to_do_give_nothing():

@@ -7,7 +7,7 @@ from collections import defaultdict
 
 from machine_support import MachineBench
 
-from cnc_ptp.commands.replay import is_refused_coupling
+from cnc_ptp.commands.run.replay import is_refused_coupling
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
