@@ -15,11 +15,11 @@ def check_output(output: str | None, **inputs: str | None) -> None:
     if output is None:
         return
     if not Path(output).absolute().parent.is_dir():
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist; nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist", "nothing was started")
     for what, path in inputs.items():
         if path is not None and _same(Path(output), Path(path)):
             name = what.replace("_", " ")
-            raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}; nothing was started")
+            raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}", "nothing was started")
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -31,7 +31,7 @@ def check_page(output: str, **inputs: str | None) -> None:
     """Raises CncError 27030 for a report that is no .html file or would overwrite an input: recording="…"."""
     check_output(output, **inputs)
     if Path(output).suffix.lower() != ".html":
-        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending; nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending", "nothing was started")
 
 
 def write_output(output: str, content: str | bytes, *, remains: str = "the result above is all") -> None:
@@ -40,7 +40,7 @@ def write_output(output: str, content: str | bytes, *, remains: str = "the resul
     try:
         Path(output).write_bytes(data)
     except OSError as error:
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; {remains}") from None
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", remains) from None
 
 
 def deliver(console: Console, output: str | None, text: str) -> None:

@@ -16,4 +16,4 @@ def keep_inputs(record: str | None, **inputs: str | None) -> None:
     for what, path in inputs.items():
         if path is not None and Path(path).exists() and Path(record).samefile(path):
             name = what.replace("_", " ")
-            raise CncError(OVERWRITES, f"recording {record} would overwrite the {name} {path}; nothing was started")
+            raise CncError(OVERWRITES, f"recording {record} would overwrite the {name} {path}", "nothing was started")

@@ -57,5 +57,5 @@ def require_unit(machine: MachineParameters, name: str, kinds: Iterable[str]) ->
     if units.get(name) not in kinds:
         known = ", ".join(unit for unit, kind in units.items() if kind in kinds) or "none"
         raise CncError(
-            26111, f"the machine has no {' or '.join(kinds)} '{name}'; the node does not start. Known: {known}"
+            26111, f"the machine has no {' or '.join(kinds)} '{name}'", f"the node does not start. Known: {known}"
         )

@@ -237,7 +237,7 @@ def test_bad_cam_file(text: str) -> None:
     with pytest.raises(CncError) as caught:
         parse_cam(text, "cam.csv")
     message = f"cam file cam.csv:{FILES[text]}; nothing was started"
-    assert (caught.value.error_id, caught.value.message) == (25103, message)
+    assert (caught.value.number, caught.value.message) == (25103, message)
 
 
 def test_cam_file_of_a_scenario() -> None:

@@ -10,6 +10,7 @@ from machine_support import MachineBench, UnitBench, spindle_bench
 from spindle_support import bench_of, first_cycle, two_gears
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import Refusal
 
 
 def at_work(command: str, owner: str, other: str) -> str:
@@ -50,7 +51,9 @@ def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     for each in (bench, undisturbed):
         each.run(100)
     assert per_cycle(bench) == per_cycle(undisturbed)
-    assert bench.blocks[0].refused == [f"two: {text}"] and bench.blocks[1].refused == []
+    assert [refusal.encode() for refusal in bench.blocks[0].refused] == [f"two: {text}"] and bench.blocks[
+        1
+    ].refused == []
     assert bench.last.source == "one"
     bench.run(200)
     assert bench.column("speed_reached")[-1] and bench.last.source == ""
@@ -174,7 +177,7 @@ def test_a_command_of_the_plc_that_is_refused_in_its_turn() -> None:
     assert bench.event_texts() == [f"P-ERR-70252 spindle s: orient refused: {text}"]
     assert acknowledged(bench)[-1] == (2, 2) and bench.column("set_speed_rpm")[-1] == 1000.0
     refused = [entry for block in bench.blocks for entry in block.refused]
-    assert refused == [f"plc: P-ERR-70252 spindle s: orient refused: {text}"]
+    assert refused == [Refusal("plc", 70252, f"spindle s: orient refused: {text}")]
 
 
 # ---------------------------------------------------------------- whose spindle it is
