@@ -128,9 +128,9 @@ class RotationCommands:
             if value is not None and not low <= value <= high:
                 reason = f"{name} = {value} is not within {low:g} ... {high:g} ({parameter})"
                 spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason, argument=name, value=value, low=low, high=high)
-        if None not in (min_speed_rpm, max_speed_rpm) and float(min_speed_rpm or 0) > float(max_speed_rpm or 0):
+        if min_speed_rpm is not None and max_speed_rpm is not None and min_speed_rpm > max_speed_rpm:
             reason = f"min_speed_rpm = {min_speed_rpm} is above max_speed_rpm = {max_speed_rpm}"
-            spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)
+            spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason, low=min_speed_rpm, high=max_speed_rpm)
         none = ToolLimits()
         self._take(
             cycle,

@@ -137,7 +137,7 @@ def test_a_waiting_command_that_cannot_be_carried_out_is_told_to_its_source() ->
     each.run(10)
     text = "spindle s: start refused: speed 6500.0 rpm is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); nothing was changed"
     assert each.event_texts() == [f"P-ERR-24002 {text}"]
-    assert each.last.refused == [f"one: P-ERR-24002 {text}"]
+    assert each.last.refused == [Refusal("one", 24002, text)]
 
 
 def test_a_stop_on_the_way_gives_the_change_up_and_clears_what_waits() -> None:

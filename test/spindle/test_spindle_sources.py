@@ -51,9 +51,8 @@ def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     for each in (bench, undisturbed):
         each.run(100)
     assert per_cycle(bench) == per_cycle(undisturbed)
-    assert [refusal.encode() for refusal in bench.blocks[0].refused] == [f"two: {text}"] and bench.blocks[
-        1
-    ].refused == []
+    number, _, told = text.removeprefix("P-ERR-").partition(" ")
+    assert bench.blocks[0].refused == [Refusal("two", int(number), told)] and bench.blocks[1].refused == []
     assert bench.last.source == "one"
     bench.run(200)
     assert bench.column("speed_reached")[-1] and bench.last.source == ""
@@ -255,7 +254,7 @@ def test_who_has_commanded_a_gear_change_hears_that_it_was_overtaken(
     bench.accepted(command, **arguments)
     bench.run(10)
     text = f"spindle s: {by} while the PLC changes the gear for 'one'; the spindle stays at rest"
-    assert bench.last.refused == [f"one: P-ERR-24017 {text}"]
+    assert bench.last.refused == [Refusal("one", 24017, text)]
     assert bench.events[-1].text == text
 
 
