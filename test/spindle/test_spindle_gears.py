@@ -12,6 +12,7 @@ from spindle_support import RPM, bench_of, first_cycle, states, two_gears
 
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import Refusal
 
 SECOND = {"kv": 25.0, "max_speed": 6000.0 * RPM, "acceleration": 9000.0, "encoder_increment": 0.01}
 
