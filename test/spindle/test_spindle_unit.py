@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from error_support import Refused, refused
 from machine_support import CYCLE_TIME, UnitBench, spindle_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -223,39 +224,37 @@ def test_a_largest_override_below_100_percent_holds_from_the_start() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "wanted"),
     [
         (
             {"direction": "cw", "speed_rpm": -1.0},
-            "24001 spindle s: start refused: speed -1.0 rpm must not be negative; the direction is cw or ccw; "
-            "nothing was changed",
+            refused(24001, speed=-1.0),
         ),
         (
             {"direction": "ccw", "speed_rpm": 12000.5},
-            "24002 spindle s: start refused: speed 12000.5 rpm is above the maximum 12000 rpm (P-AXIS-00212); "
-            "nothing was changed",
+            refused(24002, speed=12000.5, limit=12000.0, gear=1),
         ),
         (
             {"direction": "left", "speed_rpm": 1.0},
-            "22001 spindle s: start refused: direction = 'left' is not cw or ccw; nothing was changed",
+            refused(22001, argument="direction"),
         ),
         (
             {"direction": 3, "speed_rpm": 1.0},
-            "22001 spindle s: start refused: direction = 3 is not a text; nothing was changed",
+            refused(22001, argument="direction"),
         ),
-        ({"direction": "cw"}, "22001 spindle s: start refused: argument 'speed_rpm' is missing; nothing was changed"),
+        ({"direction": "cw"}, refused(22001, argument="speed_rpm")),
         (
             {"direction": "cw", "speed_rpm": math.nan},
-            "22001 spindle s: start refused: speed_rpm = nan is not finite; nothing was changed",
+            refused(22001, argument="speed_rpm"),
         ),
     ],
 )
-def test_refused_starts_change_nothing(arguments: dict[str, Any], text: str) -> None:
+def test_refused_starts_change_nothing(arguments: dict[str, Any], wanted: Refused) -> None:
     bench, undisturbed = spindle_bench(), spindle_bench()
     for each in (bench, undisturbed):
         each.accepted("start", direction="cw", speed_rpm=1000.0)
         each.run(100)
-    assert bench.refused("start", **arguments) == f"P-ERR-{text}"
+    assert bench.refusal("start", **arguments) == wanted
     for each in (bench, undisturbed):
         each.run(500)
     assert bench.columns() == undisturbed.columns()

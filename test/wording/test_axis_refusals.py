@@ -328,7 +328,9 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     ),
     (
         23004,
-        lambda: moving_axis(max_velocity=2100.0).give("compensation_start", **COMPENSATION | {"velocity_increase": 1e4}),
+        lambda: moving_axis(max_velocity=2100.0).give(
+            "compensation_start", **COMPENSATION | {"velocity_increase": 1e4}
+        ),
         "axis x: compensation_start refused: the axis would get up to 2139.62 mm/s, above the maximum 2100.0 mm/s "
         "(P-AXIS-00212); nothing was changed",
         {"velocity": pytest.approx(2139.62, abs=0.01), "limit": 2100.0},
