@@ -344,17 +344,13 @@ def test_a_slave_and_a_compensated_jog_are_refused() -> None:
     bench.run(500)
     bench.accepted("compensation_start", length=50.0, difference=-1.0, process_velocity=100.0, velocity_increase=20.0)
     bench.run(50)
-    assert bench.refused("jog", velocity=50.0) == (
-        "P-ERR-23015 axis x: jog refused: a position compensation is active; nothing was changed"
-    )
+    assert bench.refusal("jog", velocity=50.0) == refused(23015)
     bench.run(2000)
     assert bench.accepted("jog", velocity=50.0) == ""
     bench.run(500)
     assert motion(bench)[-1][1] == pytest.approx(50.0)
     machine = MachineBench(scenario='[{at: 0, to: "y", do: couple, master: x, factor: 1}]', machine=PTP).run(0.1)
-    assert machine.refused("y", "jog", velocity=1.0) == (
-        "P-ERR-23040 axis y: jog refused: the axis is a slave of x; decouple it; nothing was changed"
-    )
+    assert machine.refusal("y", "jog", velocity=1.0) == refused(23040, master="x")
 
 
 def test_a_jerk_above_a_over_t_is_rescaled_with_a_warning() -> None:

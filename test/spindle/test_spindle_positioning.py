@@ -237,16 +237,12 @@ def test_refused_positionings_change_nothing(arguments: dict[str, Any], wanted: 
 
 def test_positioning_against_the_preferred_direction() -> None:
     bench = spindle_bench(preferred_direction=-1)
-    reason = "cw contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: negative)"
-    assert bench.refused("orient", position_deg=0.0, direction="cw") == (
-        f"P-ERR-60254 spindle s: orient refused: {reason}; the spindle is in ErrorStop"
+    assert bench.refusal("orient", position_deg=0.0, direction="cw") == refused(
+        60254, direction="cw", preferred="negative"
     )
     bench.run(10)
     assert bench.state == S.ERROR_STOP
-    assert bench.refused("orient", position_deg=0.0) == (
-        "P-ERR-24003 spindle s: orient refused: the spindle is in ErrorStop (P-ERR-60254); reset it first; "
-        "nothing was changed"
-    )
+    assert bench.refusal("orient", position_deg=0.0) == refused(24003, state="ErrorStop", error=60254)
 
 
 def test_a_position_that_is_not_reached_in_time() -> None:

@@ -6,18 +6,12 @@ from typing import Any
 
 import pytest
 from channel_spindle_support import two_channels
+from error_support import refused
 from machine_support import MachineBench, UnitBench, spindle_bench
 from spindle_support import bench_of, first_cycle, two_gears
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Refusal
-
-
-def at_work(command: str, owner: str, other: str) -> str:
-    return (
-        f"P-ERR-24012 spindle s: {command} refused: the spindle is at work for '{owner}', '{other}' must wait until that is "
-        "done; nothing was changed"
-    )
 
 
 def per_cycle(bench: UnitBench) -> dict[str, list[Any]]:
@@ -46,13 +40,12 @@ def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     bench, undisturbed = spindle_bench(), spindle_bench()
     for each in (bench, undisturbed):
         each.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
-    text = at_work(command, "one", "two")
-    assert bench.refused(command, **arguments, source="two") == text
+    assert bench.refusal(command, **arguments, source="two") == refused(24012, owner="one", source="two")
     for each in (bench, undisturbed):
         each.run(100)
     assert per_cycle(bench) == per_cycle(undisturbed)
-    number, _, told = text.removeprefix("P-ERR-").partition(" ")
-    assert bench.blocks[0].refused == [Refusal("two", int(number), told)] and bench.blocks[1].refused == []
+    assert [(each.source, each.number) for each in bench.blocks[0].refused] == [("two", 24012)]
+    assert bench.blocks[1].refused == []
     assert bench.last.source == "one"
     bench.run(200)
     assert bench.column("speed_reached")[-1] and bench.last.source == ""
@@ -77,7 +70,9 @@ def test_a_command_of_the_plc_takes_its_turn_after_the_channel() -> None:
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
     waits = "P-WARN-24030 spindle s: orient waits until the speed is reached"
     assert bench.accepted("orient", position_deg=90.0, source="plc") == waits
-    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    assert bench.refusal("start", direction="cw", speed_rpm=5.0, source="two") == refused(
+        24012, owner="one", source="two"
+    )
     bench.run(800)
     reached = first_cycle(bench, "speed_reached", bool, 5)
     assert bench.column("set_speed_rpm")[reached] == pytest.approx(1000.0, rel=0.05)
@@ -109,7 +104,9 @@ def test_a_channel_has_the_spindle_until_m19_is_done() -> None:
     bench = spindle_bench()
     bench.accepted("orient", position_deg=90.0, source="one")
     bench.run(100)
-    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    assert bench.refusal("start", direction="cw", speed_rpm=5.0, source="two") == refused(
+        24012, owner="one", source="two"
+    )
     bench.run(200)
     assert bench.column("in_position")[-1]
     bench.accepted("start", direction="cw", speed_rpm=5.0, source="two")

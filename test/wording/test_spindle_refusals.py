@@ -9,11 +9,12 @@ import pytest
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import bench_of, two_gears
 
-from cnc_ptp.protocol.commands import COMMANDS, INTERNAL
-
 Ask = Callable[[], UnitBench]
 SPINDLES = ("s", "t", "u")
-KNOWN = ", ".join(sorted(COMMANDS["spindle"].keys() - INTERNAL))
+KNOWN = (
+    "couple, decouple, gear_changed, home, orient, power, reset, reset_feedforward, reset_limits, select_gear, "
+    "set_feedforward, set_limits, set_override, set_speed, start, stop, stop_at_program_end, suppress_override"
+)
 SENSORLESS = {"feedback": "SPEED", "open_loop": True, "referenced_at_start": False}
 START = {"direction": "cw", "speed_rpm": 500.0}
 
