@@ -1,13 +1,15 @@
 # make demo   a part is machined by the ROS graph: runs/demo.mcap and runs/demo.html
 # make test   all tests;  make lint: ruff and mypy;  make bench: figures, never fails on time;  make setup: the set-up alone
 # make figures   every scenario of examples/figures runs and becomes a picture in docs/figures
+# make docs   reference pages and gallery are made again, then the site: build/site/index.html
+# make ids   cnc_ptp/parameters/declare/ids.py is made from declarations.yaml
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
 
-.PHONY: setup demo test lint bench figures docs clean
+.PHONY: setup demo test lint bench figures docs ids clean
 setup: $(VENV)/.package
 
 $(VENV)/.python:
@@ -47,8 +49,18 @@ bench: setup
 figures: setup
 	$(BIN)/python -m figures
 
-docs: setup
-	$(BIN)/python -m cnc_ptp.parameters.reference > docs/parameters.md
+$(VENV)/.docs: requirements-docs.txt $(VENV)/.requirements
+	@$(BIN)/pip install --quiet --disable-pip-version-check -r requirements-docs.txt
+	@touch $@
+
+docs: setup $(VENV)/.docs
+	$(BIN)/python -m cnc_ptp.parameters.declare.reference > docs/parameters.md
+	$(BIN)/python -m cnc_ptp.commands.reference > docs/commands.md
+	$(BIN)/python -m figures.gallery > docs/gallery.md
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -d build/site-cache docs build/site
+
+ids: setup
+	$(BIN)/python cnc_ptp/parameters/declare/make_ids.py
 
 clean:
 	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so

@@ -16,7 +16,7 @@ from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives import CascadedDrive, Drive, FirstOrderDrive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.parameters.control_view import ADD_ACC, ADD_VEL, ControlParameters
+from cnc_ptp.parameters.view.control_view import ADD_ACC, ADD_VEL, ControlParameters
 
 MACHINE = Path(__file__).parents[1] / "config" / "mill.yaml"
 RADIUS, FEED = 25.0, 2000.0 / 60.0

@@ -16,7 +16,7 @@ from typing import Any
 
 from bench.figures import Effort, Figure, Say, Stopwatch, stopwatch
 from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
-from cnc_ptp.commands.simulate import write
+from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units

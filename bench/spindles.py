@@ -13,7 +13,7 @@ import yaml
 
 from bench.figures import Effort, Figure, Say, stopwatch
 from bench.jobs import MACHINE
-from cnc_ptp.commands.simulate import write
+from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine

@@ -76,7 +76,7 @@ def main(context: click.Context) -> None:
 @run_options
 def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
-    from cnc_ptp.commands.simulate import simulate
+    from cnc_ptp.commands.run.simulate import simulate
 
     sys.exit(simulate(**options))
 
@@ -92,7 +92,7 @@ def simulate_command(**options: Any) -> None:
 )
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process a node, until the job is done."""
-    from cnc_ptp.commands.run import run
+    from cnc_ptp.commands.run.run import run
 
     if options["stay"] and options["duration"] is not None:
         raise click.UsageError("--stay and --duration exclude each other: --duration stays for so many seconds.")
@@ -112,7 +112,7 @@ UNIT = click.argument("unit", shell_complete=complete_unit)
 @namespace_option
 def status_command(**options: Any) -> None:
     """Show all units of the running machine: state, position, speed, override, error."""
-    from cnc_ptp.commands.status import status
+    from cnc_ptp.commands.client.status import status
 
     sys.exit(status(**options))
 
@@ -130,7 +130,7 @@ def do_command(machine: str | None, **options: Any) -> None:
     Arguments are name=value; where a command must have just one, its value is enough: `do channel mdi "G1 X10 F500"`.
     Status 1 when the machine refuses.
     """
-    from cnc_ptp.commands.do import do
+    from cnc_ptp.commands.client.do import do
 
     sys.exit(do(**options))
 
@@ -145,7 +145,7 @@ def do_command(machine: str | None, **options: Any) -> None:
 @namespace_option
 def jog_command(machine: str | None, **options: Any) -> None:
     """Move an AXIS of the running machine while this command runs; Ctrl-C halts it."""
-    from cnc_ptp.commands.jog import jog
+    from cnc_ptp.commands.client.jog import jog
 
     sys.exit(jog(**options))
 
@@ -158,7 +158,7 @@ def jog_command(machine: str | None, **options: Any) -> None:
 @namespace_option
 def watch_command(machine: str | None, **options: Any) -> None:
     """Show units of the running machine, all without a name, as a table that is kept up to date."""
-    from cnc_ptp.commands.status import watch
+    from cnc_ptp.commands.client.status import watch
 
     sys.exit(watch(**options))
 
@@ -168,7 +168,7 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
 def check_command(**options: Any) -> None:
     """Check an NC program: syntax and modal states, errors with line and column."""
-    from cnc_ptp.commands.check import check
+    from cnc_ptp.commands.look.check import check
 
     sys.exit(check(**options))
 
@@ -182,7 +182,7 @@ def check_command(**options: Any) -> None:
 @namespace_option
 def replay_command(**options: Any) -> None:
     """Re-run the kernel from a recording, or publish the recording again."""
-    from cnc_ptp.commands.replay import replay
+    from cnc_ptp.commands.run.replay import replay
 
     if not options["publish"]:
         ros_arguments().require_none("cnc_ptp replay without --publish")
@@ -218,7 +218,7 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:
     """Make one self-contained HTML page of a recording: plots, events, errors, statistics."""
-    from cnc_ptp.commands.report import report
+    from cnc_ptp.commands.look.report import report
 
     sys.exit(report(**options))
 
@@ -236,7 +236,7 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
     Without one each axis that moves is drawn with position, velocity, acceleration and following error, each spindle
     with its speed.
     """
-    from cnc_ptp.commands.plot import plot
+    from cnc_ptp.commands.look.plot import plot
 
     sys.exit(plot(topics=(*topics, *(word for text in more_topics for word in split(text))), **options))
 
@@ -245,7 +245,7 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
 @click.argument("words", nargs=-1, metavar="[WORD]...")
 def params_command(words: tuple[str, ...]) -> None:
     """Show the parameter reference: what the WORDs find (id, number, parts of names, text), or all groups."""
-    from cnc_ptp.commands.params import params
+    from cnc_ptp.commands.look.params import params
 
     sys.exit(params(" ".join(words)))
 
@@ -283,7 +283,7 @@ def identify_group() -> None:
 @click.option("--velocity", "velocities", type=float, multiple=True, help="Drive these velocities (mm/s, deg/s) only.")
 def identify_friction_command(**options: Any) -> None:
     """Identify the friction of AXIS: drive constant velocities both ways, read the torque, write the table as YAML."""
-    from cnc_ptp.commands.identify import identify_friction
+    from cnc_ptp.commands.commissioning.identify import identify_friction
 
     require_source(options)
     sys.exit(identify_friction(**options))
@@ -293,7 +293,7 @@ def identify_friction_command(**options: Any) -> None:
 @identify_options
 def identify_dynamics_command(**options: Any) -> None:
     """Identify the drive of AXIS: time constant, dead time, inertia; propose Kv and feedforward as YAML."""
-    from cnc_ptp.commands.identify import identify_dynamics
+    from cnc_ptp.commands.commissioning.identify import identify_dynamics
 
     require_source(options)
     sys.exit(identify_dynamics(**options))
@@ -324,7 +324,7 @@ def identify_dynamics_command(**options: Any) -> None:
 )
 def circle_command(**options: Any) -> None:
     """Circle test of a machine, run offline: circular deviation (ISO 230-4), quadrant peaks, polar plot."""
-    from cnc_ptp.commands.circle import circle
+    from cnc_ptp.commands.commissioning.circle import circle
 
     compared = options["compare"]
     for name in ("feedforward", "friction"):
@@ -372,7 +372,7 @@ def curve_fit_command(**options: Any) -> None:
     The point at the limit speed gives n_grenz and a_konst. Above it 3 points make the polynomial and 2 the hyperbola,
     exactly; with more of them the curve is the least squares fit, and the table shows how far it is off each point.
     """
-    from cnc_ptp.commands.curve import curve_fit
+    from cnc_ptp.commands.commissioning.curve import curve_fit
 
     if bool(options["points"]) == bool(options["csv"]):
         raise click.UsageError("Either --point (again and again) or --csv is needed.")

@@ -15,7 +15,7 @@ from cnc_ptp.commissioning.friction import FrictionPoint, friction_curve
 from cnc_ptp.commissioning.timing import always
 from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 from cnc_ptp.plots.colours import BLUE, FAINT, INK, RED
 from cnc_ptp.plots.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 from figures.run import Column, FigureRun

@@ -12,7 +12,7 @@ from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.plots.over_time import Column, Marker
 from cnc_ptp.plots.panels import UNIT_KINDS
 from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity

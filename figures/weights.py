@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cnc_ptp.control.friction_compensation import FrictionTable
-from cnc_ptp.parameters.control_view import FrictionParameters
+from cnc_ptp.parameters.view.control_view import FrictionParameters
 from cnc_ptp.plots.colours import BAND, GREEN, PURPLE, RED
 from cnc_ptp.plots.sheet import GAP, HEADER, Name, Sheet, draw_header, note, style_plot, write_value
 from figures.run import Column, FigureRun

@@ -42,7 +42,7 @@ def start(context):
 
 def separate_nodes(given, switches, namespace):
     """The end of the clock ends the launch; the recorder, told to end, first takes what still comes."""
-    from cnc_ptp.commands.paths import keep_inputs
+    from cnc_ptp.commands.output_file import check_recording
     from cnc_ptp.machine.gate import CLOCK
     from cnc_ptp.machine.job import read_job
     from cnc_ptp.nodes.supervisor import Job, command_lines
@@ -52,7 +52,7 @@ def separate_nodes(given, switches, namespace):
     duration = float(given.pop("duration")) if "duration" in given else None
     rate = float(given.pop("state_rate")) if "state_rate" in given else None
     job = Job(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
-    keep_inputs(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
+    check_recording(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
     machine = read_machine(job.machine)
     read_job(machine, program=job.program, scenario=job.scenario)
     observers = [RECORDER] if job.record else []

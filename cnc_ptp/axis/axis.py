@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import copysign, isfinite, sqrt
 from typing import NoReturn
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.carried import CarriedMotion
 from cnc_ptp.axis.checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
@@ -24,6 +25,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
+from cnc_ptp.protocol.transitions import Transition
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
@@ -237,7 +239,7 @@ class Axis:
             return
         text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands, it is not coupled"
         self.coupling = None
-        self.state = self.rest_state()
+        self.take(T.DECOUPLE_AT_REST if self.powered else T.DECOUPLE_WITHOUT_POWER)
         self._report_warning(cycle, error_id, text)
 
     def couples_actual(self) -> bool:
@@ -262,14 +264,14 @@ class Axis:
         due = self.override_filter.due_cycle
         return self.ptp.states(cycle, count if due is None else max(1, min(count, due - cycle)))
 
-    def rest_state(self) -> S:
-        """Where an axis without error comes to rest."""
-        return S.STANDSTILL if self.powered else S.DISABLED
+    def take(self, transition: Transition) -> None:
+        """Changes the state; nothing else does."""
+        self.state = transition.leave(self.state)
 
     def advance_state(self, cycle: int) -> None:
         """Ends a motion that is through at `cycle`; a request that waited for the end of a stop has begun by itself."""
         if self.ptp.job is not None and self.state == S.STOPPING:
-            self.state = S.DISCRETE_MOTION
+            self.take(T.NEW_TARGET)
             self.has_been_stopped = False
         if not self.ptp.arrived(cycle):
             return
@@ -279,11 +281,11 @@ class Axis:
         if self.jogs_to_limit:
             self._tell_limit(cycle)
         if self.superposed and self.external.mode is not None:
-            self._finish(S.CONTINUOUS_MOTION)
+            self._finish(T.GO_ON_EXTERNALLY)
         elif self.superposed and self.external.moving(cycle):
-            self._finish(S.STOPPING)
+            self._finish(T.STOP_EXTERNALLY)
         else:
-            self._finish(self.rest_state())
+            self._finish(T.FINISH if self.powered else T.FINISH_WITHOUT_POWER)
 
     @property
     def jogs_to_limit(self) -> bool:
@@ -298,11 +300,11 @@ class Axis:
             now = "external setpoints have the axis now"
         self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has come to the {limit.text}; {now}")
 
-    def _finish(self, state: S) -> None:
-        """A stop whose table is through, while external setpoints come to rest, may still be led to a new target."""
-        if state != self.state or self.ptp.job is not None:
+    def _finish(self, transition: Transition) -> None:
+        """A stop that has finished, while external setpoints come to rest, may still be led to a new target."""
+        if transition.target != self.state or self.ptp.job is not None:
             self.ptp.finish()
-        self.state = state
+        self.take(transition)
 
     def status_bits(self, cycle: int, setpoint: State, actual_position: float) -> int:
         return self.common_bits(cycle) | self.motion_bits(setpoint, actual_position)
@@ -360,7 +362,7 @@ class Axis:
         self._note_propagation(cycle, error_id)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
-        self.state = S.ERROR_STOP
+        self.take(T.FAULT)
         self._report_error(cycle, error_id, f"axis {self.name}: {reason}; the axis stops on its own ramp (ErrorStop)")
 
     def pair_in(self, error_id: int) -> Coupling | None:
@@ -377,11 +379,11 @@ class Axis:
         self.leave_master(cycle)
         self.ptp.stop(cycle, self.own_limits, at_least=True)
         self.target_window.forget()
-        self.state = S.ERROR_STOP
+        self.take(T.FAULT)
 
     def end_with_master(self, cycle: int, position: float) -> None:
         """A slave in error that has come to rest with its master, its basic motion at `position`."""
         self.ptp.take_over(cycle, position, 0.0, 0.0)
         self.absorb(cycle)
         self.target_window.forget()
-        self.state = S.ERROR_STOP
+        self.take(T.FAULT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import copysign
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
 from cnc_ptp.axis.external import NEGLIGIBLE_VELOCITY
@@ -109,14 +110,14 @@ class PathSource:
         else:
             axis.absorb(cycle)
             axis.path_direction = 0.0
-            axis.state = S.SYNCHRONIZED_MOTION
+            axis.take(T.ENTER_PATH)
 
     def _leave(self, cycle: int) -> None:
         """The path is over; external setpoints on top of it go on alone, or come to rest."""
         axis = self._axis
         if not axis.on_path:
             return
-        axis.state = S.STOPPING
+        axis.take(T.LEAVE_PATH)
         if axis.ptp.state(cycle)[1] != 0.0:
             axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
         else:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import Any, ClassVar, cast
+from operator import attrgetter
+from typing import ClassVar
 
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.axis_sources import MasterSource, PathSource
@@ -19,7 +20,7 @@ from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
-from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.control_loop import ControlCycle, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.parameters import AxisParameters
@@ -28,11 +29,8 @@ from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Block, CycleTick, Severity
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 
-Row = tuple[float | int, ...]
-"""One cycle: the fields of AxisBlock with a value per cycle."""
-FIELDS = 18
-Columns = list[Any]
-"""The same of many cycles, field by field."""
+control_columns = attrgetter(*ControlCycle._fields)
+"""The columns of an AxisBlock with the values of a ControlCycle, which bear the same names."""
 
 
 class AxisUnit(Unit):
@@ -83,6 +81,7 @@ class AxisUnit(Unit):
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
             ControlCommands(self._loop, f"axis {parameters.name}"),
         )
+        self._last_block: AxisBlock | None = None
 
     def _report_error(self, cycle: int, error_id: int, text: str) -> None:
         self.event(cycle, Severity.ERROR, error_id, text)
@@ -92,8 +91,21 @@ class AxisUnit(Unit):
 
     @property
     def master(self) -> str | None:
-        """The axis whose block of the same cycles is needed before this one's can be computed."""
+        """See Unit."""
         return self._axis.coupling.master if self._axis.coupled and self._axis.coupling is not None else None
+
+    @property
+    def led(self) -> bool:
+        """See Unit."""
+        return self._last_block is not None and self._last_block.state[-1] == S.SYNCHRONIZED_MOTION
+
+    def waits_for(self) -> str:
+        """See Unit: only a command ends the motion of a slave that was decoupled while it moved."""
+        block = self._last_block
+        if block is None or block.state[-1] != S.CONTINUOUS_MOTION:
+            return ""
+        endless = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
+        return f"axis {self.name} drives on without an end" if endless else ""
 
     # commands
 
@@ -130,19 +142,18 @@ class AxisUnit(Unit):
         """Computes one block; follows its master, or the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
         axis = self._axis
-        columns: Columns = [[] for _ in range(FIELDS)]
+        block = self._make_block(first_cycle, count)
         axis.advance(first_cycle)
-        self._follow(first_cycle, self._led(first_cycle, inputs), columns)
-        while len(columns[0]) < count:
-            cycle = first_cycle + len(columns[0])
-            axis.advance(cycle)
-            self._follow(cycle, axis.basic_motion(cycle, count - len(columns[0])), columns)
-        block = self._make_block(first_cycle, count, *cast(Any, columns))
+        self._follow(first_cycle, self._led(first_cycle, inputs), block)
+        while (done := len(block.state)) < count:
+            axis.advance(first_cycle + done)
+            self._follow(first_cycle + done, axis.basic_motion(first_cycle + done, count - done), block)
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
         if warning is not None:
             self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
         block.master = axis.coupling.master if axis.coupling is not None else ""
         block.target_velocity, block.couples_actual = axis.target_velocity(), axis.couples_actual()
+        self._last_block = block
         return block
 
     def _led(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
@@ -158,23 +169,22 @@ class AxisUnit(Unit):
                 return setpoints
         return self._path.setpoints(first_cycle, inputs)
 
-    def _follow(self, first_cycle: int, setpoints: list[State], columns: Columns) -> None:
-        """Appends the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
+    def _follow(self, first_cycle: int, setpoints: list[State], block: AxisBlock) -> None:
+        """Adds the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
         axis = self._axis
         done = 0
         if setpoints and not self._master.watches_gantry:
             if axis.state in MOVING_ALONE:
                 axis.advance_state(first_cycle)
             if self._monitoring.undisturbed(first_cycle, setpoints):
-                done = self._undisturbed_cycles(first_cycle, setpoints, columns)
+                done = self._undisturbed_cycles(first_cycle, setpoints, block)
         error_id = axis.error_id
         for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
-            for column, value in zip(columns, self._cycle(cycle, setpoint), strict=True):
-                column.append(value)
+            self._cycle(cycle, setpoint, block)
             if axis.error_id != error_id and not axis.coupled:
                 break
 
-    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], columns: Columns) -> int:
+    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], block: AxisBlock) -> int:
         """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
 
         Returns their number.
@@ -187,25 +197,26 @@ class AxisUnit(Unit):
         if n == 0:
             return 0
         setpoints = setpoints[:n]
-        common = axis.common_bits(0) | self._control_bits
-        bits = [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
-        values: Columns = [
-            *zip(*setpoints, strict=True),
-            *control,
-            [axis.override_percent] * n,
-            [axis.state] * n,
-            bits,
-            [0] * n,
-        ]
-        for column, more in zip(columns, values, strict=True):
-            column += more
+        positions, velocities, accelerations, jerks = zip(*setpoints, strict=True)
+        block.set_position += positions
+        block.set_velocity += velocities
+        block.set_acceleration += accelerations
+        block.set_jerk += jerks
+        for column, values in zip(control_columns(block), control, strict=True):
+            column += values
+        block.override_percent += [axis.override_percent] * n
+        block.state += [axis.state] * n
+        common, motion_bits = axis.common_bits(0) | self._control_bits, axis.motion_bits
+        block.status_bits += [common | motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
+        block.error_id += [0] * n
         return n
 
     @property
     def _control_bits(self) -> int:
         return int(StatusBit.FRICTION_COMPENSATION) if self._loop.friction.on else 0
 
-    def _cycle(self, cycle: int, base: State) -> Row:
+    def _cycle(self, cycle: int, base: State, block: AxisBlock) -> None:
+        """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
         actual_position = loop.position
@@ -219,11 +230,22 @@ class AxisUnit(Unit):
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
             axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
         control = loop.step(setpoint, closed)
-        return (
-            *setpoint,
-            *control,
-            axis.override_percent,
-            axis.state,
-            axis.status_bits(cycle, setpoint, control.actual_position) | self._control_bits,
-            axis.error_id,
-        )
+        position, velocity, acceleration, jerk = setpoint
+        block.set_position.append(position)
+        block.set_velocity.append(velocity)
+        block.set_acceleration.append(acceleration)
+        block.set_jerk.append(jerk)
+        block.actual_position.append(control.actual_position)
+        block.actual_velocity.append(control.actual_velocity)
+        block.following_error.append(control.following_error)
+        block.command_velocity.append(control.command_velocity)
+        block.feedforward_velocity.append(control.feedforward_velocity)
+        block.additive_velocity.append(control.additive_velocity)
+        block.additive_torque.append(control.additive_torque)
+        block.friction_current.append(control.friction_current)
+        block.actual_torque.append(control.actual_torque)
+        block.feedforward_percent.append(control.feedforward_percent)
+        block.override_percent.append(axis.override_percent)
+        block.state.append(axis.state)
+        block.status_bits.append(axis.status_bits(cycle, setpoint, control.actual_position) | self._control_bits)
+        block.error_id.append(axis.error_id)

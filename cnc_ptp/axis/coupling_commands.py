@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import copysign, inf
 from typing import Any, NoReturn
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.cam import CamCoupling, CamTable
 from cnc_ptp.axis.carried import CarriedMotion
@@ -213,7 +214,7 @@ class CouplingCommands:
             axis.absorb(cycle)
         axis.coupling = coupling
         axis.has_been_stopped = False
-        axis.state = S.SYNCHRONIZED_MOTION
+        axis.take(T.COUPLE)
         return self._delay_warning(command, coupling.master)
 
     def _delay_warning(self, command: str, master: str) -> str | None:
@@ -305,11 +306,11 @@ class CouplingCommands:
         axis.leave_master(cycle)
         if axis.error_id:  # the slave of a gantry pair in error leaves its master: it stops alone
             axis.ptp.stop(cycle, axis.own_limits, at_least=True)
-            axis.state = S.ERROR_STOP
+            axis.take(T.FAULT)
             return None
         _, speed, acceleration, _ = axis.ptp.state(cycle)
         if speed == 0.0 and acceleration == 0.0:
-            axis.state = axis.rest_state()
+            axis.take(T.DECOUPLE_AT_REST if axis.powered else T.DECOUPLE_WITHOUT_POWER)
             return None if target is None and velocity is None else self._at_rest(target, velocity)
         highest = axis.parameters.max_velocity
         full = max(SMALLEST_LIMIT, velocity or min(former or abs(speed), highest))
@@ -319,13 +320,13 @@ class CouplingCommands:
             kept = velocity or min(max(full, abs(speed)), highest)
             axis.ptp.lead_on(cycle, float(target), limits._replace(velocity=kept))
             axis.target_window.watch()
-            axis.state = S.DISCRETE_MOTION
+            axis.take(T.DECOUPLE_TO_TARGET)
         elif velocity is not None:
             axis.ptp.lead_on(cycle, copysign(inf, speed), limits)
-            axis.state = S.CONTINUOUS_MOTION
+            axis.take(T.DECOUPLE_IN_MOTION)
         else:
             axis.ptp.drive_on(cycle, full, limits)
-            axis.state = S.CONTINUOUS_MOTION if axis.ptp.job else S.STOPPING
+            axis.take(T.DECOUPLE_IN_MOTION if axis.ptp.job else T.DECOUPLE_AND_STOP)
         return None
 
     def _at_rest(self, target: float | None, velocity: float | None) -> str:

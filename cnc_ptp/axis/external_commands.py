@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.external import ABSOLUTE, Setpoint, check_order, read_setpoints
 from cnc_ptp.axis.faults import (
@@ -51,7 +52,7 @@ class ExternalCommands:
             if mode == ABSOLUTE:
                 axis.ptp.take_over(cycle, 0.0, 0.0, 0.0)
                 axis.external.carry(position)
-            axis.state = S.CONTINUOUS_MOTION
+            axis.take(T.ENABLE_EXTERNAL)
             axis.has_been_stopped = False
         axis.external.enable(cycle, mode, position)
         axis.superposed = True

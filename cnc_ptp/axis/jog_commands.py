@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import copysign
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import COMPENSATION_RUNS, NOT_READY
 from cnc_ptp.axis.ptp import Job
@@ -43,14 +44,14 @@ class JogCommands:
         self._job = axis.ptp.job
         axis.target_window.watch()
         axis.has_been_stopped = False
-        axis.state = S.CONTINUOUS_MOTION
+        axis.take(T.JOG)
         return warning
 
     def _end(self, cycle: int) -> None:
         """A halt of the jog; it may be led on while it brakes."""
         if self._jogs():
             self._axis.stop(cycle, locks=False)
-            self._axis.state = S.DISCRETE_MOTION
+            self._axis.take(T.END_JOG)
             self._axis.has_been_stopped = True
 
     def _jogs(self) -> bool:

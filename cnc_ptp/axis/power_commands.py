@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import ENABLE_REMOVED, STILL_MOVING
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -37,20 +38,20 @@ class PowerCommands:
             axis.place(cycle, self._actual_position())
         axis.powered = True
         if axis.state == S.DISABLED:
-            axis.state = S.STANDSTILL
+            axis.take(T.POWER_ON)
 
     def _switch_off(self, cycle: int) -> None:
         axis = self._axis
         axis.powered = False
         axis.ptp.drop_suspended()
         if axis.state == S.STANDSTILL:
-            axis.state = S.DISABLED
+            axis.take(T.POWER_OFF)
         elif axis.state == S.SYNCHRONIZED_MOTION:
             what = "path motion" if axis.on_path else "synchronous motion"
             axis.fault(cycle, ENABLE_REMOVED, f"the enable was removed during {what}")
         elif axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
             axis.stop(cycle)
-            axis.state = S.STOPPING
+            axis.take(T.STOP)
             axis.has_been_stopped = True
 
     def do_set_feed_release(self, cycle: int, *, forward: bool, backward: bool) -> None:
@@ -66,7 +67,7 @@ class PowerCommands:
         axis = self._axis
         if axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
             axis.stop(cycle)
-            axis.state = S.STOPPING
+            axis.take(T.STOP)
             axis.has_been_stopped = True
         if axis.on_path:
             axis.external.disable(cycle)
@@ -77,4 +78,4 @@ class PowerCommands:
         axis.error_id = 0
         axis.ptp.finish()
         axis.coupling = None
-        axis.state = axis.rest_state()
+        axis.take(T.RESET if axis.powered else T.RESET_WITHOUT_POWER)

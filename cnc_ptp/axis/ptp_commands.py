@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import (
     BAD_OVERRIDE,
@@ -84,7 +85,7 @@ class PtpCommands:
         axis.ptp.start(cycle, target, limits)
         axis.target_window.watch()
         axis.has_been_stopped = False
-        axis.state = S.DISCRETE_MOTION
+        axis.take(T.START)
         return warning
 
     # override (2.2)
@@ -150,7 +151,7 @@ class PtpCommands:
         axis.ptp.redirect(cycle, request)
         if axis.ptp.job is None:
             return f"axis {axis.name}: {command} waits for the end of the stop"
-        axis.state = S.DISCRETE_MOTION
+        axis.take(T.NEW_TARGET)
         axis.has_been_stopped = False
         axis.target_window.watch()
         return None

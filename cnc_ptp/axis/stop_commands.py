@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf, nan
 
+from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
 from cnc_ptp.errors import warning_text
@@ -60,7 +61,7 @@ class StopCommands:
 
     def _stopped(self, locks: bool) -> None:
         if locks:
-            self._axis.state = S.STOPPING
+            self._axis.take(T.STOP)
         self._axis.has_been_stopped = True
 
     def do_emergency_stop(self, cycle: int, *, deceleration: object = None, jerk: object = None) -> str | None:

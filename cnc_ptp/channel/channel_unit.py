@@ -10,17 +10,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NoReturn
 
-from cnc_ptp.channel.channel_rows import Prepared, Rows
+from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
-from cnc_ptp.channel.program_check import ProgramCheck
+from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
+from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck
 from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
-from cnc_ptp.channel.waits import Outputs
+from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Pairs, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
-from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit, state_name
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
@@ -39,8 +40,6 @@ SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
-
-NOT_AT_END = "axis {} was moved away from the end of the path before"
 
 C = ChannelStateCode
 
@@ -67,40 +66,29 @@ class ChannelUnit(Unit):
         """
         super().__init__(parameters.name)
         self._parameters = parameters
-        self._axis_nodes = [axis.node for axis in parameters.axes]
-        self._motion = PathMotion(parameters, [axes[node] for node in self._axis_nodes], cycle_time)
+        nodes = [axis.node for axis in parameters.axes]
+        self._motion = PathMotion(parameters, [axes[node] for node in nodes], cycle_time)
+        self._axes = PathAxes(nodes, axes, self._motion)
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         self._sequence = ProgramSequence(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._program: Program | None = None
-        self._prepared: Prepared | None = None
+        self._prepared: PreparedProgram | None = None
         self._modal = ModalState()
         """What an MDI text finds: the state that the one before has left, if that was carried out in full."""
         self._modal_at_end: ModalState | None = None
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
         self._links: dict[int, Pairs] = {}
         """Coupling groups that programs have defined; they stay for the next one."""
-        self._axis_states = {
-            node: AxisStateCode.STANDSTILL if axes[node].powered_at_start else AxisStateCode.DISABLED
-            for node in self._axis_nodes
-        }
         self._commands_sent = 0
         self._just_started = False
-        self._had_axes = False
-        """The block before was one of path motion: the axes are where its last setpoint has put them."""
-        self._given = self._motion.states
-        """The last setpoints of the block before."""
-        self._beside: list[str] = []
-        """Axes that a superposition has put beside the path, until the channel has taken over where they are."""
         self._unfinished = False
         """The program ended between the last cycle of the block before and the first of the next one."""
         self._feedback: Mapping[str, Block] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
-        self._withheld: list[str] = []
-        """Axes whose feed release the path waits for."""
         self._element_begins = False
         """The running element begins with the next block: what axes report is about the one before."""
         self._held: Sequence[str] = ()
@@ -114,7 +102,7 @@ class ChannelUnit(Unit):
         modal = self._check.initial_state(self._feedback, self._links)
         before = modal.copy()
         blocks = self._check.blocks(parsed, self._motion.position, modal)
-        self._prepared = Prepared(text, parsed, self._motion.position, before, modal, blocks)
+        self._prepared = PreparedProgram(text, parsed, self._motion.position, before, modal, blocks)
 
     # commands
 
@@ -212,21 +200,23 @@ class ChannelUnit(Unit):
         first_cycle, count = tick
         self._read_feedback(first_cycle, inputs)
         self._watch_handshake(first_cycle)
-        outputs = self._sequence.take_outputs(first_cycle)
-        has_axes = self._unfinished or self._sequence.phase is not Phase.IDLE
-        rows = Rows()
+        outgoing = self._sequence.take_outgoing(first_cycle)
+        on_path = self._unfinished or self._sequence.phase is not Phase.IDLE
+        rows = CycleRows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
-        self._had_axes, self._given = has_axes, rows.axes[count - 1]
+        self._axes.give(rows.axes[count - 1], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
-        if self._sequence.through and self._modal_at_end is not None:
+        if self._sequence.finished and self._modal_at_end is not None:
             self._modal, self._modal_at_end = self._modal_at_end, None
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
-        return self._channel_block(tick, rows, outputs, path_active=has_axes)
+        return self._channel_block(tick, rows, outgoing, path_active=on_path)
 
-    def _channel_block(self, tick: CycleTick, rows: Rows, outputs: Outputs, *, path_active: bool) -> ChannelBlock:
+    def _channel_block(
+        self, tick: CycleTick, rows: CycleRows, outgoing: Outgoing, *, path_active: bool
+    ) -> ChannelBlock:
         count = tick.count
-        for command in outputs.commands:
+        for command in outgoing.commands:
             self._commands_sent += 1
             command.id = self._commands_sent
         by_axis = [state for axis in zip(*rows.axes[:count], strict=True) for state in axis]
@@ -235,7 +225,7 @@ class ChannelUnit(Unit):
             first_cycle=tick.first_cycle,
             count=count,
             path_active=path_active,
-            axes=self._axis_nodes,
+            axes=self._axes.nodes,
             set_position=position,
             set_velocity=velocity,
             set_acceleration=acceleration,
@@ -248,14 +238,14 @@ class ChannelUnit(Unit):
             distance_to_go=rows.distance_to_go[:count],
             state=rows.state[:count],
             error_id=rows.error_id[:count],
-            done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._beside,
+            done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
             blocks_done=self._sequence.blocks_done,
             blocks_total=len(self._sequence.blocks),
-            commands=outputs.commands,
-            requests=outputs.requests,
+            commands=outgoing.commands,
+            requests=outgoing.requests,
         )
 
-    def _fill(self, rows: Rows, first_cycle: int, wanted: int) -> None:
+    def _fill(self, rows: CycleRows, first_cycle: int, wanted: int) -> None:
         """Adds rows up to `wanted`: the path's while a motion runs, standing ones while nothing can go on."""
         while len(rows) < wanted:
             if self._sequence.phase in (Phase.MOTION, Phase.RAMP_DOWN):
@@ -264,8 +254,8 @@ class ChannelUnit(Unit):
                 self._motion.stand()
                 self._add(rows, [self._motion.point])
 
-    def _follow_path(self, rows: Rows, missing: int, cycle: int) -> None:
-        """Rows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
+    def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
+        """CycleRows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
         self._add(rows, points)
         if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
@@ -287,7 +277,7 @@ class ChannelUnit(Unit):
         for number, note in notes:
             self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", self._sequence.source.line)
 
-    def _add(self, rows: Rows, points: Sequence[PathPoint]) -> None:
+    def _add(self, rows: CycleRows, points: Sequence[PathPoint]) -> None:
         """Adds the cycles of `points`, all of the same phase and program line."""
         count = len(points)
         state = self._state_code()
@@ -315,15 +305,15 @@ class ChannelUnit(Unit):
         return PHASE_STATES[phase]
 
     def _begin(self, command: str, program: Program, modal: ModalState) -> None:
-        for node, state in self._axis_states.items():
+        for node, state in self._axes.states.items():
             if state != AxisStateCode.STANDSTILL:
                 self._refuse(
                     command, AXIS_NOT_READY, f"axis {node} is in {state_name(state)}, it must be in Standstill"
                 )
-        for node in self._beside:
+        for node in self._axes.beside:
             self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done")
         for node in self.lost:
-            if node in self._axis_nodes or any(node == spindle.node for spindle in self._parameters.spindles):
+            if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
         ready = self._ready(command, program, modal)
         if ready is not None:
@@ -336,7 +326,7 @@ class ChannelUnit(Unit):
         self._sequence.begin(blocks, program=command == "start")
         self._just_started = True
 
-    def _ready(self, command: str, program: Program, modal: ModalState) -> Prepared | None:
+    def _ready(self, command: str, program: Program, modal: ModalState) -> PreparedProgram | None:
         """What was interpreted before, if it was from where things stand now."""
         ready = self._prepared
         if ready is None or command != "start" or ready.program is not program or ready.modal != modal:
@@ -346,36 +336,29 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        self._motion.set_factor(0.0 if self._feed_hold or self._withheld else self._override_percent / 100.0)
+        self._motion.set_factor(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, Block]) -> None:
-        """An axis on the path that may not go on in its direction holds the path, and is told of once an element.
+        """An axis on the path that may not go on in its direction holds the path; a warning once an element.
 
         An element that brakes for its end runs on; the next one is held if it goes in that direction, too.
         """
-        withheld = [node for node in self._axis_nodes if self._had_axes and lacks_release(inputs.get(node))]
-        if withheld and (self._element_begins or not self._motion.can_be_held):
-            withheld = []
-        if withheld == self._withheld:
-            return
-        line = self._sequence.source.line
-        for node in withheld:
-            if node not in self._withheld:
-                text = f"the path stops in line {line} and waits for the feed release of axis {node}"
-                self.event(cycle, Severity.WARNING, FEED_WITHHELD, f"channel {self.name}: {text}", line)
-        self._withheld = withheld
-        self._apply_override()
+        can_be_held = self._motion.can_be_held and not self._element_begins
+        line, before = self._sequence.source.line, self._axes.withheld
+        for node in self._axes.read_releases(inputs, can_be_held=can_be_held):
+            text = f"the path stops in line {line} and waits for the feed release of axis {node}"
+            self.event(cycle, Severity.WARNING, FEED_WITHHELD, f"channel {self.name}: {text}", line)
+        if self._axes.withheld != before:
+            self._apply_override()
 
     def _read_feedback(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
         """Takes over what axes and spindles reported for the block before."""
         self._feedback = inputs
         self._read_releases(first_cycle, inputs)
-        if self._had_axes:
-            self._look_beside(first_cycle, inputs)
-        else:
-            self._take_axes(first_cycle, inputs)
+        for reason in self._axes.read(inputs, just_started=self._just_started):
+            self._fault(first_cycle, AXIS_NOT_READY, reason)
         self._just_started = False
-        in_use = self._had_axes or self._sequence.phase is not Phase.IDLE
+        in_use = self._axes.on_path or self._sequence.phase is not Phase.IDLE
         for node, block in inputs.items():
             if in_use:
                 self._check_member(first_cycle, node, block)
@@ -410,7 +393,9 @@ class ChannelUnit(Unit):
             self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
         elif isinstance(block, SpindleBlock):
             self._check_refused(first_cycle, node, block)
-        elif self._had_axes and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
+        elif (
+            self._axes.on_path and isinstance(block, AxisBlock) and block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION
+        ):
             state = state_name(AxisStateCode(block.state[-1]))
             self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
 
@@ -430,30 +415,6 @@ class ChannelUnit(Unit):
             what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"
             waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
             self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
-
-    def _look_beside(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
-        """Finds the axes that are not where the path has put them; the next program begins where they are."""
-        self._beside = [
-            node
-            for node, given in zip(self._axis_nodes, self._given, strict=True)
-            if is_beside(inputs.get(node), given[0])
-        ]
-        if self._beside and self._just_started:
-            self._fault(first_cycle, AXIS_NOT_READY, NOT_AT_END.format(self._beside[0]))
-
-    def _take_axes(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
-        """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""
-        self._beside = []
-        for index, node in enumerate(self._axis_nodes):
-            block = inputs.get(node)
-            if not isinstance(block, AxisBlock):
-                continue
-            state, position = AxisStateCode(block.state[-1]), block.set_position[-1]
-            if self._just_started and (state != AxisStateCode.STANDSTILL or position != self._motion.position[index]):
-                reason = f"axis {node} moved or was switched off while the program was started"
-                self._fault(first_cycle, AXIS_NOT_READY, reason)
-            self._axis_states[node] = state
-            self._motion.place(index, position)
 
     def _fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
@@ -476,17 +437,6 @@ class ChannelUnit(Unit):
 
     def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
         raise CncError(error_id, f"channel {self.name}: {command} refused: {reason}; nothing was changed")
-
-
-def is_beside(block: Block | None, position: float) -> bool:
-    """True for an axis that follows its path, but not at `position`."""
-    if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
-        return False
-    return block.set_position[-1] != position
-
-
-def lacks_release(block: Block | None) -> bool:
-    return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.FEED_WITHHELD)
 
 
 PHASE_STATES = {

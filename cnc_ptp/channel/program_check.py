@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import inf
+from typing import NamedTuple
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
@@ -16,7 +17,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
 )
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.interpreter import CheckTarget, check, interpret
+from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Pair, Pairs, Program, Spindle, SpindleTable
@@ -37,6 +38,17 @@ SOFT_LIMIT_NEGATIVE = 120003
 UNKNOWN_M_FUNCTION = 22011
 NO_FRICTION_COMPENSATION = 70495
 NO_CHANNEL = 26112
+
+
+class PreparedProgram(NamedTuple):
+    """A program that was interpreted before its load, from the position `start` and the modal state `modal`."""
+
+    text: str
+    program: Program
+    start: tuple[float, ...]
+    modal: ModalState
+    modal_at_end: ModalState
+    blocks: list[CanonicalBlock]
 
 
 class ProgramCheck:
@@ -71,7 +83,7 @@ class ProgramCheck:
             self._axis_names,
             self._spindles,
             start=self.start,
-            check_target=self.target,
+            check_target=self.check_target,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
         ) or self._function_errors(text, file)
@@ -113,22 +125,18 @@ class ProgramCheck:
                 self._axis_names,
                 self._spindles,
                 state=state,
-                check_target=self.target,
+                check_target=self.check_target,
                 centre_offset=self._channel.circle_center_tolerance,
                 centre_offset_ratio=self._channel.circle_center_ratio,
             )
         )
         for block in blocks:
-            for function in block.before + block.after:
+            for function in block.functions:
                 self._function(function, block.source)
         return blocks
 
-    @property
-    def target(self) -> CheckTarget:
+    def check_target(self, target: tuple[float, ...], source: Source) -> None:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""
-        return self._target
-
-    def _target(self, target: tuple[float, ...], source: Source) -> None:
         for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
             unit = "deg" if axis.rotary else "mm"
             if position > axis.soft_limit_positive:

@@ -1,8 +1,15 @@
-"""The sequence of a program in a channel: block after block its functions, its motion and what the path waits for.
+"""The sequence of a program: NC block after NC block its functions, its motion and what the path waits for.
 
-A block goes: gear change (and wait), functions before the motion, waits (its own; before a motion until feedforward and
-compensations have gone out; before G01, G02, G03 those of MVS_SLM; at #EXPL SYN those of MVS_SLP; at the end of the
-program all), motion (functions of MNE_SNS with the measuring event), functions after it, waits, stop or next block.
+| phase | what happens | next |
+|---|---|---|
+| NEXT | the next block is taken; its gear change goes out | WAIT_GEAR, WAIT_BEFORE, at the end WAIT_END |
+| WAIT_GEAR | the path waits for the gear; then the functions before the motion go out | WAIT_BEFORE |
+| WAIT_BEFORE | the path waits for what has to come before the motion | MOTION, without one WAIT_AFTER |
+| MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
+| WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
+| WAIT_END | a program without M30: the path waits for all that is still open | IDLE |
+| STOPPED | M00, M01, single block: `resume` goes on | NEXT |
+| RAMP_DOWN | the program was aborted, the path is on its ramp | IDLE |
 """
 
 from __future__ import annotations
@@ -10,10 +17,9 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
-from cnc_ptp.channel.function_output import FunctionOutput, Moment
-from cnc_ptp.channel.spindle_reports import Condition
-from cnc_ptp.channel.spindle_watch import SpindleWatch
-from cnc_ptp.channel.waits import Outputs, Wait
+from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.spindle_reports import Condition, Expectation
+from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import Block, HandshakeRequest
@@ -23,7 +29,6 @@ ENDS = ("stop", "decouple")
 NO_SOURCE = Source("", 0, 0, "")
 NO_MEASURING_EVENT = 22017
 COMMANDED_BY_OTHERS = 22022
-SPEED_WITHOUT_EFFECT = 22023
 COUPLING_ENDED = 22025
 
 
@@ -42,13 +47,15 @@ class Phase(Enum):
 
 
 WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
+ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
+"""What the path need not wait for in its own block, at the end of the program it does."""
 
 
 class ProgramSequence:
     """Runs canonical blocks.
 
     `go_on` makes one step that takes no time; it returns False when only time, the PLC or a spindle can help. While
-    `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` tells when it is through.
+    `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` tells when it has finished.
     """
 
     def __init__(self, motion: PathMotion, functions: FunctionOutput) -> None:
@@ -63,19 +70,14 @@ class ProgramSequence:
         self.optional_stop = False
         self._block: CanonicalBlock | None = None
         self._keep: Container[str] = ()
-        self._outputs = Outputs()
-        self._unsent: list[Wait] = []
+        self._outgoing = Outgoing()
         self._waits: list[Wait] = []
-        self._waits_after: list[Wait] = []
-        self._waits_motion: list[Wait] = []
-        self._waits_machining: list[Wait] = []
-        self._waits_explicit: list[Wait] = []
+        self._due: frozenset[Moment] = frozenset()
+        """The moments that have come: the path waits for what waits until one of them."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
-        self.open_requests: set[int] = set()
-        """Numbers of the handshake requests that the PLC has not acknowledged."""
-        self._asked: dict[int, HandshakeRequest] = {}
-        self._watch = SpindleWatch(functions.channel)
+        self.open_requests: dict[int, HandshakeRequest] = {}
+        """Handshake requests by number that the PLC has not acknowledged."""
         self._feedback: Mapping[str, Block] = {}
         self.notes: list[tuple[int, str]] = []
         """What the channel is to warn of: number and text."""
@@ -85,8 +87,8 @@ class ProgramSequence:
     def begin(self, blocks: Sequence[CanonicalBlock], *, program: bool) -> None:
         """Starts from the first block; a `program` begins with feedforward off, MDI blocks with what is set."""
         if program:
-            self._outputs.commands += self._functions.at_program_start()
-            self._watch.forget()
+            self._outgoing.commands += self._functions.at_program_start()
+            self._functions.expect_nothing()
         self.blocks = blocks
         self.blocks_done = 0
         self.phase = Phase.NEXT
@@ -109,77 +111,81 @@ class ProgramSequence:
         moving = self.phase is Phase.MOTION and self._motion.on_path
         self.phase = Phase.RAMP_DOWN
         self._awaits_event = False
-        self._outputs = Outputs(commands=[command for command in self._outputs.commands if command.command in ENDS])
-        self._functions.spindles.concern.withdraw()
-        self._unsent = []
+        self._outgoing = Outgoing(commands=[command for command in self._outgoing.commands if command.command in ENDS])
+        self._functions.withdraw()
+        self._waits = []
         if moving:
             self._motion.stop()
         else:
             self.motion_ended()
 
     @property
-    def through(self) -> bool:
+    def finished(self) -> bool:
         """The program has been carried out to its end."""
         return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has set in motion, except those to keep; its couplings end."""
-        self._watch.forget(self._keep)
+        self._functions.expect_nothing(self._keep)
         self._queue(self._functions.at_abort(self.source, self._keep))
 
     @property
     def spindles_move(self) -> bool:
         """The channel has set spindles in motion."""
-        return any(True for _ in self._functions.spindles.concern)
+        return any(spindle.responsible for spindle in self._functions.spindles)
 
     def end_couplings(self) -> None:
         """Couplings that manual blocks have left end before a program begins."""
-        self._outputs.commands += self._functions.spindles.decouple_all()
+        self._outgoing.commands += self._functions.spindles.decouple_all()
 
     def measuring_event(self) -> bool:
         """The functions of type MNE_SNS of the running motion go out; False when there are none."""
         if not self._awaits_event or self._block is None:
             return False
         self._awaits_event = False
-        outputs = self._functions.of_block(self._block, Moment.EVENT)
-        self._queue(outputs)
-        self._waits_after += outputs.waits_after
+        self._queue(self._functions.of_block(self._block, Moment.EVENT))
         return True
 
     def overdue(self, cycle: int, limit: int) -> HandshakeRequest | None:
         """The oldest request that the PLC has left unacknowledged for `limit` cycles."""
-        return next((request for request in self._asked.values() if cycle - request.cycle >= limit), None)
+        sent = (request for request in self.open_requests.values() if request.cycle >= 0)
+        return next((request for request in sent if cycle - request.cycle >= limit), None)
 
     def acknowledge(self, request_id: int) -> None:
         """The PLC has carried out what it was asked for."""
-        self.open_requests.discard(request_id)
-        request = self._asked.pop(request_id, None)
-        if request is not None:
-            self._functions.acknowledged(request)
+        self._functions.acknowledged(self.open_requests.pop(request_id))
 
-    def take_outputs(self, first_cycle: int) -> Outputs:
-        """What is to go out with the block that begins at `first_cycle`; from there on its waits count."""
-        outputs, self._outputs = self._outputs, Outputs()
-        for request in outputs.requests:
+    def take_outgoing(self, first_cycle: int) -> Outgoing:
+        """What is to go out with the block of cycles that begins at `first_cycle`; from there on its waits count."""
+        outgoing, self._outgoing = self._outgoing, Outgoing()
+        for request in outgoing.requests:
             request.cycle = first_cycle
-            if request.id in self.open_requests:
-                self._asked[request.id] = request
-        for wait in self._unsent:
-            wait.sent_cycle = first_cycle
-        self._unsent = []
-        self._watch.note(outputs.told, first_cycle)
+        for wait in self._waits:
+            if wait.sent_cycle is None:
+                wait.sent_cycle = first_cycle
         self._functions.spindles.send(first_cycle)
-        return outputs
+        return outgoing
 
     def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
         """Blocks that the spindles have reported for the cycles before `cycle`."""
         self._feedback = feedback
-        ended = self._functions.spindles.read(cycle, feedback)
+        spindles = self._functions.spindles
+        ended = spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program goes on") for text in ended]
-        waited_for = {wait.spindle for wait in self._waits if wait.condition is Condition.SPEED}
         runs = self.phase not in (Phase.IDLE, Phase.RAMP_DOWN)
-        lost = self._watch.read(cycle, feedback, waited_for, runs=runs)
-        self.notes += [(COMMANDED_BY_OTHERS, f"{text}; the program goes on") for text in lost]
+        for spindle in spindles:
+            lost = spindle.lost_speed(cycle, watched=runs and spindle.node not in self._speeds_waited_for())
+            if lost:
+                self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program goes on"))
+
+    def _waited_for(self) -> list[Wait]:
+        """What holds the path now."""
+        return [wait for wait in self._waits if wait.until in self._due] if self.phase in WAITING else []
+
+    def _speeds_waited_for(self) -> set[str]:
+        """Nodes of the spindles whose speed holds the path: that it is not reached is noticed there."""
+        expected = [wait.expected for wait in self._waited_for()]
+        return {expectation.spindle for expectation in expected if expectation.condition is Condition.SPEED}
 
     def waits_for(self) -> str:
         """What the program waits for that does not come with time alone; empty when it goes on by itself."""
@@ -187,15 +193,12 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
-        if self.phase in WAITING:
-            waits = [wait.text(self.open_requests) for wait in self._waits]
-            return " and ".join(text for text in waits if text)
-        return ""
+        waits = [wait.text(self.open_requests) for wait in self._waited_for()]
+        return " and ".join(text for text in waits if text)
 
     def held_by_override(self, cycle: int) -> list[str]:
         """What the program waits for of spindles that override 0 holds."""
-        waits = self._waits if self.phase in WAITING else []
-        return [text for wait in waits if (text := wait.held(cycle, self._feedback))]
+        return [text for wait in self._waited_for() if (text := wait.held(cycle, self._feedback))]
 
     # from block to block
 
@@ -209,9 +212,9 @@ class ProgramSequence:
             return True
         if self.phase not in WAITING:
             return False
-        spindles, requests = self._feedback, self.open_requests
-        self._waits = [wait for wait in self._waits if not wait.fulfilled(first_cycle, spindles, requests)]
-        if self._waits:
+        open_waits = [w for w in self._waited_for() if not w.fulfilled(first_cycle, self._feedback, self.open_requests)]
+        self._waits = [wait for wait in self._waits if wait.until not in self._due] + open_waits
+        if open_waits:
             return False
         if self.phase is Phase.WAIT_GEAR:
             self._functions_before()
@@ -223,8 +226,12 @@ class ProgramSequence:
             self._end_block()
         return True
 
+    def _wait(self, phase: Phase, *moments: Moment) -> None:
+        """From now on the path waits for what waits until one of these moments."""
+        self.phase, self._due = phase, frozenset(moments)
+
     def motion_ended(self) -> None:
-        """The motion of the block, or the ramp of an aborted program, is through: the axes stand."""
+        """The motion of the block, or the ramp of an aborted program, has finished: the axes stand."""
         if self.phase is Phase.RAMP_DOWN:
             self._motion.abandon()
             self._end_program()
@@ -235,63 +242,42 @@ class ProgramSequence:
             text = "no measuring event has come in the block; its functions go out after the motion"
             self.notes.append((NO_MEASURING_EVENT, text))
             self.measuring_event()
-        outputs = self._functions.of_block(self._block, Moment.AFTER) if self._block else Outputs()
-        self._queue(outputs)
-        self._waits, self._waits_after = self._waits_after + outputs.waits_after, []
+        if self._block is not None:
+            self._queue(self._functions.of_block(self._block, Moment.AFTER))
         if self._block is not None and self._block.stop == "end":
-            self._waits += self._answers()
-        self.phase = Phase.WAIT_AFTER
+            self._await_answers()
+            self._wait(Phase.WAIT_AFTER, Moment.AFTER, *ALL_LATE)
+        else:
+            self._wait(Phase.WAIT_AFTER, Moment.AFTER)
 
-    def _answers(self) -> list[Wait]:
-        """The program ends when the spindles have had a block in which to refuse what they were told."""
-        told = [*self._watch.told, *self._outputs.told]
-        answers = [Wait(wait.spindle, sent_cycle=wait.sent_cycle) for wait in told]
-        self._unsent += [answer for answer in answers if answer.sent_cycle is None]
-        return answers
+    def _await_answers(self) -> None:
+        """The program ends when the spindles have had a block in which to refuse what was commanded."""
+        for spindle in self._functions.spindles:
+            self._waits += [
+                Wait(Moment.AFTER, Expectation(spindle.node), sent_cycle=cycle) for cycle in spindle.answers()
+            ]
 
     def _begin_block(self) -> None:
         if self.blocks_done >= len(self.blocks):
-            self._waits = self._late_waits(machining=True, explicit=True) + self._answers()
-            self.phase = Phase.WAIT_END
+            self._await_answers()
+            self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return
         self._block = block = self.blocks[self.blocks_done]
         self.source = block.source
-        gear = self._functions.gear_change(block, self._feedback)
+        gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before()
             return
         self._queue(gear)
-        self._waits = gear.waits_before
-        self.phase = Phase.WAIT_GEAR
+        self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
 
     def _functions_before(self) -> None:
         """Functions that go out before the motion, and all that the motion has to wait for."""
         block = self._block
         assert block is not None
-        outputs = self._functions.of_block(block, Moment.BEFORE)
-        self._queue(outputs)
-        self._waits, self._waits_after = outputs.waits_before, outputs.waits_after
-        if block.motion is not None:
-            self._waits, self._waits_motion = self._waits + self._waits_motion, []
-        end = block.stop == "end"
-        machining = isinstance(block.motion, CircularMove) or (
-            isinstance(block.motion, LinearMove) and not block.motion.rapid
-        )
-        explicit = any(isinstance(function, ExplicitSynchronisation) for function in block.before)
-        self._waits += self._late_waits(machining=machining, explicit=explicit)
-        if end:
-            self._waits_after += self._late_waits(machining=True, explicit=True)
-        self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.before)
-        self.phase = Phase.WAIT_BEFORE
-
-    def _late_waits(self, *, machining: bool, explicit: bool) -> list[Wait]:
-        """Waits of MVS_SLM and, or, MVS_SLP whose moment has come."""
-        waits: list[Wait] = []
-        if machining:
-            waits, self._waits_machining = self._waits_machining, []
-        if explicit:
-            waits, self._waits_explicit = waits + self._waits_explicit, []
-        return waits
+        self._queue(self._functions.of_block(block, Moment.BEFORE))
+        self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.functions)
+        self._wait(Phase.WAIT_BEFORE, *moments_before(block))
 
     def _start_motion(self) -> None:
         motion = self._block.motion if self._block else None
@@ -305,7 +291,7 @@ class ProgramSequence:
         stop = self._block.stop if self._block else ""
         self.blocks_done += 1
         if stop == "end":
-            self._queue(self._functions.at_program_end(self._feedback, self.source))
+            self._queue(self._functions.at_program_end(self.source))
             self._end_program()
         elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED
@@ -318,32 +304,34 @@ class ProgramSequence:
     def _end_program(self) -> None:
         self._motion.feed = 0.0
         self._block = None
-        self._waits, self._waits_after, self._waits_motion = [], [], []
-        self._waits_machining, self._waits_explicit = [], []
+        self._waits = []
         self._awaits_event = False
         self.open_requests.clear()
-        self._asked.clear()
         self.phase = Phase.IDLE
 
-    def _queue(self, outputs: Outputs) -> None:
-        """Functions go out with the next block; the path waits for them if their synchronisation type says so."""
-        self._outputs.commands += outputs.commands
-        self._outputs.requests += outputs.requests
-        self._outputs.told += outputs.told
-        self._unsent += outputs.waits
-        notes = [stored.note(self._feedback) for stored in outputs.stored]
-        self.notes += [*((SPEED_WITHOUT_EFFECT, note) for note in notes if note), *outputs.notes]
-        self._renew_old_waits(outputs)
-        self._waits_motion += outputs.waits_motion
-        self._waits_machining += outputs.waits_machining
-        self._waits_explicit += outputs.waits_explicit
-        self.open_requests |= {request.id for request in outputs.requests if request.acknowledge_needed}
+    def _queue(self, outgoing: Outgoing) -> None:
+        """Functions go out with the next block; the path waits for them if their synchronisation type says so.
 
-    def _renew_old_waits(self, outputs: Outputs) -> None:
-        """A newer function of a spindle takes the place of what the path is still to wait for."""
-        for newer in outputs.told:
-            waits_too = any(wait is newer for wait in outputs.waits)
-            for wait in self._waits_after + self._waits_machining + self._waits_explicit:
-                if wait.spindle == newer.spindle:
-                    wait.renew(newer, waits_too=waits_too)
-                    self._unsent += [wait] if wait.sent_cycle is None else []
+        A newer function of a spindle takes the place of what the path is still to wait for.
+        """
+        self._outgoing.commands += outgoing.commands
+        self._outgoing.requests += outgoing.requests
+        self.notes += outgoing.notes
+        for newer in outgoing.expected:
+            waits_too = any(wait.expected is newer for wait in outgoing.waits)
+            for wait in self._waits:
+                wait.renew(newer, waits_too=waits_too)
+        self._waits += outgoing.waits
+        self.open_requests |= {request.id: request for request in outgoing.requests if request.acknowledge_needed}
+
+
+def moments_before(block: CanonicalBlock) -> list[Moment]:
+    """The moments that have come when the motion of the block may begin."""
+    moments = [Moment.BEFORE]
+    if block.motion is not None:
+        moments.append(Moment.NEXT_MOTION)
+    if isinstance(block.motion, CircularMove) or (isinstance(block.motion, LinearMove) and not block.motion.rapid):
+        moments.append(Moment.NEXT_CUT)
+    if any(isinstance(function, ExplicitSynchronisation) for function in block.functions):
+        moments.append(Moment.EXPLICIT)
+    return moments

@@ -1,4 +1,4 @@
-"""Does a spindle do what a channel has told it? The answers from the block that it reports (TF5200 spindle 2.5).
+"""Does a spindle do what a channel has commanded? The answers from the block that it reports (TF5200 spindle 2.5).
 
 A report counts for the path only while the spindle carries out the command of the channel: one that stands because
 somebody else has stopped it has reached no speed.
@@ -6,6 +6,7 @@ somebody else has stopped it has reached no speed.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from math import isclose, remainder
 
@@ -29,13 +30,70 @@ class Condition(Enum):
     MASTER = "the coupling of spindle {spindle} to {value}"
 
 
-TOLD = {
+COMMANDED = {
     Condition.SPEED: "turn at {value:g} rpm",
     Condition.STANDSTILL: "stop",
     Condition.POSITION: "go to {value:g} deg",
     Condition.GEAR: "change to gear {value}",
 }
-"""What the spindle was told."""
+"""What the spindle was commanded to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """What a spindle (node) is to report when it has carried out a command.
+
+    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, or gear stage; `master`: node of its master.
+    """
+
+    spindle: str = ""
+    condition: Condition = Condition.NONE
+    value: float = 0.0
+    turn: float = 360.0
+    master: str = ""
+
+    def carried_out(self, block: SpindleBlock) -> bool:
+        """The spindle does at the end of its block what was commanded: on its way there, or there."""
+        state, mode = block.state[-1], block.mode[-1]
+        match self.condition:
+            case Condition.SPEED:
+                commanded = block.programmed_speed_rpm[-1]
+                return state == S.CONTINUOUS_MOTION and isclose(commanded, self.value, rel_tol=1e-9, abs_tol=1e-9)
+            case Condition.STANDSTILL:
+                return state != S.CONTINUOUS_MOTION
+            case Condition.POSITION if state == S.STANDSTILL:
+                away = remainder(block.target_position_deg[-1] - self.value, self.turn)
+                return mode == SpindleMode.POSITION and abs(away) <= SAME_POSITION
+            case Condition.POSITION:
+                return state in (S.DISCRETE_MOTION, S.HOMING)
+            case Condition.GEAR:
+                return block.gear[-1] == self.value
+        return True
+
+    def reached(self, block: SpindleBlock) -> bool:
+        """It reports speed, standstill or position, and nothing else comes first; a stop (M05) never waits."""
+        if self.condition is not Condition.STANDSTILL and must_wait(block):
+            return False
+        match self.condition:
+            case Condition.SPEED:
+                return bool(block.speed_reached[-1])
+            case Condition.STANDSTILL:
+                return bool(block.speed_zero[-1]) and block.state[-1] not in (S.HOMING, S.DISCRETE_MOTION)
+            case Condition.POSITION:
+                return bool(block.in_position[-1])
+        return True
+
+    def awaited(self) -> str:
+        """What is waited for."""
+        return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
+
+    def missed(self) -> str:
+        """What the spindle does not do, for the text of an error or a warning."""
+        commanded = COMMANDED[self.condition].format(value=self.value)
+        return f"spindle {self.spindle} does not {commanded} as it was told"
+
+
+NOTHING = Expectation()
 
 
 def orders_wait(block: SpindleBlock) -> bool:
@@ -48,53 +106,8 @@ def must_wait(block: SpindleBlock) -> bool:
     return orders_wait(block) or block.gear_change_active[-1]
 
 
-def carries_out(block: SpindleBlock, condition: Condition, value: float, turn: float = 360.0) -> bool:
-    """The spindle does at the end of its block what it was told: on the way there, or there.
-
-    `value`: speed in rpm (+ = M03), position in ° modulo `turn`, or gear stage.
-    """
-    state, mode = block.state[-1], block.mode[-1]
-    match condition:
-        case Condition.SPEED:
-            commanded = block.programmed_speed_rpm[-1]
-            return state == S.CONTINUOUS_MOTION and isclose(commanded, value, rel_tol=1e-9, abs_tol=1e-9)
-        case Condition.STANDSTILL:
-            return state != S.CONTINUOUS_MOTION
-        case Condition.POSITION if state == S.STANDSTILL:
-            away = remainder(block.target_position_deg[-1] - value, turn)
-            return mode == SpindleMode.POSITION and abs(away) <= SAME_POSITION
-        case Condition.POSITION:
-            return state in (S.DISCRETE_MOTION, S.HOMING)
-        case Condition.GEAR:
-            return block.gear[-1] == value
-    return True
-
-
-def is_there(block: SpindleBlock, condition: Condition) -> bool:
-    """The spindle reports speed, standstill or position, and nothing else comes first; a stop (M05) never waits."""
-    if condition is not Condition.STANDSTILL and must_wait(block):
-        return False
-    match condition:
-        case Condition.SPEED:
-            return bool(block.speed_reached[-1])
-        case Condition.STANDSTILL:
-            return bool(block.speed_zero[-1]) and block.state[-1] not in (S.HOMING, S.DISCRETE_MOTION)
-        case Condition.POSITION:
-            return bool(block.in_position[-1])
-    return True
-
-
-def held_by_override(block: SpindleBlock) -> bool:
-    """The spindle is on its way, and stands because of override 0."""
-    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
-        return False
-    turns_on = block.state[-1] == S.CONTINUOUS_MOTION
-    moves = turns_on or (block.state[-1] == S.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
-    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0
-
-
 def stands(block: SpindleBlock, channel: str) -> bool:
-    """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is in work for `channel`."""
+    """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is done for `channel`."""
     return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel
 
 
@@ -103,13 +116,8 @@ def turns(block: SpindleBlock) -> bool:
     return block.state[-1] == S.CONTINUOUS_MOTION
 
 
-def what_it_was_told(spindle: str, condition: Condition, value: float) -> str:
-    """For the text of an error or a warning."""
-    return f"spindle {spindle} does not {TOLD[condition].format(value=value)} as it was told"
-
-
 def what_it_does(block: SpindleBlock) -> str:
-    """What it does instead."""
+    """What the spindle does instead of what was commanded."""
     state = block.state[-1]
     if block.gear_change_active[-1]:
         return "its gear is being changed"

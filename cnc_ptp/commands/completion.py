@@ -29,7 +29,7 @@ def complete_axis(context: click.Context, parameter: click.Parameter, incomplete
 
 def complete_command(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Commands of the unit that have a service, with the names of their arguments."""
-    from cnc_ptp.nodes.machine_client import arguments_of, services_of
+    from cnc_ptp.nodes.client.machine_client import arguments_of, services_of
 
     unit = context.params["unit"]
     kind = unit_kinds_of(context).get(unit)
@@ -41,7 +41,7 @@ def complete_command(context: click.Context, parameter: click.Parameter, incompl
 
 def complete_word(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Names of arguments that are not given yet, and their values where there is a choice."""
-    from cnc_ptp.nodes.machine_client import arguments_of
+    from cnc_ptp.nodes.client.machine_client import arguments_of
 
     unit, command = context.params["unit"], context.params["command"]
     kind = unit_kinds_of(context).get(unit)
@@ -72,7 +72,7 @@ def unit_kinds_of(context: click.Context) -> dict[str, str]:
             from cnc_ptp.parameters import read_machine
 
             return unit_kinds(read_machine(context.params["machine"]))
-        from cnc_ptp.nodes.machine_client import connected
+        from cnc_ptp.nodes.client.machine_client import connected
 
         with context.scope(cleanup=False), connected(patience=PATIENCE) as client:
             return dict(client.kinds)

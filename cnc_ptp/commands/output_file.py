@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from rich.console import Console
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
+
+OVERWRITES = 26117
 
 
 def check_output(output: str | None, **inputs: str | None) -> None:
@@ -16,10 +19,24 @@ def check_output(output: str | None, **inputs: str | None) -> None:
         return
     if not Path(output).absolute().parent.is_dir():
         raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist", "nothing was started")
-    for what, path in inputs.items():
-        if path is not None and _same(Path(output), Path(path)):
-            name = what.replace("_", " ")
-            raise CncError(BAD_OUTPUT, f"{output} would overwrite the {name} {path}", "nothing was started")
+    if what := _overwritten(output, inputs):
+        raise CncError(BAD_OUTPUT, f"{output} would overwrite the {what}", "nothing was started")
+
+
+def check_recording(record: str | None, **inputs: str | None) -> None:
+    """Raises CncError 26117 when the recording of a run is one of its inputs, as check_output."""
+    if record is not None and Path(record).exists() and (what := _overwritten(record, inputs)):
+        raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}", "nothing was started")
+
+
+def _overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
+    """The input that is the same file as `output`, `machine file mill.yaml`; empty if none is."""
+    same = (
+        f"{what.replace('_', ' ')} {path}"
+        for what, path in inputs.items()
+        if path is not None and _same(Path(output), Path(path))
+    )
+    return next(same, "")
 
 
 def _same(one: Path, other: Path) -> bool:

@@ -19,7 +19,7 @@ from cnc_ptp.control.friction_compensation import FrictionCompensation
 from cnc_ptp.control.lag_monitor import LagMonitor
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
-from cnc_ptp.parameters.control_view import ControlParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters
 
 State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cnc_ptp.parameters.control_view import DriveParameters, DriveScaling
+from cnc_ptp.parameters.view.control_view import DriveParameters, DriveScaling
 
 DA_FULL_SCALE = 32767
 DA_VOLTS = 10.0

@@ -12,7 +12,7 @@ from itertools import islice
 from math import copysign, exp, floor, sqrt
 from typing import NamedTuple
 
-from cnc_ptp.parameters.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
+from cnc_ptp.parameters.view.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
 
 State = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of a setpoint."""

@@ -9,7 +9,7 @@ from bisect import bisect_right
 from collections import deque
 from itertools import pairwise
 
-from cnc_ptp.parameters.control_view import FrictionParameters
+from cnc_ptp.parameters.view.control_view import FrictionParameters
 
 State = tuple[float, float, float, float]
 COUPLING_TIME = 0.1

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from math import ceil, inf
 
-from cnc_ptp.parameters.control_view import LagMonitoring
+from cnc_ptp.parameters.view.control_view import ESTIMATED, FIXED, LINEAR, MONITORING_TYPES, LagMonitoring
 
-ESTIMATED, LINEAR, FIXED = 1, 2, 4
 SCALE = 1024
 SETTLING = 5.0
 """Time constants 1/Kv that the lag of a motion has to fall before the axis counts as standing."""
@@ -37,7 +36,7 @@ class LagMonitor:
         """`kv` in 1/s, `cycle_time` in s."""
         off = parameters.kind in (ESTIMATED, LINEAR) and parameters.dynamic >= SCALE
         self._kind = 0 if off else parameters.kind
-        self.on = self._kind in (ESTIMATED, LINEAR, FIXED)
+        self.on = self._kind in MONITORING_TYPES
         self._moving, self._standing = parameters.moving_limit, parameters.standstill_limit
         self._cycle_time = cycle_time
         self._factor = parameters.dynamic / SCALE

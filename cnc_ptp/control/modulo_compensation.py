@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import trunc
 
-from cnc_ptp.parameters.control_view import ModuloError
+from cnc_ptp.parameters.view.control_view import ModuloError
 
 
 class ModuloCompensation:

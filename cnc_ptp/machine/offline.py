@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from cnc_ptp.channel.channel_unit import ChannelUnit
-from cnc_ptp.channel.spindle_reports import held_by_override
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import PLC, Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import at_rest
-from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block, Command, CommandRecord, CycleTick, Event, PlcBlock, SpindleBlock
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock
 from cnc_ptp.protocol.unit import Unit
 
 STUCK_TIME = 10.0
@@ -116,47 +113,12 @@ class OfflineMachine:
             self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
 
     def _what_is_waited_for(self, outputs: Outputs) -> str:
-        """Empty while anything moves or goes on by itself; for axes on a path their channel speaks."""
+        """Empty while anything moves or goes on by itself; for axes that are led their channel or master speaks."""
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit
-            reason = unit.waits_for() if isinstance(unit, ChannelUnit) else endless_motion(output.block, output.name)
-            if reason:
+            if reason := unit.waits_for():
                 reasons.append(reason)
-            elif not at_rest(output.block) and not on_path(output.block):
+            elif not unit.led and not at_rest(output.block):
                 return ""
         return "; ".join(reasons)
-
-
-def endless_motion(block: Block, name: str) -> str:
-    """A slave that was decoupled in motion drives on, a spindle may wait for the PLC; empty for all others."""
-    if isinstance(block, SpindleBlock):
-        return spindle_wait(block, name)
-    if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.CONTINUOUS_MOTION:
-        return ""
-    drives = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
-    return f"axis {name} drives on without an end" if drives else ""
-
-
-def spindle_wait(block: SpindleBlock, name: str) -> str:
-    """What a spindle waits for that does not come with time alone."""
-    if block.gear_request:
-        return f"spindle {name} waits for the PLC to change to gear {block.gear_request}"
-    reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
-    if reason and open_orders:
-        return f"spindle {name} still has {open_orders} of the PLC's commands to do: {reason}"
-    held = reason and block.state[-1] == AxisStateCode.DISCRETE_MOTION
-    return f"spindle {name} is held by override 0" if held else ""
-
-
-def why_it_stays(block: SpindleBlock) -> str:
-    """Why a spindle on its way does not get there; empty while it goes on by itself."""
-    if held_by_override(block):
-        return "it is held by override 0"
-    steady = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION and block.set_acceleration_deg_s2[-1] == 0.0
-    return "its speed is not reached" if steady and not block.speed_reached[-1] else ""
-
-
-def on_path(block: Block) -> bool:
-    """True for an axis that a channel or a master moves: that one speaks for it."""
-    return isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.axis.axis_unit import AxisUnit
+from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import Unit
-from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
-LIFE_SIGN = "plc"
 CLOCK = "clock"
 
 
@@ -19,13 +18,11 @@ class UnitRunner:
     """A unit with the cycle number at which the next command would act."""
 
     def __init__(self, unit: Unit, *, watchdog_cycles: int) -> None:
-        """`watchdog_cycles`: for so long the life sign of the PLC may stand still."""
+        """`watchdog_cycles`: a life sign of the PLC that stands still for so long is lost."""
         self.unit = unit
         self.next_cycle = 0
-        self._watchdog_cycles = watchdog_cycles
         self._life_sign = -1
-        self._life_sign_cycle = 0
-        self._life_sign_lost = False
+        self._silence = Silence(watchdog_cycles - 1)
         self._state: int | None = None
 
     def command(self, command: Command) -> CommandRecord:
@@ -40,8 +37,7 @@ class UnitRunner:
     @property
     def master(self) -> str | None:
         """The axis or spindle whose block of the same tick `compute` needs besides; known after the commands."""
-        unit = self.unit
-        return unit.master if isinstance(unit, (AxisUnit, SpindleUnit)) and unit.master not in unit.lost else None
+        return None if self.unit.master in self.unit.lost else self.unit.master
 
     def apply(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
         """Applies the commands that `inputs` carry for this unit."""
@@ -77,15 +73,14 @@ class UnitRunner:
         self.unit.event(block.first_cycle + index, Severity.INFO, 0, text, line)
 
     def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
-        plc = inputs.get(LIFE_SIGN)
+        plc = inputs.get(PLC)
         if not isinstance(plc, PlcBlock):
             return
         if plc.life_sign != self._life_sign:
-            self._life_sign, self._life_sign_cycle = plc.life_sign, tick.first_cycle
-            self._life_sign_lost = False
-        elif not self._life_sign_lost and tick.first_cycle - self._life_sign_cycle >= self._watchdog_cycles:
-            self._life_sign_lost = True
-            self.unit.command(Command(self.unit.name, "upstream_lost", {"source": "plc"}), tick.first_cycle)
+            self._life_sign = plc.life_sign
+            self._silence.heard(PLC, tick.first_cycle)
+        elif self._silence.fallen_silent(tick.first_cycle):
+            self.unit.command(Command(self.unit.name, "upstream_lost", {"source": PLC}), tick.first_cycle)
 
 
 def commands_for(name: str, inputs: Mapping[str, Block]) -> Iterator[Command]:

@@ -17,6 +17,7 @@ from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 PLC = "plc"
+UNKNOWN_UNIT = 26111
 
 
 @dataclass(frozen=True, slots=True)

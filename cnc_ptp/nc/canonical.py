@@ -3,12 +3,11 @@
 Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
 All types are immutable and cheap to create (one of each per program block).
 
-Functions and motion of a block: every M, S, T and D function stands in `before`, in the order T, D, main spindle (gear
-first), other spindles, other M, however the line orders them; behind them feedforward and compensations. When it goes
-out and who waits for it (before the motion, after it, at the next G01) is decided at run time by its synchronisation
-type (P-CHAN-00041, 00043, 00045, 00047, 00049, 00081), which the language does not know. `after` is kept for functions
-that the language itself binds to the block's end. M00, M01 and the program end stand in `stop` and act when motion and
-functions are done.
+Functions of a block stand in the order T, D, main spindle (gear first), other spindles, other M, however the line
+orders them; behind them feedforward and compensations. When they go out and who waits for them (before the motion,
+after it, at the next G01) is decided at run time by their synchronisation type (P-CHAN-00041, 00043, 00045, 00047,
+00049, 00081), which the language does not know. M00, M01 and the program end stand in `stop` and act when motion and
+functions have finished.
 """
 
 from typing import NamedTuple
@@ -175,82 +174,9 @@ class CanonicalBlock(NamedTuple):
     """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30)."""
 
     source: Source
-    before: tuple[Function, ...]
+    functions: tuple[Function, ...]
     motion: Motion | None
-    after: tuple[Function, ...]
     stop: str
-
-
-def format_block(block: CanonicalBlock) -> str:
-    """One line for golden streams: line, block number, functions, motion, functions after it, stop; 6 decimals."""
-    parts = [f"{block.source.line}:N{block.source.block_number}"]
-    parts += [_function(function) for function in block.before]
-    if block.motion is not None:
-        parts.append(_motion(block.motion))
-    parts += ["after " + _function(function) for function in block.after]
-    if block.stop:
-        parts.append(block.stop)
-    return " | ".join(parts)
-
-
-def _function(function: Function) -> str:
-    match function:
-        case AuxiliaryFunction(letter, code, ""):
-            return f"{letter}{code}"
-        case AuxiliaryFunction(letter, code, spindle):
-            return f"{spindle}[{letter}{code}]"
-        case SpindleCommand(spindle, command):
-            return f"{spindle}[{command}]"
-        case GearChange(spindle, stage):
-            return f"{spindle}[gear {stage}]"
-        case SpindleLink(slave, master, on, num, den):
-            ratio = "" if num == den else f" {number(num)}/{number(den)}"
-            return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
-        case ExplicitSynchronisation():
-            return "wait for MVS_SLP"
-        case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
-            return _control(function)
-        case SpindleFunction():
-            return f"{function.spindle}[{' '.join(_spindle_words(function))}]"
-
-
-def _spindle_words(function: SpindleFunction) -> list[str]:
-    words = ["G167"] if function.full_override else []
-    if function.m is not None:
-        words.append(f"M{function.m}")
-    if function.speed_rpm is not None:
-        words.append(f"REV{number(function.speed_rpm)}")
-    if function.position_deg is not None:
-        words.append(f"POS{number(function.position_deg)}")
-    return words + ([function.direction] if function.direction else [])
-
-
-def _control(function: ControlFunction) -> str:
-    if isinstance(function, CompensationSwitch):
-        return f"{function.axis}[COMP {'ON' if function.on else 'OFF'} {' '.join(function.kinds)}]"
-    selection = [] if function.on is None else ["G135" if function.on else "G137"]
-    if isinstance(function, SpindleFeedforward):
-        weight = [] if function.weight is None else [f"G136={number(function.weight)}"]
-        return f"{function.spindle}[{' '.join(selection + weight)}]"
-    weights = [f"{axis}{'=' if len(axis) > 1 else ''}{number(value)}" for axis, value in function.weights]
-    return " ".join(selection + (["G136", *weights] if weights else []))
-
-
-def _motion(motion: Motion) -> str:
-    if isinstance(motion, Dwell):
-        return f"dwell {number(motion.seconds)} s"
-    target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
-    if isinstance(motion, LinearMove):
-        return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
-    plane = f"{motion.plane[0]}{motion.plane[1]}"
-    return (
-        f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
-        f" sweep {number(motion.sweep)} feed {number(motion.feed)}{slope}"
-    )
-
-
-def _numbers(values: tuple[float, ...]) -> str:
-    return "(" + ", ".join(number(value) for value in values) + ")"
 
 
 def number(value: float) -> str:

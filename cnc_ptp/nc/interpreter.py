@@ -106,8 +106,8 @@ def _resolve(
     if block.error is not None:
         raise block.error
     if block.command is not None:
-        functions = block.command.run(channel, state, block, block.command)
-        return CanonicalBlock(block.source, functions, None, (), "") if functions else None
+        commanded = block.command.run(channel, state, block, block.command)
+        return CanonicalBlock(block.source, commanded, None, "") if commanded else None
     path = G_CODES[state.path]
     control: tuple[Function, ...] = ()
     moves = True
@@ -124,11 +124,11 @@ def _resolve(
     motion: Motion | None = None
     if moves and (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
-    before: tuple[Function, ...] = ()
+    functions: tuple[Function, ...] = ()
     if block.functions and (path.spindle or not path.own_words):
-        before = block_functions(channel, state, block)
+        functions = block_functions(channel, state, block)
     if control or block.controls:
-        before += control + bracketed_controls(channel, state, block, before)
+        functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None and not isinstance(motion, Dwell):
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None
@@ -143,10 +143,10 @@ def _resolve(
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":
         _require_speed(state, None)
-        before += end_of_links(state)
-    if motion is None and not before and not stop:
+        functions += end_of_links(state)
+    if motion is None and not functions and not stop:
         return None
-    return CanonicalBlock(block.source, before, motion, (), stop)
+    return CanonicalBlock(block.source, functions, motion, stop)
 
 
 def _require_speed(state: ModalState, motion: Motion | None) -> None:

@@ -6,9 +6,6 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 from cnc_ptp.nc import feedforward, functions, motions, spindles
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
-INITIAL_G = ("G00", "G17", "G90", "G162", "G165")
-"""Active at the start of a program; ModalState's defaults say the same."""
-
 
 def _plane(number: int) -> GCode:
     def select(state: ModalState) -> None:

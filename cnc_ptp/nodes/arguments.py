@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import click
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.machine.wiring import UNKNOWN_UNIT, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.number_range import STATES_PER_SECOND
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -33,7 +33,9 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @STATE_RATE
     def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
-            return node_class(read_machine(machine), name, **options)
+            node = node_class(read_machine(machine), name, **options)
+            node.setup()
+            return node
 
         sys.exit(process.run_node(make, name=name))
 
@@ -51,11 +53,13 @@ def call(command: click.Command) -> None:
     command.main(args=own, obj=ros)
 
 
-def require_unit(machine: MachineParameters, name: str, kinds: Iterable[str]) -> None:
+def require_unit(machine: MachineParameters, name: str, kinds: Collection[str]) -> None:
     """Raises CncError 26111 when the machine has no unit `name` of these kinds."""
     units = unit_kinds(machine)
     if units.get(name) not in kinds:
         known = ", ".join(unit for unit, kind in units.items() if kind in kinds) or "none"
         raise CncError(
-            26111, f"the machine has no {' or '.join(kinds)} '{name}'", f"the node does not start. Known: {known}"
+            UNKNOWN_UNIT,
+            f"the machine has no {' or '.join(kinds)} '{name}'",
+            f"the node does not start. Known: {known}",
         )

@@ -8,8 +8,8 @@ from cnc_ptp import action
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments
-from cnc_ptp.nodes.jobs import JobServer
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
@@ -27,6 +27,11 @@ class AxisNode(UnitNode):
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
         arguments.require_unit(machine, name, ["axis"])
         super().__init__(machine, build_unit(machine, name), **options)
+
+    def setup(self) -> None:
+        """As UnitNode, and the action."""
+        super().setup()
+        name = self.unit.name
         self._move_job = JobServer(
             self,
             action.MoveAxis,

@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.gate import CLOCK
+from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic

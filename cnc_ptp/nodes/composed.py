@@ -22,6 +22,7 @@ from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
 from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of, only_run
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
@@ -95,8 +96,8 @@ def stopped(end: EndRequest, nodes: list[Node], *, told: Callable[[], None]) -> 
     return end.over(STOP_TIMEOUT)
 
 
-def unit_nodes(machine: MachineParameters, job: Job, **options: Any) -> list[Node]:
-    nodes: list[Node] = []
+def unit_nodes(machine: MachineParameters, job: Job, **options: Any) -> list[UnitNode]:
+    nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
             entries = read_job(machine, program=job.program, scenario=job.scenario)
@@ -104,4 +105,5 @@ def unit_nodes(machine: MachineParameters, job: Job, **options: Any) -> list[Nod
             nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **options))
         else:
             nodes.append(UNIT_NODES[kind](machine, name, **options))
+        nodes[-1].setup()
     return nodes

@@ -6,12 +6,13 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import PLC, unit_kinds
-from cnc_ptp.nodes.lateness import Lateness
-from cnc_ptp.nodes.latest_blocks import LatestBlocks
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
@@ -24,12 +25,12 @@ from cnc_ptp.nodes.topics import (
     REPORT,
     block_topic,
 )
+from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit_view import UnitView
 
-READY_PERIOD = 0.05
 SUPERVISOR = "supervisor"
 """Source of events about node processes, which the supervisor prints itself."""
 
@@ -59,9 +60,9 @@ class RunMonitor(Node):
         self.diagnostics: dict[str, dict[str, str]] = {}
         self._histograms: dict[str, msg.LatenessHistogram] = {}
         self.standing: dict[str, bool] = {}
-        self._needed = []
+        self._needed: list[Subscription[Any]] = []
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
-        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
+        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         for channel, program in self.programs.items():
             self._need(msg.ChannelBlock, block_topic(channel), program.add)
         self._need(msg.PlcBlock, block_topic(PLC), self._on_plc)

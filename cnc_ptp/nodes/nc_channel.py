@@ -13,9 +13,9 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
-from cnc_ptp.nodes.jobs import JobServer
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
 
@@ -34,6 +34,11 @@ class ChannelNode(UnitNode):
         if program is not None and isinstance(unit, ChannelUnit):
             unit.prepare(program, read_file("NC program", program))
         super().__init__(machine, unit, **options)
+
+    def setup(self) -> None:
+        """As UnitNode, with handshakes and the action."""
+        super().setup()
+        name = self.unit.name
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
         self._program_job = JobServer(
             self,

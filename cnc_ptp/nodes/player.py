@@ -14,14 +14,14 @@ import click
 import rclpy
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from cnc_ptp.nodes import arguments, process
-from cnc_ptp.nodes.claim import claim_unit
 from cnc_ptp.nodes.observed_topics import is_input
 from cnc_ptp.nodes.topics import block_topic, published_topic
+from cnc_ptp.nodes.unit.claim import claim_unit
 from cnc_ptp.number_range import RATE
 from cnc_ptp.recording.qos import parse_profiles
 from cnc_ptp.recording.reader import RawMessage, TopicInfo, iter_messages, read_recording
@@ -127,8 +127,8 @@ def qos_of(info: TopicInfo) -> QoSProfile:
     offered = parse_profiles(info.qos, info.type_name)
     return QoSProfile(
         depth=offered.depth,
-        reliability=QoSReliabilityPolicy[offered.reliability.upper()],
-        durability=QoSDurabilityPolicy[offered.durability.upper()],
+        reliability=ReliabilityPolicy[offered.reliability.upper()],
+        durability=DurabilityPolicy[offered.durability.upper()],
         lifespan=Duration(seconds=offered.lifespan),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any
 
@@ -14,17 +14,17 @@ import click
 from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.job import read_job
-from cnc_ptp.machine.wiring import PLC, build_unit, unit_kinds
+from cnc_ptp.machine.silence import Silence
+from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, process
-from cnc_ptp.nodes.coupling_services import CouplingServices
-from cnc_ptp.nodes.jog_topics import PATIENCE as JOG_PATIENCE
-from cnc_ptp.nodes.jog_topics import JogTopics
-from cnc_ptp.nodes.joint_states import JointStates
-from cnc_ptp.nodes.sequence import is_newer
-from cnc_ptp.nodes.silence import SilentTopics
+from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
+from cnc_ptp.nodes.bridge.jog_topics import JogTopics
+from cnc_ptp.nodes.bridge.joint_states import JointStates
+from cnc_ptp.nodes.bridge.sequence import is_newer
 from cnc_ptp.nodes.topics import LIFE_SIGN, PLC_INPUT, PLC_TOPICS, plc_quality, plc_topic
-from cnc_ptp.nodes.unit_node import UnitNode
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.nodes.unit.unit_node import UnitNode
+from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Block, Command, Severity
@@ -58,26 +58,36 @@ class PlcBridgeNode(UnitNode):
         self._served: set[str] = set()
         self._life_sign_timeout = machine.life_sign_timeout_ms / 1000.0
         self._life_sign_counter: int | None = None
-        self._life_sign_seen = 0.0
-        self._life_sign_lost = False
         self._channels = list(machine.channels)
+        units: Mapping[str, ChannelParameters | AxisParameters | SpindleParameters]
         units = {**machine.channels, **machine.axes, **machine.spindles}
         self._highest_override = {name: unit.max_override_percent for name, unit in units.items()}
         self._spindles = list(machine.spindles)
-        self._overrides = SilentTopics(self._life_sign_timeout)
+        self._life_signs = Silence(self._life_sign_timeout)
+        self._overrides = Silence(self._life_sign_timeout, rhythm=True)
+        self._factors = Silence(self._life_sign_timeout)
         self._jogs = JogTopics(self._warn)
-        for unit, kind in unit_kinds(machine).items():
+        self._joints_due = 0
+
+    def setup(self) -> None:
+        """As UnitNode, with the topics of the PLC, couplings and joint states."""
+        super().setup()
+        for unit, kind in self._kinds.items():
             for name, message_type in PLC_TOPICS.get(kind, {}).items():
                 self.create_subscription(
                     message_type, plc_topic(unit, name), self._receiver(unit, name), plc_quality(message_type)
                 )
         self.create_timer(JOG_PATIENCE / 4.0, self._watch_jogs)
         self.create_subscription(msg.LifeSign, LIFE_SIGN, self._on_life_sign, PLC_INPUT)
-        self._factors: dict[str, float] = {}
         self.create_timer(self._life_sign_timeout / 4.0, self._watch_topics)
-        self._answers = CouplingServices(self, list(machine.axes))
-        self._joints = JointStates(self, machine)
-        self._joints_due = 0
+        self._answers = CouplingServices(self, self.plc, list(self._machine.axes))
+        self._joints = JointStates(self, self._machine)
+
+    @property
+    def plc(self) -> PlcUnit:
+        """The unit."""
+        assert isinstance(self.unit, PlcUnit)
+        return self.unit
 
     def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
         """What is done with the messages of a topic in PLC_TOPICS."""
@@ -125,19 +135,16 @@ class PlcBridgeNode(UnitNode):
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
         """Not valid, no number, or no slave: nothing changes."""
         topic = f"/{unit}/coupling_factor"
-        coupled = self._is_coupled(unit)
+        coupled = self.plc.is_coupled(unit)
         if not coupled:
             self._last.pop(topic, None)  # what comes first after the next coupling is a change
         if not (coupled and message.valid):
-            self._factors.pop(topic, None)
+            self._factors.forget(topic)
             return None
         if not math.isfinite(message.factor):
             return None
-        self._factors[topic] = time.monotonic()
+        self._factors.heard(topic, time.monotonic())
         return Command(unit, "set_cyclic_factor", {"factor": message.factor})
-
-    def _is_coupled(self, axis: str) -> bool:
-        return isinstance(self.unit, PlcUnit) and self.unit.is_coupled(axis)
 
     def _watch_topics(self) -> None:
         """One timer for all of them: the executor warns of many."""
@@ -147,27 +154,27 @@ class PlcBridgeNode(UnitNode):
 
     def _watch_factors(self) -> None:
         """A factor whose topic falls silent freezes: the last one holds, and people are told."""
-        for topic, heard in list(self._factors.items()):
-            if time.monotonic() - heard > self._life_sign_timeout:
-                del self._factors[topic]
-                silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
-                self._warn(FACTOR_STALE, f"plc: no message on {topic} for {silence}; the factor stays as it is")
+        for topic in self._factors.fallen_silent(time.monotonic()):
+            self._warn(FACTOR_STALE, f"plc: no message on {topic} for {self._silence}; the factor stays as it is")
 
     def _watch_overrides(self) -> None:
         """The last override of a spindle holds when its topic falls silent, and people are told."""
-        for topic in self._overrides.fallen_silent(time.monotonic()):
-            silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
-            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {silence}; the override stays as it is")
+        for topic in sorted(self._overrides.fallen_silent(time.monotonic())):
+            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {self._silence}; the override stays as it is")
+
+    @property
+    def _silence(self) -> str:
+        return f"{self._life_sign_timeout * 1000.0:.0f} ms"
 
     def _on_external_setpoint(self, axis: str, message: msg.ExternalSetpoint) -> None:
         """With a cycle it counts for that one, without (0) for the next block; `valid` = false ends the motion."""
         topic = f"/{axis}/external_setpoint"
-        if not is_newer(message.sequence, self._sequence.get(topic, 0)) or not isinstance(self.unit, PlcUnit):
+        if not is_newer(message.sequence, self._sequence.get(topic, 0)):
             return
         self._sequence[topic] = message.sequence
         direction = message.direction if message.valid else 0
         row = [message.cycle, message.position, message.velocity, message.acceleration, direction]
-        self.unit.setpoints.arrive(axis, row)
+        self.plc.setpoints.arrive(axis, row)
 
     def _on_jog(self, axis: str, message: msg.Jog) -> None:
         velocity = self._jogs.heard(axis, message, time.monotonic(), paced=self.paced)
@@ -180,8 +187,8 @@ class PlcBridgeNode(UnitNode):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
 
     def input(self, command: Command) -> None:
-        if isinstance(self.unit, PlcUnit):
-            self.unit.input(command)
+        """A command of a person or an outside PLC, for the next block."""
+        self.plc.input(command)
 
     def run_ended(self) -> None:
         self._answers.end()
@@ -192,11 +199,11 @@ class PlcBridgeNode(UnitNode):
 
     def after_block(self, block: Block) -> None:
         """Joint states of the cycle before the block: the last one that axes and spindles have reported."""
-        if not self._state_period or block.first_cycle < max(self._joints_due, 1) or not isinstance(self.unit, PlcUnit):
+        if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return
         self._joints_due = block.first_cycle + self._state_period
         if self._joints.wanted:
-            self._joints.publish(self.unit.reported, self.stamp(block.first_cycle - 1))
+            self._joints.publish(self.plc.reported, self.stamp(block.first_cycle - 1))
 
     def stop_all(self) -> None:
         """Controlled stop of everything; the run ends when all stands, with or without a duration."""
@@ -205,24 +212,19 @@ class PlcBridgeNode(UnitNode):
     def _on_life_sign(self, message: msg.LifeSign) -> None:
         if message.counter != self._life_sign_counter:
             self._life_sign_counter = message.counter
-            self._life_sign_seen = time.monotonic()
-            self._life_sign_lost = False
+            self._life_signs.heard(LIFE_SIGN, time.monotonic())
 
     def _watch_life_sign(self) -> None:
         """The external PLC: its silence holds the feed, which only its next command takes away."""
-        silent = time.monotonic() - self._life_sign_seen
-        if self._life_sign_counter is None or self._life_sign_lost or silent <= self._life_sign_timeout:
+        if not self._life_signs.fallen_silent(time.monotonic()):
             return
-        self._life_sign_lost = True
         for channel in self._channels:
             self._served.add(f"/{channel}/feed_hold")
             hold = Command(channel, "feed_hold", {"enabled": True})
             self._last[f"/{channel}/feed_hold"] = hold.arguments_json  # so that the PLC's next `off` counts as a change
             self.input(hold)
-        silence = f"{self._life_sign_timeout * 1000.0:.0f} ms"
-        self._warn(
-            LIFE_SIGN_LOST, f"plc: no life sign of the external PLC for {silence}; feed hold is set on all channels"
-        )
+        reason = f"no life sign of the external PLC for {self._silence}"
+        self._warn(LIFE_SIGN_LOST, f"plc: {reason}; feed hold is set on all channels")
 
     def _warn(self, error_id: int, text: str) -> None:
         self.tell(Severity.WARNING, error_id, text)
@@ -250,13 +252,15 @@ def command(
 
     def make() -> PlcBridgeNode:
         parameters = read_machine(machine)
-        return PlcBridgeNode(
+        node = PlcBridgeNode(
             parameters,
             scenario=read_job(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
             recorders=recorders,
             state_rate=state_rate,
         )
+        node.setup()
+        return node
 
     sys.exit(process.run_node(make, name=PLC))
 

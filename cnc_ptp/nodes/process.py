@@ -20,7 +20,7 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.parameters import BARE_WORDS, require_known_parameters
+from cnc_ptp.nodes.unit.parameters import BARE_WORDS, require_known_parameters
 from cnc_ptp.ros_arguments import ros_arguments
 
 FAILED = 1
@@ -38,6 +38,8 @@ SPIN_TIMEOUT = 0.1
 START_PATIENCE = 2.0
 """Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
 other's start, and nothing has moved yet."""
+READY_PERIOD = 0.05
+"""Seconds between two looks of a node that waits until everybody is there."""
 PATIENCE = 3.0
 """Seconds that a process which was told to end may take to bring its work to an end."""
 

@@ -47,7 +47,6 @@ NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
 QUIET = 0.2
 """Seconds without a message after which a recorder that was told to end has seen everything."""
-READY_PERIOD = 0.05
 FLUSH_PERIOD = 0.25
 
 
@@ -94,7 +93,7 @@ class RecorderNode(Node):
             self.create_subscription(message_type, topic, received, quality, raw=True)
         received = self._guarded(self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
-        self._ready_timer = self.create_timer(READY_PERIOD, self._report_ready)
+        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         self.create_timer(FLUSH_PERIOD, self._guarded(self._flush))
 
     def _guarded(self, callback: Callable[..., None]) -> Callable[..., None]:

@@ -8,8 +8,8 @@ from typing import Any
 from cnc_ptp import action
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments
-from cnc_ptp.nodes.jobs import JobServer
-from cnc_ptp.nodes.unit_node import UnitNode
+from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Block, Command, SpindleBlock
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
@@ -24,8 +24,13 @@ class SpindleNode(UnitNode):
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
         arguments.require_unit(machine, name, ["spindle"])
         super().__init__(machine, build_unit(machine, name), **options)
-        stop = Command(name, "stop", {})
         self._numbers: dict[str, int] = {}
+
+    def setup(self) -> None:
+        """As UnitNode, and the actions."""
+        super().setup()
+        name = self.unit.name
+        stop = Command(name, "stop", {})
         self._jobs = (
             JobServer(
                 self,

@@ -10,20 +10,22 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import rclpy
+from rclpy.client import Client
 
 from cnc_ptp import srv
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
-from cnc_ptp.machine.gate import CLOCK
+from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.claim import require_free
 from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
+from cnc_ptp.nodes.unit.claim import require_free
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.recording.closing import close_cut
@@ -88,7 +90,7 @@ class Supervisor:
         if self._watched:
             monitor.watch_units()
         self._event_publisher = EventPublisher(monitor)
-        self._stop_all = monitor.create_client(srv.Execute, f"{PLC}/stop_all")
+        self._stop_all: Client[Any, Any] = monitor.create_client(srv.Execute, f"{PLC}/stop_all")
         previous = {number: signal.signal(number, self._note_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         self._monitor = monitor
         self._started_at = time.monotonic()

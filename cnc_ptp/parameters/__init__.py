@@ -1,18 +1,24 @@
-"""Parameter lists: declarations, machine files, typed views in kernel units.
+"""Parameter lists by stage; each imports from those before it only.
 
-`load_machine(text, file)` is pure, `read_machine(path)` reads a file. Both give MachineParameters or raise
-ParameterError with everything that is wrong.
+declare/    what there is: names, types, ranges, units, texts (declarations.yaml)
+read/       a machine file -> one ParameterSet a node, each value checked against its declaration
+view/       parameter sets -> what the kernel uses: AxisParameters and others, in kernel units
+check/      parameters against each other: problems, and notices for the log
+
+errors.py and units.py are below all of them, loader.py above: `load_machine(text, file)` is pure, `read_machine(path)`
+reads a file. Both give MachineParameters or raise ParameterError with everything that is wrong.
 """
 
-from cnc_ptp.parameters.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
-from cnc_ptp.parameters.declarations import Declaration, catalogue
-from cnc_ptp.parameters.descriptors import RosDescriptor, ros_descriptors
+from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.loader import load_machine, read_machine
-from cnc_ptp.parameters.parameter_set import ParameterSet
-from cnc_ptp.parameters.spindle_view import CurveParameters, GearParameters, SpindleParameters
-from cnc_ptp.parameters.synchronisation import Synchronisation
-from cnc_ptp.parameters.views import AxisParameters, MachineParameters
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view.axis_view import AxisParameters
+from cnc_ptp.parameters.view.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
+from cnc_ptp.parameters.view.descriptors import RosDescriptor, ros_descriptors
+from cnc_ptp.parameters.view.machine_view import MachineParameters
+from cnc_ptp.parameters.view.spindle_view import CurveParameters, GearParameters, SpindleParameters
+from cnc_ptp.parameters.view.synchronisation import Synchronisation
 
 __all__ = [
     "AxisParameters",

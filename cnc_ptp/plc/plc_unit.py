@@ -6,12 +6,13 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
+from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.plc.axis_groups import AxisGroups
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.setpoint_file import placed
-from cnc_ptp.plc.setpoint_queue import SETPOINTS, SetpointQueue
+from cnc_ptp.plc.setpoint_queue import SetpointQueue
 from cnc_ptp.plc.spindle_groups import spindle_answers
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (

@@ -9,10 +9,10 @@ from typing import Any
 import yaml
 
 from cnc_ptp.axis.external import read_setpoints
+from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
 from cnc_ptp.plc.cam_file import parse_cam
 from cnc_ptp.plc.setpoint_file import parse_setpoints
-from cnc_ptp.plc.setpoint_queue import SETPOINTS
 from cnc_ptp.protocol.blocks import Command
 from cnc_ptp.protocol.commands import (
     BAD_ARGUMENT,

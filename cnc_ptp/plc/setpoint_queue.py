@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from heapq import heappop, heappush
 from itertools import count
 
+from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.axis.faults import BAD_SETPOINT
 from cnc_ptp.plc.setpoint_file import Row
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
 
-SETPOINTS = "external_setpoints"
 HORIZON = 60.0
 """Seconds that a setpoint of a topic may lie ahead."""
 

@@ -163,24 +163,24 @@ class AxisBlock:
 
     first_cycle: int
     count: int
-    set_position: list[float]
-    set_velocity: list[float]
-    set_acceleration: list[float]
-    set_jerk: list[float]
-    actual_position: list[float]
-    actual_velocity: list[float]
-    following_error: list[float]
-    command_velocity: list[float]
-    feedforward_velocity: list[float]
-    additive_velocity: list[float]
-    additive_torque: list[float]
-    friction_current: list[float]
-    actual_torque: list[float]
-    feedforward_percent: list[float]
-    override_percent: list[float]
-    state: list[int]
-    status_bits: list[int]
-    error_id: list[int]
+    set_position: list[float] = field(default_factory=list)
+    set_velocity: list[float] = field(default_factory=list)
+    set_acceleration: list[float] = field(default_factory=list)
+    set_jerk: list[float] = field(default_factory=list)
+    actual_position: list[float] = field(default_factory=list)
+    actual_velocity: list[float] = field(default_factory=list)
+    following_error: list[float] = field(default_factory=list)
+    command_velocity: list[float] = field(default_factory=list)
+    feedforward_velocity: list[float] = field(default_factory=list)
+    additive_velocity: list[float] = field(default_factory=list)
+    additive_torque: list[float] = field(default_factory=list)
+    friction_current: list[float] = field(default_factory=list)
+    actual_torque: list[float] = field(default_factory=list)
+    feedforward_percent: list[float] = field(default_factory=list)
+    override_percent: list[float] = field(default_factory=list)
+    state: list[int] = field(default_factory=list)
+    status_bits: list[int] = field(default_factory=list)
+    error_id: list[int] = field(default_factory=list)
     master: str = ""
     target_velocity: float = 0.0
     modulo_begin: float = 0.0
@@ -212,28 +212,28 @@ class SpindleBlock:
 
     first_cycle: int
     count: int
-    set_speed_rpm: list[float]
-    actual_speed_rpm: list[float]
-    programmed_speed_rpm: list[float]
-    set_acceleration_deg_s2: list[float]
-    set_position_deg: list[float]
-    actual_position_deg: list[float]
-    target_position_deg: list[float]
-    distance_to_go_deg: list[float]
-    following_error_deg: list[float]
-    override_percent: list[float]
-    feedforward_percent: list[float]
-    drive_output: list[int]
-    mode: list[int]
-    gear: list[int]
-    speed_reached: list[bool]
-    speed_zero: list[bool]
-    in_position: list[bool]
-    referenced: list[bool]
-    gear_change_active: list[bool]
-    status_bits: list[int]
-    state: list[int]
-    error_id: list[int]
+    set_speed_rpm: list[float] = field(default_factory=list)
+    actual_speed_rpm: list[float] = field(default_factory=list)
+    programmed_speed_rpm: list[float] = field(default_factory=list)
+    set_acceleration_deg_s2: list[float] = field(default_factory=list)
+    set_position_deg: list[float] = field(default_factory=list)
+    actual_position_deg: list[float] = field(default_factory=list)
+    target_position_deg: list[float] = field(default_factory=list)
+    distance_to_go_deg: list[float] = field(default_factory=list)
+    following_error_deg: list[float] = field(default_factory=list)
+    override_percent: list[float] = field(default_factory=list)
+    feedforward_percent: list[float] = field(default_factory=list)
+    drive_output: list[int] = field(default_factory=list)
+    mode: list[int] = field(default_factory=list)
+    gear: list[int] = field(default_factory=list)
+    speed_reached: list[bool] = field(default_factory=list)
+    speed_zero: list[bool] = field(default_factory=list)
+    in_position: list[bool] = field(default_factory=list)
+    referenced: list[bool] = field(default_factory=list)
+    gear_change_active: list[bool] = field(default_factory=list)
+    status_bits: list[int] = field(default_factory=list)
+    state: list[int] = field(default_factory=list)
+    error_id: list[int] = field(default_factory=list)
     gear_request: int = 0
     master: str = ""
     master_wanted: str = ""

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from cnc_ptp.protocol.axis_states import AxisStateCode
+from cnc_ptp.protocol.blocks import SpindleBlock
+
 
 class SpindleMode(IntEnum):
     """HLI mode bits of a spindle."""
@@ -29,3 +32,12 @@ class SpindleBit(IntEnum):
     JOB_ERROR = 1 << 7
     ORDERS_WAIT = 1 << 8
     """Commands wait for their turn."""
+
+
+def held_by_override(block: SpindleBlock) -> bool:
+    """The spindle is to move at the end of its block, and is at a standstill because of override 0."""
+    if block.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED:
+        return False
+    turns_on = block.state[-1] == AxisStateCode.CONTINUOUS_MOTION
+    moves = turns_on or (block.state[-1] == AxisStateCode.DISCRETE_MOTION and block.distance_to_go_deg[-1] != 0.0)
+    return moves and block.override_percent[-1] == 0.0 and block.set_speed_rpm[-1] == 0.0

@@ -78,6 +78,20 @@ class Unit(ABC):
         if command == "upstream_lost":
             self.lost.add(arguments["source"])
 
+    @property
+    def master(self) -> str | None:
+        """The unit whose block of the same cycles `step` needs besides; known after the commands for these cycles."""
+        return None
+
+    @property
+    def led(self) -> bool:
+        """A channel or a master moves this unit: that one says what there is to wait for."""
+        return False
+
+    def waits_for(self) -> str:
+        """What the unit needs to go on that time alone does not bring; empty while it goes on or has nothing to do."""
+        return ""
+
     def lag_share(self, block: Block) -> float:
         """Following error at the end of a block just computed as a part of its limit; 0 while nothing limits it."""
         return 0.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.parameters.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.encoder import uses_feed_constant
 from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.recording.layout import Records

@@ -11,6 +11,7 @@ from math import copysign
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
+from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
 from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
@@ -71,7 +72,7 @@ class Jobs:
 
     def _approach(self, cycle: int) -> None:
         spindle = self._spindle
-        spindle.state, spindle.mode = self._state(self._current().homes)
+        self._begin(homes=self._current().homes)
         speed = spindle.motion(cycle)[1]
         limit = self._job_speed if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
         spindle.ramp_to(cycle, copysign(min(abs(speed), limit), speed))
@@ -82,13 +83,13 @@ class Jobs:
         job = self._current()
         return self._homing_speed if job.homes else self._spindle.limits.positioning(job.speed).speed
 
-    @staticmethod
-    def _state(homes: bool) -> tuple[S, SpindleMode]:
-        return (S.HOMING, SpindleMode.HOMING) if homes else (S.DISCRETE_MOTION, SpindleMode.POSITION)
+    def _begin(self, *, homes: bool) -> None:
+        self._spindle.take(T.HOME if homes else T.POSITION)
+        self._spindle.mode = SpindleMode.HOMING if homes else SpindleMode.POSITION
 
     def _search(self, cycle: int) -> None:
         spindle = self._spindle
-        spindle.state, spindle.mode = self._state(True)
+        self._begin(homes=True)
         self._search_from = None
         speed = spindle.motion(cycle)[1]
         direction = copysign(1.0, speed) if speed else float(spindle.parameters.preferred_direction or 1)
@@ -100,7 +101,7 @@ class Jobs:
 
     def _position(self, cycle: int) -> None:
         spindle, job = self._spindle, self._current()
-        spindle.state, spindle.mode = self._state(False)
+        self._begin(homes=False)
         position, speed, _ = spindle.motion(cycle)
         limits = spindle.limits.positioning(job.speed * spindle.override)
         turn = spindle.gear.modulo_high - spindle.gear.modulo_low
@@ -124,12 +125,12 @@ class Jobs:
     def _halt(self, cycle: int) -> None:
         spindle = self._spindle
         if spindle.state != S.HOMING:
-            spindle.state = S.STOPPING
+            spindle.take(T.STOP)
         spindle.mode = SpindleMode.HOMING if spindle.state == S.HOMING else SpindleMode.STOP
         spindle.ramp_to(cycle, 0.0)
 
     def _shift(self, cycle: int) -> None:
-        self._spindle.state = S.STANDSTILL
+        self._spindle.take(T.CHANGE_GEAR)
 
     # on the way
 
@@ -252,7 +253,7 @@ class Jobs:
         spindle, job = self._spindle, self._current()
         spindle.work.finish()
         spindle.programmed_speed = 0.0
-        spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
+        spindle.take(T.FINISH if spindle.powered else T.FINISH_WITHOUT_POWER)
         if job.name in ("home", "stop"):
             spindle.mode = SpindleMode.STOP
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import ENABLE_REMOVED, STILL_TURNING
 from cnc_ptp.spindle.spindle import Spindle
 
@@ -25,13 +26,13 @@ class PowerCommands:
         spindle.powered = enabled
         spindle.unsettled = True
         if spindle.work.gear_request:
-            spindle.state = S.DISABLED
+            spindle.take(T.POWER_OFF)
             spindle.work.forget_rotation()
             return f"spindle {spindle.name}: power on counts when the PLC has changed the gear" if enabled else None
         if enabled:
             self._switch_on(cycle)
         elif spindle.state == S.STANDSTILL:
-            spindle.state = S.DISABLED
+            spindle.take(T.POWER_OFF)
         elif spindle.state != S.ERROR_STOP:
             spindle.fault(cycle, ENABLE_REMOVED, "the enable was removed in motion")
         return None
@@ -39,7 +40,7 @@ class PowerCommands:
     def _switch_on(self, cycle: int) -> None:
         spindle = self._spindle
         if spindle.state == S.DISABLED:
-            spindle.state = S.STANDSTILL
+            spindle.take(T.POWER_ON)
             spindle.exact_stop.forget()
             if spindle.loop.measures_position:
                 spindle.place(cycle, spindle.loop.position)
@@ -58,5 +59,5 @@ class PowerCommands:
             spindle.refuse("reset", STILL_TURNING, reason)
         spindle.error_id = 0
         spindle.job_error = False
-        spindle.state = S.STANDSTILL if spindle.powered else S.DISABLED
+        spindle.take(T.RESET if spindle.powered else T.RESET_WITHOUT_POWER)
         spindle.unsettled = True

@@ -12,6 +12,8 @@ from cnc_ptp.errors import CncError, Value, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
+from cnc_ptp.protocol.transitions import Transition
+from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
 from cnc_ptp.spindle.job import Work
@@ -151,6 +153,10 @@ class Spindle:
     def override(self) -> float:
         return 1.0 if self.override_suppressed else self.override_percent / 100.0
 
+    def take(self, transition: Transition) -> None:
+        """Changes the state; nothing else does."""
+        self.state = transition.leave(self.state)
+
     # endless rotation
 
     def rotate(self, cycle: int, speed: float) -> None:
@@ -158,7 +164,7 @@ class Spindle:
         self.take_tool(cycle)
         self.end_job()
         self.mode = SpindleMode.CW if copysign(1.0, speed) > 0.0 else SpindleMode.CCW
-        self.state = S.CONTINUOUS_MOTION
+        self.take(T.ROTATE)
         self.programmed_speed = speed
         self._open_loop(cycle)
         self.apply_speed(cycle)
@@ -175,12 +181,15 @@ class Spindle:
         self.speed_was_reached, self.speed_lost_at = False, -inf
 
     def stop(self, cycle: int) -> None:
-        """Down to speed 0 at once; a job in work is given up."""
+        """Down to speed 0 at once; an active job is given up."""
+        self._brake(cycle)
+        self.take(T.STOP)
+
+    def _brake(self, cycle: int) -> None:
         self.end_job()
         self.mode = SpindleMode.STOP
         self.programmed_speed = self.wanted_speed = 0.0
         self._await_speed()
-        self.state = S.STOPPING
         self._open_loop(cycle)
         self.ramp_to(cycle, 0.0)
 
@@ -265,10 +274,10 @@ class Spindle:
         had_job = self.work.job is not None or not self.speed_was_reached
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
-        self.stop(cycle)
+        self._brake(cycle)
         self.error_id = error_id
         self.job_error = had_job
-        self.state = S.ERROR_STOP
+        self.take(T.FAULT)
         self.when_faulted()
         text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
         self.report_error(cycle, error_id, text)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any
 
 from cnc_ptp.control.control_loop import State
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import Orders
@@ -29,9 +30,6 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
     ORDERS_WAIT,
 ) = map(int, SpindleBit)
 """As plain numbers: operations on members of an IntEnum take microseconds."""
-FIELDS = 22
-Columns = list[Any]
-"""The fields of SpindleBlock with a value per cycle, in their order."""
 
 
 class SpindleCycles:
@@ -42,24 +40,26 @@ class SpindleCycles:
         self._jobs = jobs
         self._orders = orders
         self._rotation = rotation
+        self._patience = spindle.parameters.speed_time / spindle.cycle_time
+        """P-MACH-00050 in cycles, 0 for ever."""
+        self._position_patience = spindle.parameters.target_time / spindle.cycle_time
+        """P-MACH-00014 in cycles, 0 for ever."""
 
-    def block(self, first_cycle: int, count: int) -> Columns:
-        """All columns of a block."""
-        columns: Columns = [[] for _ in range(FIELDS)]
-        done = 0
+    def block(self, first_cycle: int, count: int) -> SpindleBlock:
+        """A block with all that has a value per cycle."""
         long = not any(0.0 < patience < count for patience in (self._patience, self._position_patience))
         if long and self._undisturbed(first_cycle, first_cycle + count - 1):
-            columns = self._undisturbed_cycles(first_cycle, count)
-            done = len(columns[0])
-        if done < count:
-            rows = [self._cycle(cycle) for cycle in range(first_cycle + done, first_cycle + count)]
-            for column, values in zip(columns, zip(*rows, strict=True), strict=True):
-                column += values
-        return columns
+            block = self._undisturbed_cycles(first_cycle, count)
+        else:
+            block = SpindleBlock(first_cycle, count)
+        for cycle in range(first_cycle + len(block.state), first_cycle + count):
+            self._cycle(cycle, block)
+        return block
 
     # any cycle
 
-    def _cycle(self, cycle: int) -> tuple[Any, ...]:
+    def _cycle(self, cycle: int, block: SpindleBlock) -> None:
+        """Adds one cycle, in which anything can happen."""
         spindle = self._spindle
         loop = spindle.loop
         spindle.watch_loop(cycle, spindle.motion(cycle)[1])
@@ -69,7 +69,7 @@ class SpindleCycles:
             self._jobs.advance(cycle, actual_speed)
             position, speed, acceleration = spindle.motion(cycle)
         elif speed == 0.0 and spindle.state == S.STOPPING:
-            spindle.state = S.STANDSTILL
+            spindle.take(T.FINISH)
         actual = loop.actual_position(position, speed)
         setpoint = position, speed, acceleration, 0.0
         self._watch_following_error(cycle, setpoint)
@@ -80,30 +80,28 @@ class SpindleCycles:
         loop.command(setpoint, on=spindle.state != S.DISABLED)
         self._orders.watch()
         self._note_settled(cycle)
-        return (
-            speed / DEG_S_PER_RPM,
-            actual_speed / DEG_S_PER_RPM,
-            spindle.programmed_speed / DEG_S_PER_RPM,
-            acceleration,
-            position,
-            actual,
-            target,
-            target - position,
-            position - actual,
-            spindle.override_percent,
-            loop.feedforward_percent,
-            loop.drive_output,
-            spindle.mode,
-            spindle.gear.stage,
-            reached,
-            abs(actual_speed) <= spindle.gear.zero_speed,
-            spindle.holds_position and spindle.exact_stop.reached,
-            spindle.referenced,
-            spindle.work.changes_gear,
-            self._bits(),
-            spindle.state,
-            spindle.error_id,
-        )
+        block.set_speed_rpm.append(speed / DEG_S_PER_RPM)
+        block.actual_speed_rpm.append(actual_speed / DEG_S_PER_RPM)
+        block.programmed_speed_rpm.append(spindle.programmed_speed / DEG_S_PER_RPM)
+        block.set_acceleration_deg_s2.append(acceleration)
+        block.set_position_deg.append(position)
+        block.actual_position_deg.append(actual)
+        block.target_position_deg.append(target)
+        block.distance_to_go_deg.append(target - position)
+        block.following_error_deg.append(position - actual)
+        block.override_percent.append(spindle.override_percent)
+        block.feedforward_percent.append(loop.feedforward_percent)
+        block.drive_output.append(loop.drive_output)
+        block.mode.append(spindle.mode)
+        block.gear.append(spindle.gear.stage)
+        block.speed_reached.append(reached)
+        block.speed_zero.append(abs(actual_speed) <= spindle.gear.zero_speed)
+        block.in_position.append(spindle.holds_position and spindle.exact_stop.reached)
+        block.referenced.append(spindle.referenced)
+        block.gear_change_active.append(spindle.work.changes_gear)
+        block.status_bits.append(self._bits())
+        block.state.append(spindle.state)
+        block.error_id.append(spindle.error_id)
 
     def _watch_following_error(self, cycle: int, setpoint: State) -> None:
         spindle, control = self._spindle, self._spindle.loop.control
@@ -125,16 +123,6 @@ class SpindleCycles:
             held = spindle.state == S.CONTINUOUS_MOTION and spindle.programmed_speed != 0.0
             return not held and abs(actual_speed) <= spindle.gear.zero_speed
         return abs(actual_speed - wanted) <= spindle.parameters.speed_reached_band * abs(wanted)
-
-    @property
-    def _patience(self) -> float:
-        """P-MACH-00050 in cycles, 0 for ever."""
-        return self._spindle.parameters.speed_time / self._spindle.cycle_time
-
-    @property
-    def _position_patience(self) -> float:
-        """P-MACH-00014 in cycles, 0 for ever."""
-        return self._spindle.parameters.target_time / self._spindle.cycle_time
 
     @property
     def _awaits_speed(self) -> bool:
@@ -220,8 +208,8 @@ class SpindleCycles:
         lost = 0.0 < self._position_patience <= away_for and spindle.holds_position
         return (late and self._awaits_speed) or lost
 
-    def _undisturbed_cycles(self, first_cycle: int, count: int) -> Columns:
-        """The same as `_cycle` for such cycles; up to a following error too large."""
+    def _undisturbed_cycles(self, first_cycle: int, count: int) -> SpindleBlock:
+        """A block of such cycles, the same as `_cycle` makes; up to a following error too large."""
         spindle = self._spindle
         gear, state = spindle.gear, spindle.state
         motions = spindle.motions(first_cycle, count)
@@ -232,36 +220,38 @@ class SpindleCycles:
         positions, speeds, accelerations, _ = map(list, zip(*motions[:n], strict=True)) if n else ([], [], [], [])
         target = spindle.target
         reached = self._speeds_reached(actual_speeds)
-        columns = [
-            [speed / DEG_S_PER_RPM for speed in speeds],
-            [speed / DEG_S_PER_RPM for speed in actual_speeds],
-            [spindle.programmed_speed / DEG_S_PER_RPM] * n,
-            accelerations,
-            positions,
-            actuals,
-            [*positions] if target is None else [target] * n,
-            [0.0] * n if target is None else [target - position for position in positions],
-            errors,
-            [spindle.override_percent] * n,
-            percents,
-            outputs,
-            [spindle.mode] * n,
-            [gear.stage] * n,
-            reached,
-            [abs(speed) <= gear.zero_speed for speed in actual_speeds],
-            self._positions_reached(first_cycle, actuals, actual_speeds),
-            [spindle.referenced] * n,
-            [False] * n,
-            [self._bits()] * n,
-            [state] * n,
-            [spindle.error_id] * n,
-        ]
+        block = SpindleBlock(
+            first_cycle,
+            count,
+            set_speed_rpm=[speed / DEG_S_PER_RPM for speed in speeds],
+            actual_speed_rpm=[speed / DEG_S_PER_RPM for speed in actual_speeds],
+            programmed_speed_rpm=[spindle.programmed_speed / DEG_S_PER_RPM] * n,
+            set_acceleration_deg_s2=accelerations,
+            set_position_deg=positions,
+            actual_position_deg=actuals,
+            target_position_deg=[*positions] if target is None else [target] * n,
+            distance_to_go_deg=[0.0] * n if target is None else [target - position for position in positions],
+            following_error_deg=errors,
+            override_percent=[spindle.override_percent] * n,
+            feedforward_percent=percents,
+            drive_output=outputs,
+            mode=[spindle.mode] * n,
+            gear=[gear.stage] * n,
+            speed_reached=reached,
+            speed_zero=[abs(speed) <= gear.zero_speed for speed in actual_speeds],
+            in_position=self._positions_reached(first_cycle, actuals, actual_speeds),
+            referenced=[spindle.referenced] * n,
+            gear_change_active=[False] * n,
+            status_bits=[self._bits()] * n,
+            state=[state] * n,
+            error_id=[spindle.error_id] * n,
+        )
         if not all(reached) or not spindle.speed_was_reached:
             for cycle, there in enumerate(reached, first_cycle):
                 spindle.note_speed(cycle, there)
         if spindle.unsettled and n:
             self._settle(first_cycle + n - 1)
-        return columns
+        return block
 
     def _speeds_reached(self, actual_speeds: list[float]) -> list[bool]:
         """`_speed_reached` of many cycles with the same wanted speed."""

@@ -14,6 +14,7 @@ from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Refusal, Severity, SpindleBlock
+from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
@@ -74,6 +75,7 @@ class SpindleUnit(Unit):
         self._turned_down: tuple[int, CncError | None] = 0, None
         self._passed_on: list[Command] = []
         self._refused: list[Refusal] = []
+        self._last_block: SpindleBlock | None = None
 
     def _make_drive(self, gear: GearParameters, position: float) -> Drive:
         plant = replace(gear.control.plant, start_position=position)
@@ -84,8 +86,21 @@ class SpindleUnit(Unit):
 
     @property
     def master(self) -> str | None:
-        """The spindle whose block of the same cycles is needed before this one's can be computed."""
+        """See Unit."""
         return self._coupling.master or None
+
+    def waits_for(self) -> str:
+        """See Unit: the PLC, an override above 0, or a speed that does not come."""
+        block = self._last_block
+        if block is None:
+            return ""
+        if block.gear_request:
+            return f"spindle {self.name} waits for the PLC to change to gear {block.gear_request}"
+        reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
+        if reason and open_orders:
+            return f"spindle {self.name} still has {open_orders} of the PLC's commands to do: {reason}"
+        held = reason and block.state[-1] == S.DISCRETE_MOTION
+        return f"spindle {self.name} is held by override 0" if held else ""
 
     # commands
 
@@ -253,8 +268,7 @@ class SpindleUnit(Unit):
         if isinstance(master, SpindleBlock):
             self._follow(first_cycle, master)
         self._take_turns(first_cycle)
-        columns = self._cycles.block(first_cycle, count)
-        block = SpindleBlock(first_cycle, count, *columns)
+        block = self._cycles.block(first_cycle, count)
         warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")
         if warning is not None:
             self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
@@ -264,6 +278,7 @@ class SpindleUnit(Unit):
         block.plc_commands, block.plc_acknowledged = self._orders.taken, self._orders.acknowledged
         block.refused, self._refused = self._refused, []
         block.commands, self._passed_on = self._passed_on, []
+        self._last_block = block
         return block
 
     def _follow(self, cycle: int, master: SpindleBlock) -> None:
@@ -311,3 +326,11 @@ class SpindleUnit(Unit):
             if can_follow(self.spindle):
                 reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {error.reason}"
                 self.spindle.fault(cycle, SLAVE_CANNOT, reason)
+
+
+def why_it_stays(block: SpindleBlock) -> str:
+    """Why a spindle that is to move does not get there; empty while it goes on by itself."""
+    if held_by_override(block):
+        return "it is held by override 0"
+    steady = block.state[-1] == S.CONTINUOUS_MOTION and block.set_acceleration_deg_s2[-1] == 0.0
+    return "its speed is not reached" if steady and not block.speed_reached[-1] else ""

@@ -24,7 +24,7 @@ from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.axis.monitoring import Monitoring
-from cnc_ptp.parameters.control_view import ControlParameters, LagMonitoring
+from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import CycleTick, Severity

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from replay_support import bits, replay
 from slave_support import COMPENSATING, COMPENSATION, DYNAMICS, PROTECTED, SlaveBench, axes_named
-from test_determinism import bits, replay
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from channel_spindle_support import MVS_SLM, MVS_SLP, machine_of, three
 from machine_support import MILL, MachineBench
-from test_determinism import bits, replay
+from replay_support import bits, replay
 
 from cnc_ptp.parameters import MachineParameters, ToolLimits
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from machine_support import MachineBench
 from path_superposition_support import PathBench, assert_no_jump, expected, mill, profile
+from replay_support import bits, replay
 from superposition_support import generator
-from test_determinism import bits, replay
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C

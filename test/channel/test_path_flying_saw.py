@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from path_superposition_support import PathBench, assert_no_jump, mill, profile
-from test_determinism import bits, replay
+from replay_support import bits, replay
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 

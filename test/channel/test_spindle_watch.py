@@ -1,15 +1,16 @@
-"""What a channel hears of its spindle when commands of others come in the very block of its own."""
+"""What a channel notices of its spindle when commands of others come in the very block of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import count
 
 from machine_support import CYCLE_TIME, UnitBench
 from spindle_support import two_gears
 
-from cnc_ptp.channel.spindle_reports import Condition
-from cnc_ptp.channel.spindle_watch import SpindleWatch
-from cnc_ptp.channel.waits import Wait
+from cnc_ptp.channel.commanded_spindle import CommandedSpindle
+from cnc_ptp.channel.spindle_reports import Condition, Expectation
+from cnc_ptp.parameters import ChannelSpindle, Synchronisation
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 GEAR = "does not turn at {0} rpm as it was told, its gear is being changed"
@@ -19,23 +20,31 @@ class Watched:
     """A spindle with two gears that a channel watches."""
 
     def __init__(self) -> None:
-        self.bench = UnitBench(SpindleUnit(two_gears(), cycle_time=CYCLE_TIME))
+        parameters = two_gears()
+        self.bench = UnitBench(SpindleUnit(parameters, cycle_time=CYCLE_TIME))
         self.name = self.bench.unit.name
-        self.watch = SpindleWatch("channel")
+        words = ChannelSpindle("S", self.name, *[Synchronisation.MOS] * 5)
+        self.spindle = CommandedSpindle(words, parameters, channel="channel", ranks=count())
 
     def speed(self, speed_rpm: float, command: str = "start") -> None:
         """The channel commands a speed, M3 or S."""
         words = {"direction": "cw"} if command == "start" else {}
         self.bench.accepted(command, source="channel", speed_rpm=speed_rpm, **words)
-        self.watch.note([Wait(self.name, Condition.SPEED, speed_rpm)], self.bench.cycle)
+        self.expect(Condition.SPEED, speed_rpm)
 
-    def hears(self, blocks: int, waited_for: tuple[str, ...] = (), *, runs: bool = True) -> Iterator[str]:
+    def expect(self, condition: Condition, value: float = 0.0) -> None:
+        """The command goes out with the next block."""
+        self.spindle.expect(Expectation(self.name, condition, value))
+        self.spindle.send(self.bench.cycle)
+
+    def notices(self, blocks: int, *, watched: bool = True) -> Iterator[str]:
         """Texts of the next blocks, without the name of the spindle."""
         for _ in range(blocks):
             self.bench.run(10)
-            reports = {self.name: self.bench.last}
-            texts = self.watch.read(self.bench.cycle, reports, waited_for, runs=runs)
-            yield from (text.removeprefix(f"spindle {self.name} ") for text in texts)
+            self.spindle.read(self.bench.cycle, self.bench.last)
+            text = self.spindle.lost_speed(self.bench.cycle, watched=watched)
+            if text:
+                yield text.removeprefix(f"spindle {self.name} ")
 
 
 def test_a_gear_change_in_the_block_of_m3() -> None:
@@ -43,7 +52,7 @@ def test_a_gear_change_in_the_block_of_m3() -> None:
     watched = Watched()
     watched.speed(1000.0)
     watched.bench.accepted("select_gear", stage=2)
-    assert list(watched.hears(1)) == [GEAR.format(1000)] and list(watched.hears(50)) == []
+    assert list(watched.notices(1)) == [GEAR.format(1000)] and list(watched.notices(50)) == []
 
 
 def test_m3_in_the_block_of_a_gear_change() -> None:
@@ -51,11 +60,11 @@ def test_m3_in_the_block_of_a_gear_change() -> None:
     watched = Watched()
     watched.bench.accepted("select_gear", stage=2)
     watched.speed(1000.0)
-    assert list(watched.hears(50)) == []
+    assert list(watched.notices(50)) == []
     watched.bench.accepted("gear_changed")
-    assert list(watched.hears(50)) == [] and watched.bench.last.speed_reached[-1]
+    assert list(watched.notices(50)) == [] and watched.bench.last.speed_reached[-1]
     watched.bench.accepted("select_gear", stage=1)
-    assert list(watched.hears(1)) == [GEAR.format(1000)]
+    assert list(watched.notices(1)) == [GEAR.format(1000)]
 
 
 def test_commands_that_wait_from_the_block_of_m3_on() -> None:
@@ -64,53 +73,53 @@ def test_commands_that_wait_from_the_block_of_m3_on() -> None:
     watched.speed(1000.0)
     for position in (90.0, 180.0):
         watched.bench.accepted("orient", position_deg=position, source="plc")
-    assert list(watched.hears(10)) == []
-    assert list(watched.hears(20)) == ["does not turn at 1000 rpm as it was told, it is in DiscreteMotion"]
+    assert list(watched.notices(10)) == []
+    assert list(watched.notices(20)) == ["does not turn at 1000 rpm as it was told, it is in DiscreteMotion"]
 
 
 def test_a_new_speed_that_waits_for_a_gear() -> None:
     """The spindle has turned for the channel before: that its S waits does not make it turn."""
     watched = Watched()
     watched.speed(1000.0)
-    assert list(watched.hears(30)) == []
+    assert list(watched.notices(30)) == []
     watched.bench.accepted("select_gear", stage=2)
     watched.speed(2000.0, "set_speed")
-    assert list(watched.hears(1)) == [GEAR.format(2000)] and list(watched.hears(50)) == []
+    assert list(watched.notices(1)) == [GEAR.format(2000)] and list(watched.notices(50)) == []
 
 
 def test_m3_after_m5_has_its_turn_to_wait_for() -> None:
     watched = Watched()
     watched.speed(1000.0)
-    assert list(watched.hears(30)) == []
+    assert list(watched.notices(30)) == []
     watched.bench.accepted("stop", source="channel")
-    watched.watch.note([Wait(watched.name, Condition.STANDSTILL)], watched.bench.cycle)
-    assert list(watched.hears(30)) == []
+    watched.expect(Condition.STANDSTILL)
+    assert list(watched.notices(30)) == []
     watched.bench.accepted("select_gear", stage=2)
     watched.speed(1000.0)
-    assert list(watched.hears(50)) == []
+    assert list(watched.notices(50)) == []
 
 
-def test_a_path_that_waits_hears_nothing() -> None:
+def test_a_path_that_waits_notices_nothing() -> None:
     watched = Watched()
     watched.speed(1000.0)
-    assert list(watched.hears(5, (watched.name,))) == []
+    assert list(watched.notices(5, watched=False)) == []
     watched.bench.accepted("select_gear", stage=2)
-    assert list(watched.hears(5, (watched.name,))) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
+    assert list(watched.notices(5, watched=False)) == [] and list(watched.notices(1)) == [GEAR.format(1000)]
 
 
-def test_a_program_hears_what_has_happened_before_it() -> None:
+def test_a_program_notices_what_has_happened_before_it() -> None:
     """Between two manual blocks; only the second one is told."""
     watched = Watched()
     watched.speed(1000.0)
-    assert list(watched.hears(30, runs=False)) == []
+    assert list(watched.notices(30, watched=False)) == []
     watched.bench.accepted("select_gear", stage=2)
-    assert list(watched.hears(5, runs=False)) == [] and list(watched.hears(1)) == [GEAR.format(1000)]
+    assert list(watched.notices(5, watched=False)) == [] and list(watched.notices(1)) == [GEAR.format(1000)]
 
 
-def test_nothing_is_heard_of_earlier_programs() -> None:
+def test_nothing_is_noticed_of_earlier_programs() -> None:
     watched = Watched()
     watched.speed(1000.0)
-    assert list(watched.hears(30)) == []
-    watched.watch.forget()
+    assert list(watched.notices(30)) == []
+    watched.spindle.expect_nothing()
     watched.bench.accepted("select_gear", stage=2)
-    assert list(watched.hears(50)) == []
+    assert list(watched.notices(50)) == []

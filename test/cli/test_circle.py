@@ -10,7 +10,7 @@ import pytest
 import yaml
 from commands_support import MILL, PTP, call, changed_mill
 
-from cnc_ptp.commands.circle_report import CircleTest, Variant, VariantResult, comparison_lines
+from cnc_ptp.commands.commissioning.circle_report import CircleTest, Variant, VariantResult, comparison_lines
 from cnc_ptp.plots.colours import DARK
 from cnc_ptp.recording.reader import read_recording
 

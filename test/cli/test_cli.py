@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from cnc_ptp import __main__ as entries
 from cnc_ptp import cli
 from cnc_ptp.channel.program_report import ProgramReport
-from cnc_ptp.commands.simulate import Result, print_summary
+from cnc_ptp.commands.run.simulate import Result, print_summary
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
 from cnc_ptp.protocol.notes import Note, Notes
@@ -434,7 +434,7 @@ INTERRUPTED = "P-ERR-26106 the command was interrupted (SIGINT) while no run was
 
 @pytest.mark.usefixtures("handlers")
 def test_an_interrupt_during_the_start_is_told(monkeypatch, capsys):
-    monkeypatch.setattr("cnc_ptp.commands.simulate.read_machine", lambda path: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr("cnc_ptp.commands.run.simulate.read_machine", lambda path: os.kill(os.getpid(), signal.SIGINT))
     monkeypatch.setattr(sys, "argv", ["cnc_ptp", "simulate", str(MILL)])
     with pytest.raises(SystemExit) as ended:
         entries.main()

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.commands.command_words import read_arguments
+from cnc_ptp.commands.client.command_words import read_arguments
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes.machine_client import arguments_of, request_of, services_of
+from cnc_ptp.nodes.client.machine_client import arguments_of, request_of, services_of
 
 
 def read(kind, command, *words, unit="u"):

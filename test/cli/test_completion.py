@@ -82,7 +82,7 @@ def test_a_running_machine_is_asked(monkeypatch):
 
     asked = []
     monkeypatch.setattr(
-        "cnc_ptp.nodes.machine_client.connected",
+        "cnc_ptp.nodes.client.machine_client.connected",
         lambda patience: asked.append(ros_arguments().namespace) or Machine(),
     )
     assert completed("do", "--namespace", "/cell") == ["x", "channel"]

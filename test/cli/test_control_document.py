@@ -20,13 +20,13 @@ NAMES = {
     25019: ("parameters.errors", "DENOMINATOR", "denominator"),
     25020: ("parameters.errors", "TELEGRAM", "object"),
     70082: ("axis.faults", "TARGET_MISSED", "away from its target"),
-    70350: ("parameters.control_checks", "NO_ADDITIVE_VELOCITY", "additive velocity"),
-    70351: ("parameters.control_checks", "NO_ADDITIVE_TORQUE", "additive torque"),
+    70350: ("parameters.check.control_checks", "NO_ADDITIVE_VELOCITY", "additive velocity"),
+    70351: ("parameters.check.control_checks", "NO_ADDITIVE_TORQUE", "additive torque"),
     70495: ("control.commands", "NO_FRICTION_COMPENSATION", "friction compensation"),
-    110579: ("parameters.control_checks", "GEAR_DENOMINATOR", "denominator of a gear ratio"),
-    110591: ("parameters.control_checks", "TABLE_NOT_ASCENDING", "ascend"),
-    110592: ("parameters.control_checks", "TABLE_MISSING", "mode unknown"),
-    110641: ("parameters.runtime_change", "MEMORY_IS_FIXED", "max_points cannot be changed"),
+    110579: ("parameters.check.control_checks", "GEAR_DENOMINATOR", "denominator of a gear ratio"),
+    110591: ("parameters.check.control_checks", "TABLE_NOT_ASCENDING", "ascend"),
+    110592: ("parameters.check.control_checks", "TABLE_MISSING", "mode unknown"),
+    110641: ("parameters.check.runtime_change", "MEMORY_IS_FIXED", "max_points cannot be changed"),
     27001: ("commissioning.faults", "UNKNOWN_AXIS", "unknown axis"),
     27002: ("commissioning.faults", "NOT_RECORDED", "not recorded"),
     27003: ("commissioning.faults", "TOO_SHORT", "too short"),
@@ -46,7 +46,7 @@ NAMES = {
     27023: ("commissioning.faults", "NOTHING_TO_COMPARE", "nothing to compare"),
     27024: ("commissioning.faults", "BAD_PLANE", "plane"),
     27030: ("commissioning.faults", "BAD_OUTPUT", "overwrite an input"),
-    27040: ("commands.axis_data", "NO_MACHINE", "no machine file"),
+    27040: ("commands.commissioning.axis_data", "NO_MACHINE", "no machine file"),
 }
 """Number: module and name of the constant, and what the document must say of it."""
 PROGRAM = {
@@ -65,12 +65,12 @@ PROGRAM = {
 }
 """Faults of the NC language: name, what their text says, what the document says."""
 NOTICES = {
-    70348: ('"P-AXIS-00390": 70348', "P-AXIS-00390"),
-    70349: ('"P-AXIS-00389": 70349', "P-AXIS-00389"),
+    70348: ("ids.VORSTEUER_ACCELERATION_DELAY_TIME: 70348", "P-AXIS-00390"),
+    70349: ("ids.VORSTEUER_VELOCITY_DELAY_TIME: 70349", "P-AXIS-00389"),
     110465: ("NO_TORQUE_SCALE = 110465", "no additive torque is put out"),
     110473: ("NO_JERK_DENOMINATOR = 110473", "100 is used"),
 }
-"""Warnings of a machine file: source of parameters/control_notices.py, what the document says."""
+"""Warnings of a machine file: source of parameters/check/control_notices.py, what the document says."""
 
 
 def documented():
@@ -107,5 +107,5 @@ def test_numbers_of_program_faults(number):
 @pytest.mark.parametrize("number", NOTICES)
 def test_numbers_of_warnings(number):
     source, said = NOTICES[number]
-    assert source in inspect.getsource(import_module("cnc_ptp.parameters.control_notices"))
+    assert source in inspect.getsource(import_module("cnc_ptp.parameters.check.control_notices"))
     assert said in documented()[number]

@@ -8,7 +8,7 @@ import pytest
 import yaml
 from commands_support import MILL, call, changed_mill, paste
 
-from cnc_ptp.commands.curve_report import curve_yaml
+from cnc_ptp.commands.commissioning.curve_report import curve_yaml
 from cnc_ptp.commissioning.curve_fit import curve_fault, fit_curve
 from cnc_ptp.commissioning.curve_points import CurvePoint
 from cnc_ptp.commissioning.faults import CURVE_RISES

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
-from cnc_ptp.commands.replay import replay_blocks
+from cnc_ptp.commands.run.replay import replay_blocks
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.verify import verify

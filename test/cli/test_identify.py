@@ -9,7 +9,7 @@ import yaml
 from commands_support import MILL, PTP, call, changed_mill, paste, recording_of
 
 from cnc_ptp.parameters import load_machine, read_machine
-from cnc_ptp.parameters.stability import stability_limit
+from cnc_ptp.parameters.check.stability import stability_limit
 from cnc_ptp.recording.reader import read_recording
 
 

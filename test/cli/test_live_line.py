@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from cnc_ptp.commands.progress import LiveLine, clock_text, line_text
+from cnc_ptp.commands.run.progress import LiveLine, clock_text, line_text
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import ChannelBlock
 from cnc_ptp.protocol.unit_view import UnitView, view_of

@@ -3,9 +3,9 @@
 import pytest
 from commands_support import call
 
-from cnc_ptp.commands.params import group_lines, hit_lines
-from cnc_ptp.parameters.declarations import catalogue
-from cnc_ptp.parameters.reference import find
+from cnc_ptp.commands.look.params import group_lines, hit_lines
+from cnc_ptp.parameters.declare.declarations import catalogue
+from cnc_ptp.parameters.declare.reference import find
 
 
 def ids(*words):

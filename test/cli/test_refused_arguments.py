@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from cnc_ptp import cli
-from cnc_ptp.commands.simulate import write
+from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from cnc_ptp.channel.program_report import ProgramReport
-from cnc_ptp.commands import run as command
-from cnc_ptp.commands.progress import RunProgress
-from cnc_ptp.commands.run import print_summary
-from cnc_ptp.nodes.lateness import Lateness
+from cnc_ptp.commands.run import run as command
+from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.commands.run.run import print_summary
+from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 from cnc_ptp.protocol.notes import Note

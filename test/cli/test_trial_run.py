@@ -9,7 +9,7 @@ import sys
 import pytest
 from commands_support import MILL, changed_mill
 
-from cnc_ptp.commands.trial_run import run_trial
+from cnc_ptp.commands.commissioning.trial_run import run_trial
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import yaml
 
-from cnc_ptp.commands import axis_data
-from cnc_ptp.commands.identify import DYNAMIC_SPEEDS, REST
+from cnc_ptp.commands.commissioning import axis_data
+from cnc_ptp.commands.commissioning.identify import DYNAMIC_SPEEDS, REST
 from cnc_ptp.commissioning.dynamics import fit_drive
 from cnc_ptp.commissioning.excitation import forth_and_back, highest_velocity
 from cnc_ptp.commissioning.inertia import fit_inertia

@@ -12,7 +12,7 @@ from loop_support import NO_FRICTION, VEL, control, feedforward, make_loop, moti
 from cnc_ptp.control.commands import ControlCommands
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.errors import CncError
-from cnc_ptp.parameters.control_view import FrictionParameters
+from cnc_ptp.parameters.view.control_view import FrictionParameters
 
 FRICTION = replace(NO_FRICTION, permitted=True, active=True, velocities=(0.0,), currents=(5.0,))
 CRUISE = motion([(100, 25_000.0), (100, -25_000.0), (1400, 0.0)])

@@ -32,7 +32,7 @@ from loop_support import (
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives import make_drive
 from cnc_ptp.control.velocity_controller import VelocityController
-from cnc_ptp.parameters.control_view import ControlParameters, LagMonitoring
+from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 
 COMMANDED = ("velocity", "position", "lag", "torque")
 MECHANICS = replace(PLANT, cascaded=True, coulomb=0.3, static=0.5, stribeck_velocity=2.0, viscous=1e-3)

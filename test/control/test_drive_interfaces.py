@@ -20,7 +20,7 @@ from cnc_ptp.control.drives import (
     VirtualDrive,
     make_drive,
 )
-from cnc_ptp.parameters.control_view import ControlParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters
 
 
 def values(drive: Drive) -> tuple[float, float, float]:

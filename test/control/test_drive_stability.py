@@ -10,7 +10,7 @@ from loop_support import LIMITS, T
 
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives import make_drive
-from cnc_ptp.parameters.stability import position_loop
+from cnc_ptp.parameters.check.stability import position_loop
 
 CASCADE = ("simulation.model: CASCADED", "getriebe.0.load: 0.6")
 SERCOS_TORQUE = (

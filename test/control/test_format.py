@@ -23,7 +23,7 @@ SERVO_MOTOR = (
     "antr.torque_scale_num: 500",
     "antr.torque_scale_denom: 1",
 )
-"""TF5200 feedforward 4.2 (the load as seed_readings.md has it)."""
+"""TF5200 feedforward 4.2 (the load as docs/control.md has it)."""
 
 
 # ---------------------------------------------------------------- examples of the manuals

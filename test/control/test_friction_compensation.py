@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cnc_ptp.control.friction_compensation import FrictionTable
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.control_view import FrictionParameters
+from cnc_ptp.parameters.view.control_view import FrictionParameters
 
 VELOCITIES, CURRENTS = (0.0, 2.0, 5.0, 40.0), (90.0, 60.0, 70.0, 120.0)
 FRICTION = replace(NO_FRICTION, permitted=True, active=True, velocities=VELOCITIES, currents=CURRENTS)

@@ -24,7 +24,7 @@ from loop_support import (
 from scipy.signal import lfilter
 
 from cnc_ptp.control.lag_monitor import LagMonitor
-from cnc_ptp.parameters.control_view import LagMonitoring
+from cnc_ptp.parameters.view.control_view import LagMonitoring
 
 FIXED = LagMonitoring(kind=4, moving_limit=3.0, standstill_limit=0.5, dynamic=1000, filter_time=0.0)
 SETTLING = 100

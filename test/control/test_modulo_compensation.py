@@ -11,7 +11,7 @@ from loop_support import PLANT, T, control, make_loop, motion, trapezoid
 from cnc_ptp.control.drives import FirstOrderDrive, PositionCommandedDrive
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.control_view import ModuloError
+from cnc_ptp.parameters.view.control_view import ModuloError
 
 INCREMENT = 0.01
 """deg"""

@@ -9,7 +9,7 @@ import pytest
 from plant_support import Point, T, friction_torque, frictionless, plant
 
 from cnc_ptp.control.drives import CascadedDrive
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 
 SHORT_STEPS = 1000
 

@@ -9,7 +9,7 @@ import pytest
 from plant_support import Point, Reference, T, frictionless, plant
 
 from cnc_ptp.control.drives import CascadedDrive
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 
 Inputs = list[tuple[float, float, float]]
 THERE_AND_BACK: Inputs = [(20.0 * math.sin(2.0 * math.pi * 2.0 * cycle * T), 0.0, 0.0) for cycle in range(600)]

@@ -8,7 +8,7 @@ import pytest
 from format_support import control_of
 
 from cnc_ptp.control.drives import Drive, TelegramDrive, VirtualDrive, make_drive
-from cnc_ptp.parameters.control_view import ControlParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters
 
 T = 0.001
 ENCODER = ("getriebe.0.wegaufz: 1", "getriebe.0.wegaufn: 10")

@@ -9,8 +9,9 @@ from graph_support import PTP
 
 from cnc_ptp import msg, srv
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import coupling_services, process
-from cnc_ptp.nodes.coupling_services import CouplingServices
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.bridge import coupling_services
+from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
@@ -24,7 +25,7 @@ class Bridge:
         self.is_over = False
         self.services = {}
         self.answers = []
-        self.couplings = CouplingServices(self, ["x", "y"])
+        self.couplings = CouplingServices(self, self.unit, ["x", "y"])
 
     def create_subscription(self, _type, _topic, record, _quality):
         self.record = record
@@ -139,6 +140,7 @@ def test_a_waiting_call_costs_no_processor_time():
     """Without a clock no block goes out: the call waits until its deadline. A polled coroutine took all of a core."""
     process.initialise()
     plc = PlcBridgeNode(read_machine(PTP))
+    plc.setup()
     client = rclpy.create_node("asks", enable_rosout=False)
     executor = process.EventsExecutor()
     try:

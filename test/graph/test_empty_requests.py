@@ -8,8 +8,8 @@ from cnc_ptp import action, msg, srv
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
-from cnc_ptp.nodes.requests import given_arguments, objection
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.nodes.unit.requests import given_arguments, objection
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
 from cnc_ptp.protocol.commands import COMMANDS
@@ -143,6 +143,7 @@ def test_an_empty_message_is_not_valid(message):
 def bridge():
     process.initialise()
     node = PlcBridgeNode(read_machine(MILL))
+    node.setup()
     yield node
     node.destroy_node()
     rclpy.try_shutdown()

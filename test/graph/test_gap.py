@@ -49,6 +49,7 @@ class Bench:
         process.initialise()
         self.outside = Surroundings()
         self.axis = AxisNode(read_machine(str(PTP)), "x")
+        self.axis.setup()
         self.executor = process.EventsExecutor()
         for node in (self.outside, self.axis):
             self.executor.add_node(node)

@@ -6,7 +6,7 @@ from itertools import count
 import pytest
 
 from cnc_ptp import msg
-from cnc_ptp.nodes.jog_topics import PATIENCE, JogTopics
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE, JogTopics
 
 SILENT = (26134, "plc: no message on /x/jog for 200 ms; the jog of x ends")
 SECOND = (26144, "plc: /x/jog has a second client '{}'; it is ignored while the first one jogs x")

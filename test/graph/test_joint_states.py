@@ -9,7 +9,7 @@ from builtin_interfaces.msg import Time
 from graph_support import MILL, PTP
 
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.nodes.joint_states import JointStates, load_per_motor_torque
+from cnc_ptp.nodes.bridge.joint_states import JointStates, load_per_motor_torque
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
 

@@ -8,8 +8,8 @@ from graph_support import MILL, run
 from live_support import call
 
 from cnc_ptp.nodes import player, process
-from cnc_ptp.nodes.coupling_services import PATIENCE as COUPLING_PATIENCE
-from cnc_ptp.nodes.machine_client import PATIENCE, MachineClient, integer_range
+from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, integer_range
 
 
 @pytest.fixture
@@ -20,9 +20,9 @@ def client(monkeypatch):
     client.kinds = {"x": "axis", "plc": "plc"}
     monkeypatch.setattr(client, "_answer", lambda *_: None)
     for command in ("do", "jog", "status"):
-        monkeypatch.setattr(f"cnc_ptp.commands.{command}.connected", lambda: nullcontext(client))
+        monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.connected", lambda: nullcontext(client))
     for command in ("jog", "status"):
-        monkeypatch.setattr(f"cnc_ptp.commands.{command}.PATIENCE", 0.2)
+        monkeypatch.setattr(f"cnc_ptp.commands.client.{command}.PATIENCE", 0.2)
     yield client
     client.destroy_node()
     rclpy.try_shutdown()

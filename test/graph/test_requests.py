@@ -4,8 +4,8 @@ import pytest
 import yaml
 
 from cnc_ptp import msg, srv
-from cnc_ptp.nodes.requests import contradiction, given_arguments
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.nodes.unit.requests import contradiction, given_arguments
 from cnc_ptp.protocol.commands import COMMANDS
 
 

@@ -15,8 +15,8 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import axis, clock, nc_channel, player, plc_bridge, process, recorder, spindle
-from cnc_ptp.nodes.parameters import declare_parameters, require_known_parameters
-from cnc_ptp.nodes.unit_node import MACHINE
+from cnc_ptp.nodes.unit.parameters import declare_parameters, require_known_parameters
+from cnc_ptp.nodes.unit.unit_node import MACHINE
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
 from cnc_ptp.recording.writer import Recording
@@ -181,7 +181,7 @@ def overrides_of(path, units, machine):
 
 
 def sections(path):
-    from cnc_ptp.parameters.source import read_sections
+    from cnc_ptp.parameters.read.source import read_sections
 
     return {section.node: section.entries for section in read_sections(Path(path).read_text(), str(path))[0]}
 
@@ -200,6 +200,7 @@ def test_remaps_logs_and_namespace_take_effect():
         process.initialise()
         try:
             node = axis.AxisNode(read_machine(PTP), "x")
+            node.setup()
             topics = {publisher.topic_name for publisher in node.publishers}
             services = {service.service_name for service in node.services}
             level = node.get_logger().get_effective_level()

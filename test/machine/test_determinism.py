@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from collections import defaultdict
 from typing import Any
 
 import pytest
 from machine_support import MILL, PTP, ROOT, MachineBench
+from replay_support import bits, replay
 
-from cnc_ptp.commands.replay import is_refused_coupling
-from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord
 
 BRACKET = (ROOT / "examples" / "bracket.nc").read_text(encoding="utf-8")
@@ -54,26 +49,6 @@ RICH = """
 - {at: 16.6, to: channel, do: mdi, text: "G02 X40 Y20 I10 J0 F3000 M03 S500"}
 - {at: 17.5, to: plc, do: stop_all}
 """
-
-
-def bits(bench: MachineBench) -> dict[str, list[str]]:
-    """All blocks as text: repr shows every bit of a float and tells 0.0 from -0.0."""
-    return {name: [repr(block) for block in blocks] for name, blocks in bench.blocks.items()}
-
-
-def replay(machine: MachineParameters, records: list[CommandRecord], blocks: int) -> dict[str, list[str]]:
-    """A run of fresh units that get the recorded commands, converted back from JSON, at their cycles."""
-    offline = OfflineMachine(machine, build_units(machine, end_when_idle=False))
-    by_cycle: dict[int, dict[str, list[Command]]] = defaultdict(lambda: defaultdict(list))
-    for record in records:
-        arguments = json.loads(record.arguments_json)
-        if not is_refused_coupling(record, machine):
-            by_cycle[record.cycle][record.target].append(Command(record.target, record.command, arguments))
-    texts: dict[str, list[str]] = defaultdict(list)
-    for number in range(blocks):
-        for name, output in offline.replay_tick(by_cycle.get(number * machine.block_cycles, {})).items():
-            texts[name].append(repr(output.block))
-    return texts
 
 
 def service_calls(bench: MachineBench) -> None:

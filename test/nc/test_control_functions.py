@@ -25,7 +25,7 @@ def test_axes_in_any_order_and_spelling(on, weights, seed):
     words += ["G136"] * bool(weights) + [f"{axis}{value}" for axis, value in weights.items()]
     draw.shuffle(words)
     text = "".join(draw.choice([word, word.lower()]) + draw.choice([" ", "", " (note) "]) for word in words)
-    functions = [function for block in run(text + "\nG0 X1") for function in block.before]
+    functions = [function for block in run(text + "\nG0 X1") for function in block.functions]
     if not words:
         assert functions == []
         return
@@ -50,13 +50,13 @@ def test_spindles_in_any_order_and_spelling(spindle, on, weight, seed):
     text = f"{spindle}[{draw.choice(['', ' '])}{' '.join(words)}{draw.choice(['', ' '])}]"
     if words:
         (block,) = run(draw.choice([text, text.lower()]))
-        assert block.before == (SpindleFeedforward(spindle, on, weight),) and block.motion is None
+        assert block.functions == (SpindleFeedforward(spindle, on, weight),) and block.motion is None
 
 
 @given(st.permutations(["ON", "FRICT"]), st.sampled_from(AXES), st.sampled_from(["", " ", "\t "]))
 def test_words_behind_comp_have_no_order(words, axis, blank):
     (block,) = run(f"{axis}[{blank}COMP {' '.join(words)}{blank}]")
-    assert block.before == (CompensationSwitch(axis, True, ("FRICT",)),)
+    assert block.functions == (CompensationSwitch(axis, True, ("FRICT",)),)
 
 
 def test_feedforward_beside_a_motion_does_not_take_its_words():

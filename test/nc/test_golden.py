@@ -1,10 +1,10 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
+from canonical_text import format_block
 from nc_support import HERE, machine
 
 from cnc_ptp.nc import faults, interpreter, spindle_faults
-from cnc_ptp.nc.canonical import format_block
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program

@@ -1,15 +1,16 @@
 """The language rule by rule: spelling of words, modal state, functions and their order, structure, skip, MDI, veto."""
 
 import pytest
+from canonical_text import format_block
 from nc_support import lines, run
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source, format_block
+from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState
-from cnc_ptp.nc.vocabulary import G_CODES, INITIAL_G
+from cnc_ptp.nc.vocabulary import G_CODES
 
 AXES = ("X", "Y", "Z")
 
@@ -72,11 +73,8 @@ def test_path_function_and_feed_are_modal():
 
 def test_initial_state_is_the_documented_one():
     state = ModalState()
-    path, plane, dimension, centre, correction = INITIAL_G
-    assert (G_CODES[state.path].name, f"G{state.plane}") == (path, plane)
-    assert dimension == ("G90" if state.absolute else "G91")
-    assert centre == ("G161" if state.centre_absolute else "G162")
-    assert correction == "G165"
+    assert (G_CODES[state.path].name, f"G{state.plane}") == ("G00", "G17")
+    assert state.absolute and not state.centre_absolute  # G90, G162
 
 
 def test_blocks_without_anything_to_do_give_nothing():
@@ -314,12 +312,7 @@ def test_check_takes_start_limits_and_veto():
     assert [error.number for error in check(arc, "a.nc", AXES, centre_offset_ratio=0.001)] == [21035]
 
 
-def test_format_block_shows_functions_after_the_motion():
-    block = CanonicalBlock(
-        Source("a.nc", 4, 30, "N30"),
-        (),
-        LinearMove((0.1 + 0.2, -1e-9, 1e6), True, 0.0),
-        (AuxiliaryFunction("M", 9),),
-        "M00",
-    )
-    assert format_block(block) == "4:N30 | rapid (0.3, 0, 1000000) | after M9 | M00"
+def test_format_block_rounds_to_six_decimals():
+    functions, move = (AuxiliaryFunction("M", 9),), LinearMove((0.1 + 0.2, -1e-9, 1e6), True, 0.0)
+    block = CanonicalBlock(Source("a.nc", 4, 30, "N30"), functions, move, "M00")
+    assert format_block(block) == "4:N30 | M9 | rapid (0.3, 0, 1000000) | M00"

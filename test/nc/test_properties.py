@@ -2,12 +2,13 @@
 
 import random
 
+from canonical_text import format_block
 from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
 from cnc_ptp.nc.blocks import careful_block, plain_block
-from cnc_ptp.nc.canonical import LinearMove, Source, format_block
+from cnc_ptp.nc.canonical import LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program

@@ -98,7 +98,7 @@ def test_automatic_selection_keeps_the_gear_or_takes_the_first_that_fits(
     program = parse_program("\n".join(f"S{speed}" for speed in speeds), "gears.nc", mdi=True)
     blocks = interpret(program, (0.0,), ("X",), table)
     if all(high == 0.0 for _, high in ranges):
-        assert all(len(block.before) == 1 for block in blocks)
+        assert all(len(block.functions) == 1 for block in blocks)
         return
     for speed in speeds:
         fitting = [n for n, (low, high) in enumerate(ranges, start=1) if high and low <= speed <= high]
@@ -108,7 +108,7 @@ def test_automatic_selection_keeps_the_gear_or_takes_the_first_that_fits(
             return
         if active not in fitting:
             active = max(fitting) if from_top else min(fitting)
-        assert next(blocks).before == (GearChange("S", active), SpindleFunction("S", None, float(speed)))
+        assert next(blocks).functions == (GearChange("S", active), SpindleFunction("S", None, float(speed)))
 
 
 def test_ranges_include_their_limits() -> None:

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from cnc_ptp.parameters import MachineParameters, ParameterError, load_machine
-from cnc_ptp.parameters.stability import stability_limit
+from cnc_ptp.parameters.check.stability import stability_limit
 
 EFFECT = "; the node does not start"
 

@@ -5,8 +5,8 @@ import re
 import pytest
 
 from cnc_ptp.parameters import Declaration, Synchronisation, catalogue
-from cnc_ptp.parameters.declarations import AXIS_LETTERS, DATA_TYPES, LISTS, NODE_KINDS, split_indexes
-from cnc_ptp.parameters.values import checked_value
+from cnc_ptp.parameters.declare.declarations import AXIS_LETTERS, DATA_TYPES, LISTS, NODE_KINDS, split_indexes
+from cnc_ptp.parameters.read.values import checked_value
 
 IDS = sorted(catalogue().by_id)
 PREFIXES = {

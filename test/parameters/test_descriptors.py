@@ -3,7 +3,7 @@
 import pytest
 
 from cnc_ptp.parameters import RosDescriptor, load_machine, ros_descriptors
-from cnc_ptp.parameters.declarations import NODE_KINDS, catalogue
+from cnc_ptp.parameters.declare.declarations import NODE_KINDS, catalogue
 
 TEXT = """\
 /machine: {ros__parameters: {channels: [ch], axes: [x], spindles: [s]}}

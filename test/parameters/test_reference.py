@@ -9,8 +9,8 @@ import pytest
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.declarations import catalogue
-from cnc_ptp.parameters.reference import entry_text, find, reference_markdown
+from cnc_ptp.parameters.declare.declarations import catalogue
+from cnc_ptp.parameters.declare.reference import entry_text, find, reference_markdown
 
 ROOT = Path(__file__).parents[2]
 KV = """\
@@ -29,12 +29,12 @@ def describe(wanted: str) -> str:
 
 
 def test_document_is_up_to_date() -> None:
-    """Otherwise: python -m cnc_ptp.parameters.reference > docs/parameters.md"""
+    """Otherwise: python -m cnc_ptp.parameters.declare.reference > docs/parameters.md"""
     assert (ROOT / "docs" / "parameters.md").read_text(encoding="utf-8") == reference_markdown()
 
 
 def test_module_prints_the_document() -> None:
-    command = [sys.executable, "-m", "cnc_ptp.parameters.reference"]
+    command = [sys.executable, "-m", "cnc_ptp.parameters.declare.reference"]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
     output = subprocess.run(command, check=True, capture_output=True, env=environment).stdout
     assert output.decode("utf-8") == reference_markdown()

@@ -3,7 +3,7 @@
 import pytest
 
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.runtime_change import change_refusal
+from cnc_ptp.parameters.check.runtime_change import change_refusal
 
 TEXT = """\
 /machine: {ros__parameters: {channels: [ch], axes: [x], spindles: [s]}}

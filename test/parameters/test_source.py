@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from cnc_ptp.parameters.source import read_sections
+from cnc_ptp.parameters.read.source import read_sections
 
 
 def values(text: str) -> dict[str, object]:

@@ -9,8 +9,8 @@ import pytest
 
 from cnc_ptp.control.drive_format import shown_velocity
 from cnc_ptp.parameters import GearParameters, MachineParameters, SpindleParameters, load_machine
-from cnc_ptp.parameters.control_view import control_view
-from cnc_ptp.parameters.spindle_view import CurveParameters
+from cnc_ptp.parameters.view.control_view import control_view
+from cnc_ptp.parameters.view.spindle_view import CurveParameters
 
 DEFAULT_GEAR: dict[str, Any] = {
     "stage": 1,

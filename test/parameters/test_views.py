@@ -15,8 +15,8 @@ from cnc_ptp.parameters import (
     Synchronisation,
     load_machine,
 )
-from cnc_ptp.parameters.encoder import resolution
 from cnc_ptp.parameters.units import to_kernel
+from cnc_ptp.parameters.view.encoder import resolution
 
 NONE = Synchronisation.NO_SYNCH
 

@@ -13,7 +13,7 @@ from error_support import refused
 from machine_support import PTP, ROOT, MachineBench
 from slave_support import SlaveBench, axes_named
 
-from cnc_ptp.commands.replay import replay_blocks
+from cnc_ptp.commands.run.replay import replay_blocks
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.plc.scenario import parse_scenario
 from cnc_ptp.protocol.blocks import CommandRecord, CycleTick

@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message
 from cnc_ptp import msg
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes.live_state import LiveState, period_cycles
+from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
 from cnc_ptp.recording.blocks import state_messages

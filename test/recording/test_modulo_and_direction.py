@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from recording_support import Blocks, record
 
-from cnc_ptp.commands.simulate import simulate
+from cnc_ptp.commands.run.simulate import simulate
 from cnc_ptp.recording.reader import read_recording
 
 PTP = (Path(__file__).parents[2] / "config" / "ptp.yaml").read_text()

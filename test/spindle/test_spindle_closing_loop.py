@@ -14,7 +14,7 @@ from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle
 from spindle_support import DOWN, RPM, StuckDrive, bench_of, first_cycle, states
 
 from cnc_ptp.parameters import MachineParameters, SpindleParameters, read_machine
-from cnc_ptp.parameters.control_view import VEL
+from cnc_ptp.parameters.view.control_view import VEL
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleBit, SpindleMode
 

@@ -10,7 +10,7 @@ from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import RPM, StuckDrive, bench_of, first_cycle, two_gears
 
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.control_view import ADD_VEL, VEL, ModuloError
+from cnc_ptp.parameters.view.control_view import ADD_VEL, VEL, ModuloError
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 KV = 50.0

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.parameters.declarations import catalogue
+from cnc_ptp.parameters.declare.declarations import catalogue
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "spindles.md"
@@ -104,7 +104,7 @@ def test_no_number_of_the_spindle_is_in_the_table_that_does_not_exist() -> None:
 def test_numbers_of_a_channel_that_waits_for_spindles_are_in_the_table() -> None:
     part = DOCUMENT.read_text(encoding="utf-8").split("## Errors\n")[1].split("\n## ")[0]
     named = {number for first, last in ranges_of(part) for number in range(first, last + 1)}
-    modules = ("waits.py", "program_sequence.py", "spindle_output.py", "spindle_watch.py", "spindle_reports.py")
-    sources = [(ROOT / "cnc_ptp" / "machine" / module).read_text(encoding="utf-8") for module in modules]
+    modules = ("waits.py", "program_sequence.py", "function_output.py", "spindle_functions.py")
+    sources = [(ROOT / "cnc_ptp" / "channel" / module).read_text(encoding="utf-8") for module in modules]
     numbers = {int(number) for text in sources for number in re.findall(r"^[A-Z_]+ = (\d{5})$", text, re.MULTILINE)}
     assert len(numbers) >= 4 and numbers - named == set()

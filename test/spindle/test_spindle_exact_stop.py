@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from channel_spindle_support import moves
 from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle_bench, spindle_parameters
-from spindle_support import RPM, StuckDrive, bench_of, first_cycle, states
+from spindle_support import RPM, StuckDrive, assert_reached_in_windows, bench_of, first_cycle, states
 
 from cnc_ptp.control.drives import FirstOrderDrive
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -231,22 +231,6 @@ def test_seeded_drives_and_windows(seed: int) -> None:
         bench.run(draw.randint(300, 1200))
         bench.give("reset")
     assert_reached_in_windows(bench, window=window, zero_rpm=zero_rpm, hold=hold)
-
-
-def assert_reached_in_windows(bench: UnitBench, *, window: float, zero_rpm: float, hold: int) -> None:
-    """Each rising edge of in_position has `hold` cycles within both windows behind it; the bit is on in the window only."""
-    column = bench.columns()
-    away = [t - a for t, a in zip(column["target_position_deg"], column["actual_position_deg"], strict=True)]
-    within = [
-        abs(a) <= window * (1 + 1e-9) and abs(v) <= zero_rpm * (1 + 1e-9)
-        for a, v in zip(away, column["actual_speed_rpm"], strict=True)
-    ]
-    there = column["in_position"]
-    for k, on in enumerate(there):
-        if on and not there[k - 1]:
-            assert all(within[k - hold : k + 1]), f"cycle {k}"
-        assert not on or (abs(away[k]) <= window * (1 + 1e-9) and column["state"][k] == S.STANDSTILL)
-    assert any(there) or bench.events
 
 
 def test_rounding_of_the_time() -> None:

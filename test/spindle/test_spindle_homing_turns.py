@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 from channel_spindle_support import moves, told, two_channels
 from machine_support import ROOT, MachineBench, UnitBench, changed_gear, spindle_bench, spindle_parameters
-from spindle_support import RPM, bench_of, first_cycle, states, two_gears
-from test_spindle_exact_stop import assert_reached_in_windows
+from spindle_support import RPM, assert_reached_in_windows, bench_of, first_cycle, states, two_gears
 
 from cnc_ptp.parameters import MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S

@@ -13,7 +13,7 @@ from loop_support import feedforward
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import DOWN, RPM, StuckDrive, bench_of, first_cycle, states, two_gears
 
-from cnc_ptp.parameters.control_view import VEL
+from cnc_ptp.parameters.view.control_view import VEL
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleBit, SpindleMode
 

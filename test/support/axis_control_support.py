@@ -12,7 +12,7 @@ from machine_support import CYCLE_TIME, UnitBench, axis_parameters
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.parameters import AxisParameters
-from cnc_ptp.parameters.control_view import ControlParameters, PlantParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters, PlantParameters
 
 MECHANICS = replace(PLANT, cascaded=True, coulomb=0.3, static=0.5, stribeck_velocity=2.0, viscous=1e-3)
 COMPENSATED = replace(

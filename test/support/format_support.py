@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cnc_ptp.control.drive_format import DriveFormat, drive_format
 from cnc_ptp.parameters import load_machine
-from cnc_ptp.parameters.control_view import ControlParameters, control_view
+from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
 
 
 def control_of(*lines: str, spindle: bool = False, gear: int = 0, cycle_time_us: int = 1000) -> ControlParameters:

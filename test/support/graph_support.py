@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from cnc_ptp.commands.replay import replay_blocks
+from cnc_ptp.commands.run.replay import replay_blocks
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.verify import verify
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cnc_ptp.control.control_loop import ControlCycle, ControlLoop
 from cnc_ptp.control.drives import Drive, FirstOrderDrive
 from cnc_ptp.control.feedforward import CouplingLimits
-from cnc_ptp.parameters.control_view import (
+from cnc_ptp.parameters.view.control_view import (
     ControlParameters,
     DriveParameters,
     DriveScaling,

@@ -15,7 +15,7 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import AxisParameters, GearParameters, MachineParameters, SpindleParameters, read_machine
-from cnc_ptp.parameters.control_view import ControlParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters
 from cnc_ptp.plc.scenario import Entry, parse_scenario
 from cnc_ptp.protocol.blocks import AxisBlock, Block, Command, CommandRecord, CycleTick, Event
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 
 T = 0.001
 PLANT = PlantParameters(

@@ -48,6 +48,22 @@ def trapezoid(distance: float, speed: float) -> float:
     return reached / UP + reached / DOWN + (distance - ramps) / reached
 
 
+def assert_reached_in_windows(bench: UnitBench, *, window: float, zero_rpm: float, hold: int) -> None:
+    """Each rising edge of in_position has `hold` cycles within both windows behind it; the bit is on in the window only."""
+    column = bench.columns()
+    away = [t - a for t, a in zip(column["target_position_deg"], column["actual_position_deg"], strict=True)]
+    within = [
+        abs(a) <= window * (1 + 1e-9) and abs(v) <= zero_rpm * (1 + 1e-9)
+        for a, v in zip(away, column["actual_speed_rpm"], strict=True)
+    ]
+    there = column["in_position"]
+    for k, on in enumerate(there):
+        if on and not there[k - 1]:
+            assert all(within[k - hold : k + 1]), f"cycle {k}"
+        assert not on or (abs(away[k]) <= window * (1 + 1e-9) and column["state"][k] == S.STANDSTILL)
+    assert any(there) or bench.events
+
+
 class StuckDrive(FirstOrderDrive):
     """A drive that shows where it is but does not turn any more once it is `stuck`."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import copysign, exp, inf
 
 from cnc_ptp.control.drives.transitions import transition
-from cnc_ptp.parameters.control_view import PlantParameters
+from cnc_ptp.parameters.view.control_view import PlantParameters
 
 FINEST = 6
 """A cycle is halved at most so often where friction or the torque limit changes its kind."""
@@ -29,9 +29,9 @@ class CascadedDrive:
     axis stands until the torque exceeds S. The integral stands still while the torque is limited. The load follows the
     motor behind a play.
 
-    A cycle is one exact step of the linear part under held inputs (parameters/plant_model.py); the Stribeck part counts
-    with the mean of its values at begin and end. Where it changes much in a step, where the velocity passes zero, where
-    the axis breaks away or the torque limit begins or ends, the cycle is halved, again and again down to 1/64.
+    A cycle is one exact step of the linear part under held inputs (parameters/view/plant_model.py); the Stribeck part
+    counts with the mean of its values at begin and end. Where it changes much in a step, where the velocity passes
+    zero, where the axis breaks away or the torque limit begins or ends, the cycle is halved, again and again to 1/64.
     `torque` is the mean over the cycle, as FirstOrderDrive has it: within a cycle the torque swings by the step of the
     command, so its value at the end of one is none to go by. Source: TF5200 feedforward, figure 2; friction, figure 1.
     """

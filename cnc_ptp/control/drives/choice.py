@@ -8,7 +8,7 @@ from cnc_ptp.control.drives.first_order import FirstOrderDrive
 from cnc_ptp.control.drives.interfaces import DelayedDrive, LagCommandedDrive, PositionCommandedDrive
 from cnc_ptp.control.drives.telegram import TelegramDrive
 from cnc_ptp.control.drives.virtual import VirtualDrive
-from cnc_ptp.parameters.control_view import ControlParameters, PlantParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters, PlantParameters
 
 
 def make_drive(control: ControlParameters, cycle_time: float) -> Drive:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cnc_ptp.control.drive_format import CounterReader, da_volts, drive_format
 from cnc_ptp.control.drives.drive import Drive
-from cnc_ptp.parameters.control_view import ControlParameters
+from cnc_ptp.parameters.view.control_view import ControlParameters
 
 
 class TelegramDrive:

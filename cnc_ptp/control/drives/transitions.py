@@ -1,6 +1,6 @@
 """Exact steps of the linear part of a cascaded drive, worked out once: numbers that a step multiplies with.
 
-Letters as in parameters/plant_model.py. A step begins at the velocity v0 with the friction f and is written in
+Letters as in parameters/view/plant_model.py. A step begins at the velocity v0 with the friction f and is written in
 
     p = w - v0, r = u - v0      set velocities; without a filter p is r
     q = Kp p + i - f            acceleration that the velocity controller asks for, without friction
@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from cnc_ptp.parameters.control_view import PlantParameters
-from cnc_ptp.parameters.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
+from cnc_ptp.parameters.view.control_view import PlantParameters
+from cnc_ptp.parameters.view.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
 
 Row = tuple[float, ...]
 Rows = tuple[Row, Row, Row]

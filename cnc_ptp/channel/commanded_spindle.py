@@ -1,0 +1,243 @@
+"""What a channel knows of one of its spindles: what it has commanded, and what the spindle has reported since.
+
+A function counts from the block on with which it goes out. It may be refused, overtaken or withdrawn, so only a report
+of the spindle ends the channel's responsibility for it. Source: TF5200 spindle 2.4.3 (a reset always stops the
+spindles), 2.8 (couplings).
+
+| transition | direction | responsible | master | expectation |
+|---|---|---|---|---|
+| `turn` (M03, M04) | cw, ccw | from the next block on | | |
+| `hold` (M05, M19, G74) | none | from the next block on | | |
+| `hand_over` (M05 of the PLC's own spindle) | none | up to the next block | | |
+| `change_gear` | kept, but starts anew | from the next block on | | |
+| `couple`, `release` | | from `release` on, if it was coupled | set, none | |
+| `expect` | | | | from the next block on |
+| `withdraw` | | what has not gone out is not sent | | what has not gone out is not sent |
+| `forget` | none | no more | | |
+| `read` | | until it stands | none once others have decoupled it | |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, orders_wait, stands, what_it_does
+from cnc_ptp.nc.canonical import SpindleFunction
+from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
+from cnc_ptp.protocol.blocks import Block, SpindleBlock
+from cnc_ptp.protocol.spindle_states import SpindleBit
+
+BEFORE_THE_RUN = -1
+
+
+class CommandedSpindle:
+    """One spindle of a channel.
+
+    direction        cw or ccw while the program has it turning, else empty
+    starts_anew      a gear change has ended its rotation: the next speed starts it again
+    full_override    G167 is active: its override is suppressed
+    master           what it follows, from the block with the coupling on
+    leader           its master in a coupling that has ended with the program
+    expectation      what it is to report of the last command that has gone out
+    """
+
+    def __init__(
+        self, parameters: ChannelSpindle, unit: SpindleParameters | None, *, channel: str, ranks: Iterator[int]
+    ) -> None:
+        """`unit` is None for a spindle that only the PLC knows; `channel`: for whom the spindle reports to be active.
+
+        `ranks`: numbers that all spindles of the channel draw from.
+        """
+        self.parameters = parameters
+        self.unit = unit
+        self.name, self.node = parameters.name, parameters.node
+        self._channel = channel
+        self._ranks = ranks
+        self.block: SpindleBlock | None = None
+        """Its last report."""
+        self.direction = ""
+        self.starts_anew = False
+        self.full_override = False
+        self.turning_rank = self.coupling_rank = 0
+        """Which of the channel's spindles has begun to turn, or to follow its master, before which."""
+        self.master: CommandedSpindle | None = None
+        self.leader: CommandedSpindle | None = None
+        self.coupled = False
+        """It has reported its master."""
+        self._link_sent = False
+        self._sent_cycle: int | None = None
+        """First cycle of the block with the last function for which the channel is responsible."""
+        self._responsible_next: bool | None = None
+        """What becomes of that with the next block; None is no change."""
+        self.expectation = NOTHING
+        self._expected_since: int | None = None
+        """First cycle of the block with which the command has gone out; None while nothing is expected."""
+        self._expected_next: list[Expectation] = []
+        self._turned = False
+        """It has turned as commanded; a new speed does not change that."""
+
+    # questions
+
+    @property
+    def turns(self) -> bool:
+        """The program has it turning."""
+        return bool(self.direction)
+
+    @property
+    def follows(self) -> bool:
+        """A slave: the PLC hears of its master only (2.8.3)."""
+        return self.master is not None
+
+    @property
+    def responsible(self) -> bool:
+        """The channel has set it in motion and has to stop it with its program."""
+        return self._sent_cycle is not None
+
+    @property
+    def stops_at_program_end(self) -> bool:
+        """The PLC wants it stopped with the program (2.4.3)."""
+        return self.block is not None and bool(self.block.status_bits[-1] & SpindleBit.STOP_AT_PROGRAM_END)
+
+    def in_gear(self, stage: int) -> bool:
+        """As it reports, before its first report by the parameters."""
+        if self.block is not None:
+            return self.block.gear[-1] == stage and not self.block.gear_change_active[-1]
+        return self.unit is not None and self.unit.gear == stage
+
+    @property
+    def told_to_plc(self) -> bool:
+        """The PLC gets every function of the spindle, whatever its synchronisation type says."""
+        return self.unit is None or self.unit.plc_controlled
+
+    @property
+    def title(self) -> str:
+        """What the PLC knows it by: its node, or its own name where it has none."""
+        return self.node or self.parameters.own_name or self.name
+
+    def acts(self, function: SpindleFunction) -> bool:
+        """False for an S word while the spindle stands: the speed counts for the next M03 or M04."""
+        return function.m is not None or (self.turns and function.speed_rpm is not None)
+
+    def answers(self) -> Iterator[int | None]:
+        """First cycles of the blocks with commands that the spindle may still refuse; None for the next block."""
+        if self._expected_since is not None:
+            yield self._expected_since
+        yield from [None for _ in self._expected_next]
+
+    # what the program commands
+
+    def turn(self, direction: str) -> None:
+        """M03, M04: `direction` is cw or ccw."""
+        if not self.turns:
+            self.turning_rank = next(self._ranks)
+        self.direction = direction
+        self._responsible_next = True
+
+    def hold(self) -> None:
+        """M05, M19, G74: it turns no longer, and is on its way until it reports a standstill."""
+        self.direction = ""
+        self._responsible_next = True
+
+    def hand_over(self) -> None:
+        """M05 of a spindle that only the PLC knows: nobody else can say when it stands."""
+        self.direction = ""
+        self._responsible_next = False
+
+    def change_gear(self) -> None:
+        """What was turning stands then: the words of the block say what comes after."""
+        self.starts_anew |= self.turns
+        self._responsible_next = True
+
+    def start(self) -> bool:
+        """A speed goes out; true where it has to be a start, because a gear change has ended the rotation."""
+        anew, self.starts_anew = self.starts_anew, False
+        return anew
+
+    def switch_override(self, *, full: bool) -> bool:
+        """G167 holds for what its block commands; true where that is a change."""
+        changed, self.full_override = full != self.full_override, full
+        return changed
+
+    def expect(self, expectation: Expectation) -> None:
+        """A command goes out with the next block, and this is what the spindle is to report of it."""
+        self._expected_next.append(expectation)
+
+    def couple(self, master: CommandedSpindle) -> None:
+        """The coupling goes out with the next block."""
+        if self.master is None:
+            self.coupling_rank = next(self._ranks)
+        self.master = master
+
+    def release(self) -> None:
+        """The coupling ends; whoever has coupled the slave is responsible for what it goes on with."""
+        if self.coupled and self._sent_cycle is None:
+            self._sent_cycle = BEFORE_THE_RUN
+        self.master, self.coupled, self._link_sent = None, False, False
+
+    # ends
+
+    def withdraw(self) -> None:
+        """What has not gone out is not sent."""
+        self._responsible_next = None
+        self._expected_next = []
+
+    def forget(self) -> None:
+        """The channel is responsible no longer, and for its program the spindle does not turn."""
+        self.dismiss()
+        self.direction, self.starts_anew = "", False
+
+    def dismiss(self) -> None:
+        """The spindle was commanded to stop, or others are responsible for it."""
+        self._responsible_next = self._sent_cycle = None
+
+    def expect_nothing(self) -> None:
+        """What earlier programs have commanded does not matter to this one."""
+        self._expected_since, self._turned = None, False
+
+    # from block to block
+
+    def send(self, first_cycle: int) -> None:
+        """What was commanded goes out with the block that begins at `first_cycle`."""
+        if self._responsible_next is not None:
+            self._sent_cycle = first_cycle if self._responsible_next else None
+        self._responsible_next = None
+        self._link_sent = self.master is not None
+        for expectation in self._expected_next:
+            self.expectation, self._expected_since = expectation, first_cycle
+            self._turned &= expectation.condition is Condition.SPEED
+        self._expected_next = []
+
+    def read(self, cycle: int, block: Block | None) -> str:
+        """What the spindle has reported before `cycle`; a text when others have ended a coupling of the channel."""
+        self.block = block if isinstance(block, SpindleBlock) else None
+        if self.block is None:
+            return ""
+        if self._sent_cycle is not None and cycle > self._sent_cycle and stands(self.block, self._channel):
+            self._sent_cycle = None
+        return self._read_master(self.block) if self._link_sent else ""
+
+    def _read_master(self, block: SpindleBlock) -> str:
+        master = self.master
+        assert master is not None
+        if block.master == master.node:
+            self.coupled = True
+        elif self.coupled:
+            self.release()
+            return f"spindle {self.node} does not follow {master.node} any more"
+        return ""
+
+    def lost_speed(self, cycle: int, *, watched: bool) -> str:
+        """A text, once, when it does not turn as commanded before `cycle` any longer and the channel has `watched`.
+
+        A command that still waits behind others is not lost; one that was carried out is, in a gear change too.
+        """
+        block, since = self.block, self._expected_since
+        if block is None or since is None or cycle <= since or self.expectation.condition is not Condition.SPEED:
+            return ""
+        waits = orders_wait(block)
+        if self.expectation.carried_out(block):
+            self._turned |= block.source == self._channel or not waits
+        elif watched and (self._turned or not waits):
+            self.expect_nothing()
+            return f"{self.expectation.missed()}, {what_it_does(block)}"
+        return ""

@@ -1,0 +1,23 @@
+"""The cycles of a block of the channel while they are made."""
+
+from __future__ import annotations
+
+from cnc_ptp.path.path_motion import AxisStates
+
+
+class CycleRows:
+    """The cycles of a block as they are made: the state of each axis, and the columns of ChannelState."""
+
+    def __init__(self) -> None:
+        self.axes: list[AxisStates] = []
+        self.line: list[int] = []
+        self.block_number: list[int] = []
+        self.path_velocity: list[float] = []
+        self.programmed_feed: list[float] = []
+        self.override_percent: list[float] = []
+        self.distance_to_go: list[float] = []
+        self.state: list[int] = []
+        self.error_id: list[int] = []
+
+    def __len__(self) -> int:
+        return len(self.axes)

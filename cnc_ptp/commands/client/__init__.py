@@ -1,0 +1,1 @@
+"""Commands for a running machine: status, watch, do, jog."""

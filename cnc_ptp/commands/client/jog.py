@@ -1,0 +1,161 @@
+"""`cnc_ptp jog`: moves an axis of a running machine for as long as the command runs."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+from rich.console import Console
+
+from cnc_ptp import msg
+from cnc_ptp.axis.jog_commands import JOG
+from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as SILENCE
+from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
+from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
+from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
+from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
+from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.protocol.unit_view import UnitView
+
+PERIOD = 0.05
+"""Seconds between two messages."""
+JOGS = state_name(AxisStateCode.CONTINUOUS_MOTION)
+DELAY = 0.03
+"""Seconds from a look at the axis to the effect of a message."""
+STEADY = 1.001
+"""A speed that grows by less from block to block has come to its end."""
+START = 1.0
+"""Seconds after which an axis that does not move is given up."""
+STOP = 30.0
+"""Seconds for the ramp at the end."""
+
+
+def jog(axis: str, direction: str, speed: float, distance: float | None, seconds: float | None) -> int:
+    """Jogs until Ctrl-C, a distance (mm, deg) or a time (s), and waits until the axis stands.
+
+    Status 1 when the axis refuses, is in error, or does not stand in the end.
+    """
+    with connected() as client, EndRequest() as end:
+        client.require_unit(axis, ("axis",))
+        jogger = Jogger(client, axis, speed if direction == "+" else -speed)
+        if not jogger.ready():
+            return jogger.told("the machine does not listen, or shows nothing of the axis; nothing has moved")
+        jogger.run(lambda: end.given, distance, seconds)
+        return jogger.end()
+
+
+class Jogger:
+    """Sends jog messages, and looks at what the axis makes of them."""
+
+    def __init__(self, client: MachineClient, axis: str, velocity: float) -> None:
+        self._client = client
+        self._axis = axis
+        self._velocity = velocity
+        self._sequence = 0
+        self._blocks = client.look_at([axis])
+        self._publisher = client.create_publisher(msg.Jog, jog_topic(axis), PLC_INPUT)
+        self._refused = self._stalled = self._ignored = False
+        self._errors = Console(stderr=True, highlight=False, soft_wrap=True)
+        client.create_subscription(msg.CommandRecord, COMMAND, self._on_command, PLC_INPUT)
+        client.create_subscription(msg.Event, EVENT, self._on_event, PLC_INPUT)
+
+    def ready(self) -> bool:
+        """The PLC listens, and the axis shows where it is."""
+
+        def is_ready() -> bool:
+            return bool(self._publisher.get_subscription_count()) and self._blocks.view(self._axis) is not None
+
+        return bool(self._client.spin_until(is_ready, PATIENCE))
+
+    def run(self, ended: Callable[[], bool], distance: float | None, seconds: float | None) -> None:
+        """Sends the velocity until it is enough, the axis has stopped, or it refuses."""
+        begun, start = time.monotonic(), self._place().position or 0.0
+        way = Way(distance)
+        moved, sent = False, begun
+        deadline = math.inf if seconds is None else begun + seconds
+        while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
+            self._stalled = time.monotonic() - sent > SILENCE
+            if self._stalled:  # the machine has ended the jog; that this process goes on is no reason to move again
+                self.told(f"this command has stood still for more than {SILENCE:g} s; the jog has ended")
+                return
+            sent = time.monotonic()
+            self._send(self._velocity)
+            self._client.spin_until(ended, PERIOD if distance is None else PERIOD / 5.0)
+            view = self._place()
+            moved = moved or view.state == JOGS
+            stopped = view.state != JOGS and (moved or time.monotonic() - begun > START)
+            gone = abs((view.position or 0.0) - start)
+            if stopped or way.is_enough(gone, abs(view.speed or 0.0), view.cycle):
+                return
+
+    def end(self) -> int:
+        """Ends the jog, waits until the axis stands, tells where; the exit status."""
+        if self._ignored:
+            return self.told("the jog is ignored: another client jogs the axis, or the machine is in free run")
+        cycle = self._place().cycle
+        self._send(0.0)
+
+        def stands() -> bool:
+            return self._place().cycle > cycle + 100 and not self._place().busy
+
+        self._client.spin_until(lambda: stands() or self._blocks.gone, STOP)
+        if self._blocks.gone:
+            return self.told(GONE_TEXT)
+        view = self._place()
+        where = f"{view.position:.3f} {view.unit}" if view.position is not None else ""
+        print(f"{self._axis}: {view.state} at {where}")
+        return RUN_FAILED if self._refused or self._stalled or view.error_id or not stands() else 0
+
+    def told(self, text: str) -> int:
+        self._errors.print(f"{self._axis}: {text}", style="red", markup=False)
+        return RUN_FAILED
+
+    def _place(self) -> UnitView:
+        view: UnitView | None = self._blocks.view(self._axis)
+        assert view is not None
+        return view
+
+    def _send(self, velocity: float) -> None:
+        self._sequence += 1
+        message = msg.Jog(sequence=self._sequence, valid=True, velocity=velocity)
+        message.header.frame_id = self._client.get_name()
+        self._publisher.publish(message)
+
+    def _on_command(self, message: msg.CommandRecord) -> None:
+        if message.target == self._axis and message.command == JOG and self._sequence:
+            self._refused = self._refused or not message.accepted
+            if message.message and message.accepted:
+                self._errors.print(f"warning: {message.message}", style="yellow", markup=False)
+
+    def _on_event(self, message: msg.Event) -> None:
+        axis, client = self._axis, self._client.get_name()
+        if message.text in (free_run_text(axis), second_client_text(axis, client)):
+            self._ignored = self._refused = True
+        if message.source == self._axis and message.severity > Severity.INFO and self._sequence:
+            self._errors.print(f"P-ERR-{message.error_id} {message.text}", style="yellow", markup=False)
+
+
+class Way:
+    """How far to go: the ramp at the end takes as much way as the one at the begin has taken."""
+
+    def __init__(self, distance: float | None) -> None:
+        """`distance` in mm (deg), None = any."""
+        self._distance = distance
+        self._ramp: float | None = None
+        self._seen = (0, 0.0, 0.0)
+
+    def is_enough(self, gone: float, speed: float, cycle: int) -> bool:
+        """`gone` mm (deg) from the start, at `speed` in `cycle`: an end now leads to the distance, roughly."""
+        if self._distance is None:
+            return False
+        last_cycle, last_gone, last_speed = self._seen
+        if cycle > last_cycle:
+            self._seen = cycle, gone, speed
+            if self._ramp is None and 0.0 < speed <= last_speed * STEADY:
+                self._ramp = last_gone
+        ramp = gone if self._ramp is None else self._ramp
+        return gone + ramp + speed * DELAY >= self._distance

@@ -1,0 +1,131 @@
+"""Offline runs that are made to be evaluated: what the units did is kept as arrays."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+from types import TracebackType
+
+import numpy as np
+import numpy.typing as npt
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from cnc_ptp.commands.console import print_faults
+from cnc_ptp.commands.run.simulate import Result, interrupted, write
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.plc.scenario import Entry
+from cnc_ptp.protocol.blocks import PlcBlock
+from cnc_ptp.protocol.notes import Note
+from cnc_ptp.recording.writer import Recording
+
+Columns = Mapping[str, npt.NDArray[np.float64]]
+
+
+@dataclass
+class Trial:
+    """A run: its columns by unit and field (one value a cycle), and what was told of it."""
+
+    columns: dict[str, Columns] = field(default_factory=dict)
+    result: Result = field(default_factory=Result)
+
+    @property
+    def refusals(self) -> list[Note]:
+        """Commands that were not carried out: then the motion is not the one that was wanted."""
+        return [note for note in self.result.notes if note.refused]
+
+    @property
+    def failed(self) -> bool:
+        return bool(self.result.failed or self.result.interrupted or self.result.errors or self.refusals)
+
+    def print_faults(self) -> None:
+        """Why the run is no use, and warnings."""
+        console = Console(stderr=True, highlight=False, soft_wrap=True)
+        if self.result.interrupted:
+            console.print(f"failed: {self.result.interrupted}", style="bold red", markup=False)
+        stopped = self.result.failed or bool(self.result.interrupted)
+        print_faults(console, self.result.errors, self.result.notes, stopped=stopped)
+
+
+def run_trial(
+    machine: MachineParameters,
+    job: Sequence[Entry],
+    *,
+    fields: Mapping[str, Iterable[str]],
+    seconds: float,
+    label: str,
+    record: str | None = None,
+    machine_text: str = "",
+) -> Trial:
+    """Runs `job` offline until all is done, or until something has gone wrong; keeps the `fields` of each unit.
+
+    `seconds` the run is expected to last and `label` are for the progress bar; `record` is an MCAP file to write, for
+    which `machine_text` is needed. Raises CncError 26007 to 26009 where it cannot be written.
+    """
+    units = build_units(machine, scenario=job)
+    offline = OfflineMachine(machine, units)
+    kept: dict[str, dict[str, list[float]]] = {unit: defaultdict(list) for unit in fields}
+    trial = Trial()
+    recording = Recording(record, machine_text, 0, machine.cycle_time_us * 1000) if record else None
+    cycles = round(seconds * 1e6 / machine.cycle_time_us)
+    with TrialProgress(label, cycles) as progress, recording or nullcontext(), EndRequest() as end:
+        for outputs in offline.run():
+            trial.result.add(outputs)
+            _keep(kept, fields, outputs)
+            progress.show(outputs)
+            if recording is not None:
+                write(recording, outputs)
+            stopped = end.given and interrupted(offline, outputs, trial.result, end)
+            if stopped or trial.result.errors or trial.refusals:
+                break
+    trial.columns = {
+        unit: {name: np.array(values, dtype=np.float64) for name, values in columns.items()}
+        for unit, columns in kept.items()
+    }
+    return trial
+
+
+def _keep(kept: dict[str, dict[str, list[float]]], fields: Mapping[str, Iterable[str]], outputs: Outputs) -> None:
+    for unit, names in fields.items():
+        block, columns = outputs[unit].block, kept[unit]
+        for name in names:
+            columns[name] += getattr(block, name)
+        columns["cycle"] += range(block.first_cycle, block.first_cycle + block.count)
+
+
+class TrialProgress:
+    """A bar over the machine time, on a terminal only."""
+
+    def __init__(self, label: str, cycles: int) -> None:
+        console = Console(stderr=True)
+        self._on = console.is_terminal
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
+            console=console,
+        )
+        self._task = self._progress.add_task(label, total=max(cycles, 1))
+
+    def __enter__(self) -> TrialProgress:
+        if self._on:
+            self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._on:
+            self._progress.stop()
+
+    def show(self, outputs: Outputs) -> None:
+        """How far the run is. (The bar draws itself ten times a second, however often it is told.)"""
+        plc = outputs[PLC].block
+        if self._on and isinstance(plc, PlcBlock):
+            self._progress.update(self._task, completed=plc.first_cycle + plc.count)

@@ -1,0 +1,1 @@
+"""Commands that run a machine: simulate, run, replay."""

@@ -1,0 +1,87 @@
+"""`cnc_ptp run`: the ROS graph, until the job is done."""
+
+from __future__ import annotations
+
+from rich.console import Console
+
+from cnc_ptp.channel.program_report import cut_off_notes, time_lines
+from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
+from cnc_ptp.commands.output_file import check_recording
+from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.machine.job import read_job
+from cnc_ptp.nodes.composed import run_composed
+from cnc_ptp.nodes.monitor import RunMonitor
+from cnc_ptp.nodes.supervisor import Job, Supervisor
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
+
+
+def run(
+    machine: str,
+    program: str | None,
+    scenario: str | None,
+    duration: float | None,
+    record: str | None,
+    free_run: bool,
+    composed: bool,
+    stay: bool = False,
+    strict: bool = False,
+    state_rate: float | None = None,
+) -> int:
+    """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
+
+    `stay`: until it is told to end (Ctrl-C), which is no error where everything stands. `strict`: status 1 also when a
+    command was refused.
+    """
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
+    parameters = read_machine(machine)
+    read_job(parameters, program=program, scenario=scenario)
+    job = Job(machine, program, scenario, duration, record, free_run, stay, state_rate)
+    with RunProgress() as progress:
+
+        def show(monitor: RunMonitor) -> None:
+            progress.tell(monitor.notes)
+            if progress.due:
+                progress.show(monitor.views())
+
+        if composed:
+            monitor, failures = run_composed(parameters, job, show=show, watched=progress.visible)
+        else:
+            supervisor = Supervisor(parameters, job, show=show, watched=progress.visible)
+            monitor, failures = supervisor.run(), supervisor.failures
+    print_summary(parameters, monitor, failures, duration)
+    given = (program, scenario, duration, stay or None)
+    print_note_of_idle_run(*given, options="--program, --scenario, --duration or --stay")
+    return RUN_FAILED if failures or monitor.run_failed or (strict and monitor.refused) else 0
+
+
+def print_summary(
+    machine: MachineParameters, monitor: RunMonitor, failures: list[str], duration: float | None = None
+) -> None:
+    console = Console(highlight=False, soft_wrap=True)
+    cycle_time = machine.cycle_time_us * 1e-6
+    cycles = monitor.cycle
+    console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
+    for line in time_lines(monitor.programs, cycle_time):
+        console.print(line, markup=False)
+    blocks, lost, twice = (
+        sum(int(node[key]) for node in monitor.diagnostics.values()) for key in (BLOCKS, LOST_BLOCKS, CAME_TWICE)
+    )
+    console.print(f"blocks {blocks} in {len(monitor.diagnostics)} nodes, lost {lost}, computed twice {twice}")
+    for name, axis in machine.axes.items():
+        unit = "deg" if axis.rotary else "mm"
+        if error := monitor.diagnostics.get(name, {}).get(following_error(unit)):
+            console.print(f"largest following error {name}: {float(error):.4f} {unit}")
+    lateness = monitor.lateness()
+    if lateness.counts:
+        p50, p99 = lateness.percentile_us(50.0) / 1000.0, lateness.percentile_us(99.0) / 1000.0
+        console.print(
+            f"block lateness p50 {p50:.1f} ms, p99 {p99:.1f} ms, largest {lateness.largest_us / 1000.0:.1f} ms"
+        )
+    for text in failures:
+        console.print(f"failed: {text}", style="bold red", markup=False)
+    notes = [*monitor.notes, *([] if failures else cut_off_notes(monitor.programs, duration))]
+    stopped = bool(failures or monitor.ending) or monitor.run_failed
+    print_faults(console, monitor.errors, notes, stopped=stopped, refused=monitor.refused)
+    if monitor.ending:
+        console.print(monitor.ending, markup=False)

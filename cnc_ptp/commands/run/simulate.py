@@ -1,0 +1,145 @@
+"""`cnc_ptp simulate`: the offline run."""
+
+from __future__ import annotations
+
+import time
+from collections import defaultdict
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+
+from rich.console import Console
+
+from cnc_ptp.channel.program_report import ProgramReport, cut_off_notes, time_lines
+from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
+from cnc_ptp.commands.output_file import check_recording
+from cnc_ptp.commands.run.progress import RunProgress
+from cnc_ptp.errors import CncError
+from cnc_ptp.interrupt import EndRequest
+from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.plc.plc_unit import error_of
+from cnc_ptp.protocol.blocks import (
+    AxisBlock,
+    ChannelBlock,
+    Command,
+    CycleTick,
+    PlcBlock,
+    Severity,
+)
+from cnc_ptp.protocol.notes import Note, Notes, error_text
+from cnc_ptp.recording.writer import Recording
+
+
+@dataclass
+class Result:
+    """What is told at the end of a run."""
+
+    cycles: int = 0
+    programs: dict[str, ProgramReport] = field(default_factory=lambda: defaultdict(ProgramReport))
+    failed: bool = False
+    interrupted: str = ""
+    following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
+    errors: list[str] = field(default_factory=list)
+    notes: Notes = field(default_factory=Notes)
+    refused: int = 0
+
+    def add(self, outputs: Outputs) -> None:
+        for name, output in outputs.items():
+            block = output.block
+            if isinstance(block, AxisBlock):
+                largest = max(max(block.following_error), -min(block.following_error))
+                self.following_errors[name] = max(self.following_errors[name], largest)
+            elif isinstance(block, ChannelBlock):
+                self.programs[name].add(block)
+            elif isinstance(block, PlcBlock):
+                self.cycles = block.first_cycle + block.count
+                # The PLC knows of a fault a block later, which may not come any more.
+                self.failed = block.run_failed or any(error_of(other.block) for other in outputs.values())
+            self.errors += [error_text(event) for event in output.events if event.severity == Severity.ERROR]
+            self.refused += sum(not record.accepted for record in output.records)
+            for note in (*map(Note.of_command, output.records), *map(Note.of_event, output.events)):
+                self.notes.add(note)
+
+
+def simulate(
+    machine: str,
+    program: str | None,
+    scenario: str | None,
+    duration: float | None,
+    record: str | None,
+    strict: bool = False,
+) -> int:
+    """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
+    check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
+    parameters = read_machine(machine)
+    job = read_job(parameters, program=program, scenario=scenario)
+    offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
+    cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
+    result = Result()
+    started = time.monotonic()
+    recording = None
+    if record is not None:
+        cycle_time_ns = parameters.cycle_time_us * 1000
+        recording = Recording(record, read_file("machine file", machine), 0, cycle_time_ns)
+    try:
+        with RunProgress() as progress, recording or nullcontext(), EndRequest() as end:
+            for outputs in offline.run(cycles=cycles):
+                result.add(outputs)
+                progress.show_block(outputs)
+                if recording is not None:
+                    write(recording, outputs)
+                if end.given and interrupted(offline, outputs, result, end):
+                    break
+    except CncError as error:  # of the recording: it cannot be written any more
+        print_error(error)
+        result.failed = True
+    print_summary(parameters, result, time.monotonic() - started, duration)
+    print_note_of_idle_run(program, scenario, duration)
+    return RUN_FAILED if result.failed or result.interrupted or (strict and result.refused) else 0
+
+
+def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: EndRequest) -> bool:
+    """Has everything stopped on its ramps after the first signal; True when all stands, or at the second signal."""
+    if not result.interrupted:
+        result.interrupted = end.text("everything stops on its ramps")
+        offline.runner(PLC).command(Command(PLC, "stop_all", {}))
+        return False
+    plc = outputs[PLC].block
+    return end.repeated or (isinstance(plc, PlcBlock) and plc.run_done)
+
+
+def write(recording: Recording, outputs: Outputs) -> None:
+    """Records what all units gave for one tick."""
+    plc = outputs[PLC].block
+    recording.tick(CycleTick(plc.first_cycle, plc.count))
+    for name, output in outputs.items():
+        recording.block(name, output.block)
+        for event in output.events:
+            recording.event(event)
+        for record in output.records:
+            recording.command(record)
+
+
+def print_summary(
+    machine: MachineParameters, result: Result, wall_seconds: float, duration: float | None = None
+) -> None:
+    cycle_time = machine.cycle_time_us * 1e-6
+    console = Console(highlight=False, soft_wrap=True)
+    seconds = result.cycles * cycle_time
+    console.print(
+        f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: "
+        f"{seconds / max(wall_seconds, 1e-9):.0f} times real time"
+    )
+    for line in time_lines(result.programs, cycle_time):
+        console.print(line, markup=False)
+    for axis, error in result.following_errors.items():
+        console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
+    notes = [*result.notes]
+    if result.interrupted:
+        console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
+    else:
+        notes += cut_off_notes(result.programs, duration)
+    stopped = result.failed or bool(result.interrupted)
+    print_faults(console, result.errors, notes, stopped=stopped, refused=result.refused)

@@ -1,0 +1,1 @@
+"""Parts of the plc_bridge: jogging, couplings, joint states, numbered messages."""

@@ -1,0 +1,131 @@
+"""Services that couple axes. The PLC node answers them for all axes: it alone sees who is whose master already."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+
+from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.job import read_file
+from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
+from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
+from cnc_ptp.nodes.unit.unit_node import UnitNode
+from cnc_ptp.plc.cam_file import parse_cam
+from cnc_ptp.plc.plc_unit import PlcUnit
+from cnc_ptp.protocol.blocks import Command
+from cnc_ptp.protocol.commands import COMMANDS
+from cnc_ptp.protocol.unit import UPSTREAM_LOST
+
+NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
+NOT_ANSWERED = 26143
+PATIENCE = 5.0
+"""Seconds after which a call is answered without the axis."""
+WATCH_PERIOD = 0.25
+
+
+@dataclass(slots=True)
+class Call:
+    """A call whose answer is still to come."""
+
+    command: Command
+    response: Any
+    deadline: float
+    send: Callable[[], None] = lambda: None
+    """Sends the response."""
+
+
+class CouplingServices:
+    """/<axis>/couple and its kinds: the command goes out with the next PLC block, the axis' record is the answer.
+
+    Responses are sent when they are known, not returned by a coroutine that awaits them: EventsExecutor would poll it
+    without a pause.
+    """
+
+    def __init__(self, node: UnitNode, plc: PlcUnit, axes: list[str]) -> None:
+        self._node = node
+        self._plc = plc
+        self._open: list[Call] = []
+        node.create_subscription(msg.CommandRecord, COMMAND, self._on_record, NEW_RECORDS)
+        node.create_timer(WATCH_PERIOD, self._watch)
+        for axis in axes:
+            for command, service_type in COUPLING_SERVICES.items():
+                asked = partial(self._couple, axis, command)
+                service: Any = node.create_service(service_type, f"{axis}/{command}", asked)
+                service.send_response = partial(self._send, service.send_response)
+
+    def _couple(self, axis: str, command: str, request: Any, response: Any) -> Any:
+        """Hands the command on, or fills in why not."""
+        try:
+            arguments = self._arguments(command, request)
+        except CncError as error:
+            return answered(response, error.number, error.message)
+        if self._node.is_over:
+            return answered(response, RUN_OVER, f"axis {axis}: {command} refused: the run is over; nothing was changed")
+        if self._plc.is_lost(axis):
+            text = f"axis {axis}: {command} refused: its node is lost; nothing was changed"
+            return answered(response, UPSTREAM_LOST, text)
+        asked = Command(axis, command, arguments)
+        self._plc.input(asked)
+        self._open.append(Call(asked, response, time.monotonic() + PATIENCE))
+        return response
+
+    def _arguments(self, command: str, request: Any) -> dict[str, Any]:
+        arguments = given_arguments(COMMANDS["axis"][command], request)
+        if "table" in COMMANDS["axis"][command]:
+            file = arguments.pop("file", "")
+            arguments["table"] = parse_cam(read_file("cam file", file), file)
+        return arguments
+
+    def _send(self, send: Callable[..., None], response: Any, header: Any) -> None:
+        """In place of Service.send_response, which the executor calls after the callback."""
+        call = next((call for call in self._open if call.response is response), None)
+        if call is None:
+            send(response, header)
+        else:
+            call.send = partial(send, response, header)
+
+    def _on_record(self, record: msg.CommandRecord) -> None:
+        """Ids count per sender, and couplings of axes come from the PLC alone."""
+        for call in self._open:
+            asked = call.command
+            if asked.id and (asked.id, asked.target, asked.command) == (record.id, record.target, record.command):
+                call.response.cycle = record.cycle
+                self._answer(call, record.error_id, record.message)
+                return
+
+    def _watch(self) -> None:
+        for call in [*self._open]:
+            what = f"axis {call.command.target}: {call.command.command}"
+            if self._plc.is_lost(call.command.target):
+                self._answer(call, UPSTREAM_LOST, f"{what} without an answer: its node is lost")
+            elif time.monotonic() > call.deadline:
+                reason = f"{what} without an answer for {PATIENCE:g} s"
+                self._answer(call, NOT_ANSWERED, f"{reason}; {self._withdraw(call)}")
+
+    def _withdraw(self, call: Call) -> str:
+        if self._plc.withdraw(call.command):
+            return "no block has gone out, the command was taken back"
+        return "the command has gone out and may still be carried out"
+
+    def end(self) -> None:
+        """The run is over: whoever still waits hears of it."""
+        for call in [*self._open]:
+            what = f"axis {call.command.target}: {call.command.command}"
+            self._answer(call, RUN_OVER, f"{what} without an answer: the run is over")
+
+    def _answer(self, call: Call, error_id: int, message: str) -> None:
+        self._open.remove(call)
+        answered(call.response, error_id, message)
+        call.send()
+
+
+def answered(response: Any, error_id: int, message: str) -> Any:
+    """The response with its fields set; `error_id` 0 = accepted."""
+    response.accepted, response.error_id, response.message = error_id == 0, error_id, message
+    return response

@@ -1,0 +1,59 @@
+"""The newest block of each unit, for people who look at a machine."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+
+from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
+from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
+
+GONE = 5.0
+"""Seconds without a block of any unit after which a machine counts as gone."""
+GONE_TEXT = f"nothing new for {GONE:g} s: the machine does not run any more"
+REMEMBERED = ("axis", "spindle")
+"""Kinds of units whose last block a late reader gets, too."""
+
+
+class LatestBlocks:
+    """Keeps the newest block of units; only what is looked at is deserialised: some hundred come a second."""
+
+    def __init__(self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str]) -> None:
+        """`kinds`: unit -> kind; the plc is left out. `rotary`: axes that count in degrees."""
+        self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
+        self._rotary = rotary
+        self._serialised: dict[str, bytes] = {}
+        self._heard = time.monotonic()
+        for unit, kind in self._kinds.items():
+            durability = DurabilityPolicy.TRANSIENT_LOCAL if kind in REMEMBERED else DurabilityPolicy.VOLATILE
+            quality = QoSProfile(depth=1, durability=durability)
+            node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), quality, raw=True)
+
+    def _keeper(self, unit: str) -> Any:
+        def received(serialised: bytes) -> None:
+            self._serialised[unit] = serialised
+            self._heard = time.monotonic()
+
+        return received
+
+    @property
+    def gone(self) -> bool:
+        """No unit has published anything for GONE seconds."""
+        return time.monotonic() - self._heard > GONE
+
+    def view(self, unit: str) -> UnitView | None:
+        """None before the first block."""
+        if unit not in self._serialised:
+            return None
+        kind = self._kinds[unit]
+        block = deserialize_message(self._serialised[unit], BLOCK_TYPES[kind])
+        return view_of(unit, kind, block, rotary=unit in self._rotary)
+
+    def views(self) -> list[UnitView]:
+        """Of the units that have said something: channels, axes, spindles."""
+        return [view for view in map(self.view, self._kinds) if view is not None]

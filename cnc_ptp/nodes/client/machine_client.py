@@ -1,0 +1,184 @@
+"""A client of a running machine: finds its units, gives commands, looks at blocks."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+import rclpy
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.wiring import PLC, UNKNOWN_UNIT
+from cnc_ptp.nodes import process
+from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
+
+NO_MACHINE = 26135
+NO_ANSWER = 26136
+PATIENCE = 5.0
+"""Seconds for the machine to be found (DDS announces itself every 3 s at the latest), and for an answer."""
+MARGIN = 1.0
+"""Seconds that a call waits longer than the PLC does, which takes a coupling back that no axis answers (26143)."""
+UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
+INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
+AXIS_TYPE = "kenngr.achs_typ"
+ROTARY = ("ACHSTYP_ROTATOR", 2)
+
+
+class MachineClient(Node):
+    """Services used: /plc/get_parameters, /<axis>/get_parameters, /<unit>/<command>; all in its namespace."""
+
+    def __init__(self) -> None:
+        super().__init__(f"cnc_ptp_client_{os.getpid()}", enable_rosout=False, start_parameter_services=False)
+        self._executor_of_client = EventsExecutor()
+        self._executor_of_client.add_node(self)
+        self.kinds: dict[str, str] = {}
+        """Unit -> kind, in the order of the machine."""
+        self.rotary: set[str] = set()
+        """Axes that count in degrees."""
+
+    def spin_until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """False when the condition has not come true in time."""
+        deadline = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() >= deadline:
+                return False
+            self._executor_of_client.spin_once(timeout_sec=min(0.05, seconds))
+        return True
+
+    def spin_for(self, seconds: float) -> None:
+        self.spin_until(lambda: False, seconds)
+
+    # units
+
+    def find_machine(self, patience: float = PATIENCE) -> None:
+        """Learns the units from the PLC node. Raises CncError 26135 when there is none."""
+        answer = self._parameters_of(PLC, list(UNITS), patience)
+        if answer is None:
+            where = f"ROS domain {self.context.get_domain_id()}"
+            where += "" if self.get_namespace() == "/" else f" in namespace {self.get_namespace()}"
+            raise CncError(NO_MACHINE, f"no machine is running on {where}", "nothing was asked")
+        for kind, value in zip(UNITS.values(), answer, strict=True):
+            self.kinds |= dict.fromkeys(value.string_array_value, kind)
+        self.kinds[PLC] = "plc"
+
+    def learn_axis_types(self, units: Iterable[str]) -> None:
+        """Which of the axes count in degrees; an axis that does not answer counts in mm."""
+        for unit in units:
+            answer = self._parameters_of(unit, [AXIS_TYPE]) if self.kinds[unit] == "axis" else None
+            if answer and (answer[0].string_value in ROTARY or answer[0].integer_value in ROTARY):
+                self.rotary.add(unit)
+
+    def _parameters_of(self, node: str, names: list[str], patience: float = PATIENCE) -> Any:
+        """Values; None when the node does not answer."""
+        client: Client[Any, Any] = self.create_client(GetParameters, f"{node}/get_parameters")
+        answer = self._answer(client, GetParameters.Request(names=names), patience)
+        self.destroy_client(client)
+        return None if answer is None else answer.values
+
+    def require_unit(self, unit: str, kinds: Iterable[str] = ()) -> str:
+        """Its kind. Raises CncError 26111 when the machine has no such unit."""
+        wanted = tuple(kinds) or ("channel", "axis", "spindle", "plc")
+        if self.kinds.get(unit) not in wanted:
+            known = ", ".join(name for name, kind in self.kinds.items() if kind in wanted) or "none"
+            what = " or ".join(wanted) if kinds else "unit"
+            raise CncError(UNKNOWN_UNIT, f"the machine has no {what} '{unit}'", f"nothing was asked. Known: {known}")
+        return self.kinds[unit]
+
+    def look_at(self, units: Iterable[str]) -> LatestBlocks:
+        """The newest blocks of units, from now on."""
+        units = list(units)
+        self.learn_axis_types(units)
+        return LatestBlocks(self, {unit: self.kinds[unit] for unit in units}, rotary=self.rotary)
+
+    # commands
+
+    def ask(self, unit: str, command: str, arguments: Mapping[str, Any]) -> Any:
+        """The response to a command. Raises CncError 26136 when none comes in time, 22001 for too large an integer."""
+        service = services_of(self.kinds[unit])[command]
+        check_integers(f"{self.kinds[unit]} {unit}: {command} refused", service, arguments)
+        patience = COUPLING_PATIENCE + MARGIN if command in COUPLING_SERVICES else PATIENCE
+        client: Client[Any, Any] = self.create_client(service, f"{unit}/{command}")
+        answer = self._answer(client, request_of(service, arguments), patience)
+        if answer is None:
+            text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
+            raise CncError(NO_ANSWER, text, "whether it was carried out is not known, see `cnc_ptp status`")
+        return answer
+
+    def _answer(self, client: Client[Any, Any], request: Any, patience: float = PATIENCE) -> Any:
+        """None when the service does not answer in time."""
+        if not self.spin_until(client.service_is_ready, patience):
+            return None
+        future = client.call_async(request)
+        return future.result() if self.spin_until(future.done, patience) else None
+
+
+@contextmanager
+def connected(*, patience: float = PATIENCE) -> Iterator[MachineClient]:
+    """A client of the machine that runs on this ROS domain, which may take `patience` seconds to be found.
+
+    Raises CncError 26108 and 26135.
+    """
+    process.initialise()
+    try:
+        client = MachineClient()
+        client.find_machine(patience)
+        yield client
+    finally:
+        rclpy.try_shutdown()
+
+
+def services_of(kind: str) -> dict[str, Any]:
+    """Command -> service type."""
+    return SERVICES[kind] | (COUPLING_SERVICES if kind == "axis" else {})
+
+
+def arguments_of(kind: str, unit: str, command: str) -> Arguments:
+    """What the service of a command takes. Raises CncError 22002 when there is none."""
+    service = services_of(kind).get(command)
+    if service is None:
+        where = f"{kind} {unit}"
+        known = ", ".join(sorted(services_of(kind)))
+        if command == "jog" and kind == "axis":
+            raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)
+        if command in COMMANDS[kind].keys() - INTERNAL:
+            text = f"'{command}' is a command of scenarios only"
+        else:
+            text = f"unknown command '{command}'"
+        raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {known}", where=where)
+    fields = service.Request.get_fields_and_field_types()
+    return {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
+
+
+def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
+    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it round."""
+    fields = service.Request.get_fields_and_field_types()
+    for name, value in arguments.items():
+        if found := INTEGER_FIELD.fullmatch(fields[name]):
+            low, high = integer_range(found[1] == "u", int(found[2]))
+            if not low <= value <= high:
+                reason = f"{name} = {value} is not within {low} … {high}"
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
+
+
+def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:
+    return (0, 2**bits - 1) if unsigned else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+
+
+def request_of(service: Any, arguments: Mapping[str, Any]) -> Any:
+    """A request with these fields; what is left out keeps its default, and `has_<name>` says so."""
+    request = service.Request(**arguments)
+    for name in arguments:
+        if hasattr(request, f"has_{name}"):
+            setattr(request, f"has_{name}", True)
+    return request

@@ -1,0 +1,1 @@
+"""The node around a unit: what arrives, blocks, services, actions, parameters, diagnostics."""

@@ -1,0 +1,429 @@
+"""The node around a unit: store what arrives, compute a block when all of it is there, publish."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.node import Node
+
+from cnc_ptp import msg
+from cnc_ptp.errors import CncError
+from cnc_ptp.machine.gate import BlockGate
+from cnc_ptp.machine.runner import CLOCK, UnitRunner
+from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
+from cnc_ptp.nodes import convert, process
+from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.topics import (
+    BLOCK_TYPES,
+    BLOCKS,
+    COMMAND,
+    DIAGNOSTICS,
+    EVENTS,
+    HEARTBEAT,
+    LATENESS,
+    PLC_INPUT,
+    RECORDER,
+    REMEMBERED_BLOCKS,
+    REPORT,
+    SERVICES,
+    STATE_TYPES,
+    TICK,
+    block_topic,
+)
+from cnc_ptp.nodes.unit.claim import claim_unit
+from cnc_ptp.nodes.unit.health import Health
+from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
+from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
+from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
+from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
+from cnc_ptp.protocol.unit import Unit
+
+MACHINE = "machine"
+"""The PLC node shows the parameters of the machine."""
+BLOCK_SKIPPED = 26102
+CAME_TWICE = 26142
+TOO_LATE = 26116
+LONGEST_COMMAND = 2.0
+"""Seconds that a command or block may take; after that the node counts as silent."""
+DIAGNOSTICS_PERIOD = 1.0
+
+
+class UnitNode(Node):
+    """Runs one unit of the machine as a ROS node of the unit's name.
+
+    Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
+    and of the master of a coupled axis.
+    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once a second /diagnostics and
+    /lateness; while somebody subscribes /<name>/state.
+    Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
+    Parameters: all of its list, read-only, with range, unit and P number as descriptor.
+    """
+
+    def __init__(
+        self, machine: MachineParameters, unit: Unit, *, recorders: int = 0, state_rate: float | None = None
+    ) -> None:
+        """Nothing but a name in the graph; with `setup` it takes part.
+
+        `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
+        states a second, None = as the machine file says.
+        """
+        super().__init__(unit.name, enable_rosout=False)
+        self._kinds = unit_kinds(machine)
+        self._watchdog = machine.watchdog_ms / 1000.0
+        self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
+        wires = wiring(machine)
+        self._inputs: Inputs = wires[unit.name]
+        self._readers = {name for name, needs in wires.items() if unit.name in (*needs.upstream, *needs.feedback)}
+        self._readers |= {RECORDER} if recorders else set()
+        self._gate = BlockGate(self._inputs)
+        self._cycle_ns = machine.cycle_time_us * 1000
+        self._count = machine.block_cycles
+        self._start_ns = 0
+        rotary = unit.kind == "spindle" or (unit.kind == "axis" and machine.axes[unit.name].rotary)
+        block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
+        self.health = Health(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
+        self._state_period = period_cycles(machine, state_rate)
+        self._scheduled_ns: dict[int, int] = {}
+        self._told_twice: set[str] = set()
+        self._masters: dict[str, Any] = {}
+        self._running = False
+        self.paced = False
+        """The clock runs in real time."""
+        self._alone = False
+        self._ended = False
+        self._busy = False
+        self.failure: CncError | None = None
+        """Why the node cannot go on."""
+        now = time.monotonic()
+        self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
+        self._said = self._checked = now
+        self._machine = machine
+        self._own_name = MACHINE if unit.kind == PLC else unit.name
+
+    def setup(self) -> None:
+        """Claims the unit, declares its parameters, makes topics, services and timers.
+
+        Raises CncError 26141 when another process has the unit, 26130 for a refused ROS argument.
+        """
+        try:
+            self._claim = claim_unit(self, self.unit.name)
+        except CncError:
+            super().destroy_node()
+            raise
+        declare_parameters(self, self._machine, self._own_name)
+        self._make_publishers()
+        self._make_subscriptions()
+        self._make_services()
+        self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
+        self.create_timer(self._watchdog / 4.0, self._watch)
+        self.create_timer(DIAGNOSTICS_PERIOD, self._publish_diagnostics)
+        threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
+
+    @property
+    def unit(self) -> Unit:
+        return self._runner.unit
+
+    # set-up
+
+    def _make_publishers(self) -> None:
+        name = self.unit.name
+        quality = REMEMBERED_BLOCKS if self.unit.kind in ("axis", "spindle") else BLOCKS
+        self._block_publisher = self.create_publisher(BLOCK_TYPES[self.unit.kind], block_topic(name), quality)
+        self._event_publisher = EventPublisher(self)
+        self._record_publisher = self.create_publisher(msg.CommandRecord, COMMAND, EVENTS)
+        self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
+        self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
+        self._diagnostics_publisher = self.create_publisher(DiagnosticArray, DIAGNOSTICS, PLC_INPUT)
+        self._lateness_publisher = self.create_publisher(msg.LatenessHistogram, LATENESS, PLC_INPUT)
+        self._live_state = None
+        if self._state_period and self.unit.kind in STATE_TYPES:
+            self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
+
+    def _make_subscriptions(self) -> None:
+        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)]
+        self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
+        for source in self._gate.sources:
+            block_type, received = BLOCK_TYPES[self._kinds[source]], partial(self._on_block, source)
+            self._needed.append(self.create_subscription(block_type, block_topic(source), received, BLOCKS))
+
+    def set_parameters_atomically(self, parameter_list: Any) -> Any:
+        """Refuses: all parameters are read-only; those with a reason of their own give it."""
+        refused = refused_change(self._machine.raw(self._own_name), parameter_list)
+        return refused or super().set_parameters_atomically(parameter_list)
+
+    def _make_services(self) -> None:
+        for command, service_type in SERVICES[self.unit.kind].items():
+            callback = partial(self._on_service, command)
+            self.create_service(service_type, f"{self.unit.name}/{command}", callback)
+
+    def _report_ready(self) -> None:
+        """Says `ready` until the first tick, once everybody that is needed has found each other."""
+        if self._running:
+            self._ready_timer.cancel()
+            return
+        found = process.is_read(self, self._block_publisher, self._readers)
+        if found and all(subscription.get_publisher_count() for subscription in self._needed):
+            self._report(-1)
+
+    # what arrives
+
+    def _on_tick(self, message: msg.CycleTick) -> None:
+        if self._alone:
+            return
+        if not self._running and message.first_cycle:
+            self.failure = CncError(
+                TOO_LATE,
+                f"{self.unit.name}: the run is at cycle {message.first_cycle}",
+                "the node takes no part and ends: nodes must be there before the clock starts",
+            )
+            return
+        if not self._running and message.scheduled_monotonic_ns:
+            process.take_priority()
+        self._running, self.paced = True, bool(message.scheduled_monotonic_ns)
+        self._heard[CLOCK] = time.monotonic()
+        self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+        if self.paced:
+            self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
+        before = self._gate.duplicates
+        if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):
+            self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
+        self._tell_twice(CLOCK, message.first_cycle, before)
+        self._compute_ready_blocks()
+        self._end_if_over()
+
+    def _on_block(self, source: str, message: Any) -> None:
+        self._heard[source] = time.monotonic()
+        block = convert.message_to_block(message)
+        if isinstance(block, PlcBlock):
+            self.complete_commands(block)
+        before = self._gate.duplicates
+        self._gate.add_block(source, block)
+        self._tell_twice(source, block.first_cycle, before)
+        self._compute_ready_blocks()
+
+    def _tell_twice(self, source: str, cycle: int, before: int) -> None:
+        """An event for each source of which more came twice than `before`: perhaps two nodes have the same unit."""
+        if self._gate.duplicates > before and source not in self._told_twice:
+            self._told_twice.add(source)
+            text = f"block {cycle} of '{source}' came twice, the first one counts; is there a second '{source}'?"
+            self.tell(Severity.ERROR, CAME_TWICE, f"{self.unit.name}: {text}")
+
+    def tell(self, severity: int, error_id: int, text: str) -> None:
+        """An event of the node, not of its unit."""
+        event = Event(self._gate.next_cycle, self.unit.name, severity, error_id, text)
+        self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+
+    def _on_heartbeat(self, message: msg.BlockReport) -> None:
+        if message.source in self._heard:
+            self._heard[message.source] = time.monotonic()
+
+    def _on_service(self, command: str, request: Any, response: Any) -> Any:
+        asked = Command(self.unit.name, command, self.arguments(command, request))
+        if reason := objection(command, COMMANDS[self.unit.kind][command], request):
+            record = self.refuse(asked, BAD_ARGUMENT, reason)
+        else:
+            record = self.command(asked)
+        response.accepted, response.error_id = record.accepted, record.error_id
+        response.message, response.cycle = record.message, record.cycle
+        self._compute_ready_blocks()  # an axis that is decoupled now does not wait for its master any more
+        return response
+
+    def arguments(self, command: str, request: Any) -> dict[str, Any]:
+        return given_arguments(COMMANDS[self.unit.kind][command], request)
+
+    @property
+    def is_over(self) -> bool:
+        """No more block is computed."""
+        return self._gate.closed
+
+    def command(self, command: Command) -> CommandRecord:
+        """Carries out a command between two blocks: from a service, an action or the watchdog."""
+        if self._gate.closed:
+            return self.refuse(command, RUN_OVER, "the run is over")
+        with self._working():
+            record = self._runner.command(command)
+        self._publish_records()
+        return record
+
+    def refuse(self, command: Command, error_id: int, reason: str) -> CommandRecord:
+        """The record of a command that does not come as far as the unit; it is published like all others."""
+        text = f"{self.unit.kind} {self.unit.name}: {command.command} refused: {reason}; nothing was changed"
+        cycle = self._runner.next_cycle
+        record = CommandRecord(cycle, self.unit.name, command.command, command.arguments_json, False, error_id, text)
+        self.unit.records.append(record)
+        self.unit.event(cycle, Severity.WARNING, error_id, text)
+        self._publish_records()
+        return record
+
+    # one block
+
+    def _compute_ready_blocks(self) -> None:
+        for source in self._gate.skipped():
+            self._lose(source, f"block {self._gate.next_cycle} of '{source}' is missing, a later one came")
+        while True:
+            if not self._gate.opened:
+                begun = self._gate.begin()
+                if begun is None:
+                    return
+                with self._working():
+                    self._runner.apply(*begun)
+            self._follow_master()
+            ready = self._gate.complete()
+            if ready is None:
+                return
+            self._compute(*ready)
+
+    def _follow_master(self) -> None:
+        """Needs the blocks of the unit that this one is coupled to now; the first ones come from the topic's memory."""
+        master = self._runner.master
+        self._gate.follow(master)
+        if master is not None and master not in self._masters:
+            self._heard[master] = time.monotonic()
+            received = partial(self._on_master_block, master)
+            self._masters[master] = self.create_subscription(
+                BLOCK_TYPES[self._kinds[master]], block_topic(master), received, REMEMBERED_BLOCKS
+            )
+
+    def _on_master_block(self, master: str, message: Any) -> None:
+        self._heard[master] = time.monotonic()
+        self._gate.add_master_block(master, convert.message_to_block(message))
+        self._compute_ready_blocks()
+
+    def _compute(self, tick: CycleTick, inputs: dict[str, Block]) -> None:
+        with self._working():
+            block = self._runner.compute(tick, inputs)
+        self._publish_records()  # first: a recording that ends here has all commands that led to its last states
+        self._publish_block(block)
+        self.health.add_block(block)
+        scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
+        if scheduled:
+            self.health.add_lateness((time.monotonic_ns() - scheduled) // 1000)
+        else:
+            self._report(tick.first_cycle)
+        plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
+        if isinstance(plc, PlcBlock) and plc.run_done:
+            self._gate.close()
+        self.after_block(block)
+        if self._live_state is not None and not isinstance(block, PlcBlock):
+            self._live_state.publish(block, self._start_ns, self._cycle_ns)
+        self._end_if_over()
+
+    def _end_if_over(self) -> None:
+        if self._gate.closed and not self._ended:
+            self._ended = True
+            self._publish_diagnostics()
+            self.run_ended()
+
+    def run_ended(self) -> None:
+        """For subclasses: the last block has been computed."""
+
+    def complete_commands(self, block: PlcBlock) -> None:
+        """For subclasses: what commands of the PLC need besides what travels in its block."""
+
+    def after_block(self, block: Block) -> None:
+        """For subclasses: what else is to be published of a block."""
+
+    def stamp(self, cycle: int) -> Time:
+        return convert.time_message(self._start_ns + cycle * self._cycle_ns)
+
+    def _publish_block(self, block: Block) -> None:
+        self._block_publisher.publish(convert.block_to_message(block, self.stamp(block.first_cycle)))
+        self._said = time.monotonic()
+
+    def _publish_records(self) -> None:
+        for record in self.unit.take_records():
+            self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
+        for event in self.unit.take_events():
+            self.health.note(event)
+            self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
+
+    # watchdog
+
+    def _watch(self) -> None:
+        """Says that this node lives while it waits, and gives up sources that were silent for the watchdog time."""
+        now = time.monotonic()
+        stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
+        if stalled or self._gate.closed or not self._running:
+            self._heard = dict.fromkeys(self._heard, now)
+            return
+        if self._alone:
+            self._tick_alone()
+            return
+        if now - self._said > self._watchdog / 4.0:
+            self._say()
+        begun = self._gate.next_cycle > self._count
+        patience = self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
+        for source in self._gate.missing():
+            if now - self._heard[source] > patience:
+                self._lose(source, None)
+        self._compute_ready_blocks()
+
+    def _lose(self, source: str, reason: str | None) -> None:
+        """Goes on without `source`; the unit decides what that means for its motion."""
+        if reason is not None:
+            self.health.lost_blocks += 1
+            self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
+        self._gate.drop(source)
+        self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
+        if source == CLOCK:
+            self._alone = True
+            for other in self._gate.sources:
+                self._gate.drop(other)
+
+    def _tick_alone(self) -> None:
+        """Without a clock the unit ticks by itself, so that its own ramp comes to its end."""
+        blocks = max(1, round(self._watchdog / 4.0 * 1e9 / (self._cycle_ns * self._count)))
+        for _ in range(blocks):
+            self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
+            self._compute_ready_blocks()
+
+    def _report(self, first_cycle: int) -> None:
+        """To the clock: ready (-1), or in free run a block that is computed."""
+        self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
+
+    def _say(self) -> None:
+        """To all: this node lives."""
+        self._said = time.monotonic()
+        self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=self._gate.next_cycle))
+
+    @contextmanager
+    def _working(self) -> Iterator[None]:
+        self._busy = True
+        try:
+            yield
+        finally:
+            self._busy = False
+
+    def _heartbeat_while_busy(self) -> None:
+        """A long command (a big program is interpreted) must not look like a dead node, but an endless one must."""
+        period = self._watchdog / 4.0
+        busy_for = 0.0
+        while self.context.ok():
+            if self._busy and 0.0 < busy_for < LONGEST_COMMAND:
+                self._say()
+            busy_for = busy_for + period if self._busy else 0.0
+            time.sleep(period)
+
+    def _publish_diagnostics(self) -> None:
+        if not self._running:
+            return
+        message = DiagnosticArray(status=[self.health.status(self._gate.duplicates)])
+        message.header.stamp = self.stamp(self._gate.next_cycle)
+        self._diagnostics_publisher.publish(message)
+        if self.health.lateness.counts:
+            lateness = self.health.lateness.message(self.unit.name)
+            lateness.header.stamp = message.header.stamp
+            self._lateness_publisher.publish(lateness)
+
+    def destroy_node(self) -> None:
+        super().destroy_node()
+        self._claim.close()

@@ -1,0 +1,1 @@
+"""What no single value shows: problems stop a node, notices go to the log."""

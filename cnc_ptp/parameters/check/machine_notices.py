@@ -1,0 +1,183 @@
+"""What a machine file may say but what does not do what its author may expect. Lines for the log, none stops a node."""
+
+from collections.abc import Iterator, Mapping
+
+from cnc_ptp.parameters.check.control_notices import control_notices
+from cnc_ptp.parameters.check.friction_notices import friction_notices
+from cnc_ptp.parameters.check.spindle_checks import above_control_limit
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.read.messages import Notice, notice
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.axis_view import is_modulo
+from cnc_ptp.parameters.view.channel_members import spindle_entries
+from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
+from cnc_ptp.parameters.view.gears import active_gear
+from cnc_ptp.parameters.view.spindle_view import curve_view, has_position
+from cnc_ptp.parameters.view.telegram import DriveType
+
+UNIT_LISTS = {"channel": ids.CHANNELS, "axis": ids.AXES, "spindle": ids.SPINDLES}
+HOMED_BY_THE_NC = (DriveType.CONVENTIONAL, DriveType.LIGHTBUS, DriveType.TERMINAL)
+"""Drive types of what TF5200 spindle 2.3 calls analogue spindles: conventional, Lightbus, terminal (P-AXIS-00156)."""
+UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
+UPPER_END = ids.GETRIEBE_MODULOO
+GEAR_RATIO = (ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM)
+SMALL_STEP = 0.001
+"""Part of the constant acceleration."""
+
+
+def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """One line a warning, with file and line."""
+    cycle_time = machine.kernel(ids.CYCLE_TIME_US)
+    yield from units_without_section(machine, sets)
+    for parameters in sets.values():
+        yield from without_effect(parameters)
+        if parameters.kind == "channel":
+            yield from slope_not_available(parameters)
+            yield from tools_without_limit(parameters)
+            yield from couplings_without_effect(parameters)
+            yield from ranges_above_the_spindle(parameters, sets)
+        else:
+            yield from control_notices(parameters, cycle_time)
+            yield from friction_notices(parameters)
+            yield from corrected_resolution(parameters)
+            yield from gear_ratio_without_effect(parameters)
+            yield from range_of_a_conveyor(parameters)
+            yield from spindle_notices(parameters)
+
+
+def units_without_section(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """Units that /machine lists and the file says nothing of, which the loader places where /machine stands."""
+    for name, parameters in sets.items():
+        if parameters.place == machine.place:
+            text = f"{parameters.kind} /{name} has no section in the file, it has the default of every parameter"
+            yield notice(machine, UNIT_LISTS[parameters.kind], (), text)
+
+
+def without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    for ros_name in parameters.given:
+        declaration, indexes, _ = parameters.find(ros_name)
+        if not declaration.effective_for(parameters.axis_type):
+            yield notice(parameters, declaration.id, indexes, "accepted, but without effect in this version")
+
+
+def slope_not_available(channel: ParameterSet) -> Iterator[Notice]:
+    value = channel.number(ids.SLOPE_PROFILE)
+    if value in UNAVAILABLE_SLOPES:
+        text = f"value {value}, {UNAVAILABLE_SLOPES[int(value)]}, is not available; 1 (TRAPEZ) is used"
+        yield notice(channel, ids.SLOPE_PROFILE, (), text)
+
+
+def tools_without_limit(parameters: ParameterSet) -> Iterator[Notice]:
+    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
+    for tool in parameters.used_indexes("wz"):
+        if not parameters.number(ids.WZ_LOG_AX_NR_SPDL, tool):
+            continue
+        for number in (ids.WZ_VB_MAX, ids.WZ_A_MAX):
+            if not parameters.is_given(number, tool):
+                yield notice(parameters, number, (tool,), f"not given, tool {tool} has no such limit")
+
+
+def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    """Coupled pairs that no command can enable: path axes, and other groups than 0."""
+    for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
+        for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
+            if group:
+                text = "only coupling group 0 is taken from here"
+                yield notice(parameters, ids.PAAR_LOG_ACHS_NR_SLAVE, (group, pair), text)
+            elif not parameters.number(ids.PAAR_MODE, group, pair):
+                yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled here")
+
+
+def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+    """Speeds of a gear stage that its spindle refuses in motion (24001)."""
+    if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
+        return
+    for entry in spindle_entries(channel, sets):
+        if entry.node is None or not entry.indexes:
+            continue
+        for gear in channel.used_indexes(f"spindel.{entry.indexes[0]}.range_table"):
+            top = channel.number(ids.RANGE_TABLE_MAX_SPEED, *entry.indexes, gear)
+            most = sets[entry.node].kernel(ids.DYNAMIK_VB_MAX, gear) / DEG_S_PER_RPM
+            if top > most:
+                text = f"value {top} (rpm) is above P-AXIS-00212 getriebe[{gear}].vb_max of /{entry.node}, {most:g} rpm"
+                yield notice(channel, ids.RANGE_TABLE_MAX_SPEED, (*entry.indexes, gear), text)
+
+
+def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
+    for gear in parameters.used_indexes("getriebe"):
+        for number, warning in CORRECTED.items():
+            if parameters.number(number, gear) == 0:
+                yield notice(parameters, number, (gear,), "value 0 is corrected to 1", error_id=warning)
+
+
+def gear_ratio_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
+    """A gear ratio belongs to the feed constant; without it wegaufz and wegaufn say all of the resolution."""
+    if uses_feed_constant(parameters):
+        return
+    for gear in parameters.used_indexes("getriebe"):
+        given = [number for number in GEAR_RATIO if parameters.is_given(number, gear)]
+        if given and parameters.number(GEAR_RATIO[0], gear) != parameters.number(GEAR_RATIO[1], gear):
+            text = (
+                "without effect, there is no feed constant (P-AXIS-00362 and P-AXIS-00363 are 1); the resolution is "
+                "P-AXIS-00234/00233"
+            )
+            yield notice(parameters, given[0], (gear,), text)
+
+
+def spindle_notices(parameters: ParameterSet) -> Iterator[Notice]:
+    if parameters.kind == "spindle":
+        yield from homing_mode(parameters)
+        yield from rapid_traverse(parameters)
+        yield from step_in_the_curve(parameters)
+
+
+def homing_mode(parameters: ParameterSet) -> Iterator[Notice]:
+    """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
+    drive, no_automatic = parameters.number(ids.KENNGR_ANTR_TYP), int(parameters.number(ids.KENNGR_ACHS_MODE)) & 0x100
+    if drive == DriveType.SERCOS and not no_automatic:
+        text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
+        yield notice(parameters, ids.KENNGR_ACHS_MODE, (), text)
+    elif drive in HOMED_BY_THE_NC and no_automatic:
+        text = f"0x100 (no automatic homing) should not be set for {drive_type(parameters)}, which the NC homes"
+        yield notice(parameters, ids.KENNGR_ACHS_MODE, (), text)
+    if drive in HOMED_BY_THE_NC and has_position(parameters) and not parameters.number(ids.KENNGR_REF_OHNE_NOCKEN):
+        text = f"should be 1 for a spindle with {drive_type(parameters)}; it is homed without a cam"
+        yield notice(parameters, ids.KENNGR_REF_OHNE_NOCKEN, (), text)
+
+
+def drive_type(parameters: ParameterSet) -> str:
+    """Drive type 6 (+-10 V terminal)."""
+    number = int(parameters.number(ids.KENNGR_ANTR_TYP))
+    return f"drive type {number} ({parameters.catalogue.by_id[ids.KENNGR_ANTR_TYP].choices[number]})"
+
+
+def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
+    """The way to a position is measured, which ends at the control limit."""
+    for gear in parameters.used_indexes("getriebe"):
+        text = above_control_limit(parameters, ids.GETRIEBE_VB_EILGANG, gear)
+        if text:
+            yield notice(parameters, ids.GETRIEBE_VB_EILGANG, (gear,), f"{text}; positionings are that much slower")
+
+
+def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
+    """A hyperbola that does not begin with the constant acceleration."""
+    for gear in parameters.used_indexes("getriebe"):
+        curve = curve_view(parameters, gear)
+        if curve is None or curve.kind != "hyperbola":
+            continue
+        begin = curve.b1 / (1.0 + curve.b2 * (1.0 + curve.b3) or 1.0)
+        if abs(begin - curve.constant) > SMALL_STEP * curve.constant:
+            steps = f"begins with {begin:g} °/s², P-AXIS-00007 is {curve.constant:g} °/s²"
+            text = f"the hyperbola {steps}: a step in the curve"
+            yield notice(parameters, ids.BESCHL_KENNLINIE_B1, (gear,), text)
+
+
+def range_of_a_conveyor(parameters: ParameterSet) -> Iterator[Notice]:
+    """The default suits a turntable, hardly a conveyor."""
+    if parameters.axis_type != "T" or not is_modulo(parameters):
+        return
+    gear = active_gear(parameters)
+    if not parameters.is_given(UPPER_END, gear):
+        end = parameters.kernel(UPPER_END, gear)
+        yield notice(parameters, UPPER_END, (gear,), f"not given, the modulo range of the axis ends at {end:g} mm")

@@ -1,0 +1,159 @@
+"""The parameter reference: single entries for the terminal, and docs/parameters.md:
+`python -m cnc_ptp.parameters.declare.reference > docs/parameters.md`."""
+
+import difflib
+import re
+import sys
+from collections.abc import Callable, Iterator
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import errors
+from cnc_ptp.parameters.declare.declarations import AXIS_LETTERS, LISTS, Declaration, catalogue, dotted
+from cnc_ptp.parameters.declare.ranges import default_text, range_text
+
+HEADLINES = {
+    "axis": "Axis list (axes and spindles)",
+    "channel": "Channel list (NC channels)",
+    "compensation": "Compensation list (axes and spindles)",
+    "tool": "Tool list (NC channels)",
+    "simulation": "Simulation list (axes and spindles; our own)",
+    "machine": "Machine list (`/machine`; those under `ptp` belong to axes; our own)",
+}
+INTRODUCTION = """\
+# Parameters
+
+Made by `make docs` from `cnc_ptp/parameters/declare/declarations.yaml`; do not edit.
+
+A machine file is a ROS parameters file. `/machine` names the nodes, each node has a section:
+
+    /machine: {ros__parameters: {channels: [channel], axes: [x, "y", z], spindles: [s]}}
+    /x: {ros__parameters: {kopf: {achs_nr: 1}, getriebe: {"0": {kv: 5000}}}}
+
+`getriebe[0].kv` of the lists is `getriebe: {"0": {kv: …}}` or `getriebe.0.kv` in the file and in ROS. Integers are
+decimal or `0x…`; flags are constants joined by `|` or one number; booleans are true, false, 1 or 0. A parameter that
+the file does not give has its default, cut to the limits that the file gives. All are read-only while a node runs.
+Quote the name "y": ROS reads a bare y (and n) as a boolean.
+
+The kernel works in mm, ° and s. Units with two entries are for linear axes / rotary axes and spindles.
+Axis types: T linear, R rotary, S spindle. A range with an id in it ends at the value of that parameter.
+**—** in the last column: accepted and checked, without effect in this version; *S only*: in effect for spindles only.
+"""
+
+
+def reference_markdown() -> str:
+    """docs/parameters.md."""
+    return "\n".join([INTRODUCTION, *array_lines(), *(line for name in LISTS for line in list_lines(name))])
+
+
+def array_lines() -> Iterator[str]:
+    yield "## Arrays\n"
+    sizes = ", ".join(f"`{name}` {array.size}" for name, array in catalogue().arrays.items())
+    yield f"Indexes begin at 0. Largest numbers of elements: {sizes}.\n"
+
+
+def list_lines(list_name: str) -> Iterator[str]:
+    yield f"## {HEADLINES[list_name]}\n"
+    yield "| id | name | type | range | unit | default | axes | meaning | |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    declarations = (entry for entry in catalogue().by_id.values() if entry.list_name == list_name)
+    for declaration in sorted(declarations, key=lambda entry: entry.id):
+        yield table_row(declaration)
+    yield ""
+
+
+def table_row(declaration: Declaration) -> str:
+    cells = (
+        declaration.id,
+        f"`{declaration.name}`",
+        declaration.data_type,
+        range_text(declaration),
+        unit_text(declaration),
+        default_text(declaration.default),
+        declaration.axes,
+        declaration.text + (f" Drive types: {declaration.drives}." if declaration.drives else ""),
+        effect_text(declaration),
+    )
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def effect_text(declaration: Declaration) -> str:
+    """Last column of the table."""
+    if isinstance(declaration.effective, str):
+        return f"{declaration.effective} only"
+    return "" if declaration.effective else "**—**"
+
+
+def effect_line(declaration: Declaration) -> str:
+    if isinstance(declaration.effective, str):
+        kinds = " and ".join(AXIS_LETTERS[letter] for letter in declaration.effective)
+        return f"  In effect for {kinds} only."
+    return "" if declaration.effective else "  Accepted and checked, but without effect in this version."
+
+
+def unit_text(declaration: Declaration) -> str:
+    linear, other = declaration.unit
+    return linear if linear == other else f"{linear} / {other}"
+
+
+def matches(declaration: Declaration, wanted: str) -> bool:
+    name = re.sub(r"\.(\d+|\*|i|j)(?=\.|$)", ".*", dotted(wanted.replace("[i]", ".*").replace("[j]", ".*")))
+    return (
+        declaration.id == wanted.upper()
+        or declaration.key == name
+        or declaration.key.split(".*")[-1].endswith("." + name)
+    )
+
+
+def find(wanted: str) -> list[Declaration]:
+    """Parameters by id or name, else by number, by parts of id and name, and by words of the text, in this order.
+
+    Raises CncError 25018 with the nearest names when there is none.
+    """
+    declarations = list(catalogue().by_id.values())
+    words = wanted.lower().split()
+    searches: tuple[Callable[[Declaration], bool], ...] = (
+        lambda entry: matches(entry, wanted.strip()),
+        lambda entry: wanted.strip().isdecimal() and int(entry.id.rpartition("-")[2]) == int(wanted),
+        lambda entry: all(word in f"{entry.id} {entry.name}".lower() for word in words),
+        lambda entry: all(word in f"{entry.id} {entry.name} {entry.text}".lower() for word in words),
+    )
+    exact, numbered, named, told = ([entry for entry in declarations if fits(entry)] for fits in searches)
+    found = exact or numbered or [*named, *(entry for entry in told if entry not in named)]
+    if not found or not words:
+        raise CncError(errors.UNKNOWN_PARAMETER, f"no parameter is called {wanted!r}{near(wanted)}")
+    return found
+
+
+def near(wanted: str) -> str:
+    """The most similar id or name, and up to two more that are very similar, as a question."""
+    candidates: dict[str, Declaration] = {}
+    for declaration in catalogue().by_id.values():
+        for name in (declaration.id, declaration.name, declaration.name.split(".")[-1], *declaration.misprints):
+            candidates.setdefault(name.lower(), declaration)
+    typed = wanted.lower()[:100]
+    names = [name for name in candidates if not name.startswith("p-")]  # ids resemble each other
+    close = difflib.get_close_matches(typed, candidates, n=1, cutoff=0.5)
+    close += difflib.get_close_matches(typed, names, n=3, cutoff=0.8)
+    texts = dict.fromkeys(f"{candidates[name].id} {candidates[name].name}" for name in close)
+    return f", did you mean {' or '.join(texts)}?" if texts else ""
+
+
+def entry_text(declaration: Declaration) -> str:
+    """One parameter in full, for a terminal."""
+    lines = [
+        f"{declaration.id}  {declaration.name}",
+        f"  {declaration.text}",
+        f"  list     {declaration.list_name}" + (f", axis types {declaration.axes}" if declaration.axes else ""),
+        f"  type     {declaration.data_type} ({declaration.type})",
+        f"  range    {range_text(declaration)}",
+        f"  unit     {unit_text(declaration)}",
+        f"  default  {default_text(declaration.default)}",
+        f"  drives   {declaration.drives}",
+        f"  source   {declaration.source}",
+        effect_line(declaration),
+    ]
+    return "\n".join(line for line in lines if line.strip() not in ("", "range", "unit", "drives"))
+
+
+if __name__ == "__main__":
+    sys.stdout.write(reference_markdown())

@@ -1,0 +1,108 @@
+"""An axis as the kernel uses it, in the gear after start-up."""
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
+from cnc_ptp.parameters.view.encoder import encoder_increment
+from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.gears import active_gear, emergency_deceleration
+from cnc_ptp.parameters.view.telegram import DriveType
+
+MODULO, MODULO_LINEAR = 0x4, 0x400
+"""Bits of P-AXIS-00015; the second one is for linear axes."""
+SOFT_LIMITS = (ids.KENNGR_SWE_NEG, ids.KENNGR_SWE_POS)
+
+
+@dataclass(frozen=True, slots=True)
+class AxisParameters:
+    """A linear (mm) or rotary (°) axis. Velocities per second, accelerations per s², jerk per s³, times in s."""
+
+    name: str
+    number: Annotated[int, ids.KOPF_ACHS_NR]
+    rotary: bool
+    modulo: bool
+    """A turntable or a conveyor: it counts on without an end, also from modulo_low to modulo_high, mm (°).
+
+    Then the soft limits are infinite.
+    """
+    modulo_low: float
+    modulo_high: float
+    virtual: bool
+    """Has no drive (P-AXIS-00020 = 16)."""
+    max_velocity: Annotated[float, ids.DYNAMIK_VB_MAX]
+    rapid_velocity: Annotated[float, ids.GETRIEBE_VB_EILGANG]
+    reference_velocity: float
+    """A PTP start with more is refused."""
+    max_acceleration: Annotated[float, ids.DYNAMIK_A_MAX]
+    acceleration: Annotated[float, ids.SLOPE_PROFIL_A_BESCHL]
+    deceleration: Annotated[float, ids.SLOPE_PROFIL_A_BREMS]
+    emergency_deceleration: float
+    jerk: float
+    soft_limit_negative: float
+    soft_limit_positive: float
+    position_window: Annotated[float, ids.GETRIEBE_WINDOW]
+    encoder_increment: float
+    """mm or ° an increment; 0.0 is an ideal measuring system."""
+    override_type: Annotated[int, ids.PTP_OVERRIDE_TYPE]
+    """PTP override: 1 reduced, 2 original, 3 and 4 the same iterated."""
+    override_steps: Annotated[int, ids.PTP_OVERRIDE_STEPS]
+    """Override filter: steps from 0 to 100 %, 0 = no filter …"""
+    override_interval: Annotated[float, ids.PTP_OVERRIDE_INTERVAL_MS]
+    """… and the least time between two of them."""
+    max_override_percent: float
+    external_dead_time: Annotated[float, ids.PTP_EXTERNAL_DEAD_TIME]
+    external_timeout: Annotated[float, ids.PTP_EXTERNAL_TIMEOUT_MS]
+    """Longest silence of external setpoints in motion."""
+    target_time: Annotated[float, ids.PTP_TARGET_TIME_MS]
+    """In which the actual position must have come into the position window; 0 = not monitored."""
+    error_propagation_delayed: Annotated[bool, ids.COUPLING_ERROR_PROPAGATION_MODE]
+    """An error reaches the other axes of the master/slave group only after error_propagation_delay."""
+    error_propagation_delay: Annotated[float, ids.COUPLING_ERROR_PROPAGATION_DELAY_MS]
+    couple_to_actual: Annotated[bool, ids.COUPLING_COUPLE_TO_ACTUAL]
+    """Slaves follow the actual values of this axis while it has no enable or a delayed error."""
+    velocity_window: Annotated[float, ids.COUPLING_VELOCITY_WINDOW]
+    """An actual velocity below it is 0 for slaves."""
+    velocity_filter_time: Annotated[float, ids.COUPLING_VELOCITY_FILTER_TIME]
+    powered_at_start: Annotated[bool, ids.SIMULATION_POWERED_AT_START]
+    referenced_at_start: Annotated[bool, ids.SIMULATION_REFERENCED_AT_START]
+    start_position: Annotated[float, ids.SIMULATION_START_POSITION]
+    control: ControlParameters
+
+
+def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
+    """`cycle_time` in s."""
+    gear = active_gear(parameters)
+    modulo = is_modulo(parameters)
+    return AxisParameters(
+        name=parameters.node,
+        rotary=parameters.axis_type == "R",
+        modulo=modulo,
+        modulo_low=parameters.kernel(ids.GETRIEBE_MODULOU, gear) if modulo else 0.0,
+        modulo_high=parameters.kernel(ids.GETRIEBE_MODULOO, gear) if modulo else 0.0,
+        virtual=parameters.number(ids.KENNGR_ANTR_TYP) == DriveType.VIRTUAL,
+        reference_velocity=parameters.kernel(ids.PTP_REFERENCE_VELOCITY) or parameters.kernel(ids.DYNAMIK_VB_MAX, gear),
+        emergency_deceleration=emergency_deceleration(parameters, gear),
+        jerk=jerk(parameters, gear),
+        soft_limit_negative=-math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_NEG),
+        soft_limit_positive=math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_POS),
+        encoder_increment=encoder_increment(parameters, gear),
+        max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
+        control=control_view(parameters, gear, cycle_time),
+        **given_fields(AxisParameters, parameters, gear),
+    )
+
+
+def jerk(parameters: ParameterSet, gear: int) -> float:
+    """J = a_beschl / tr_beschl_zu, in mm/s³ or °/s³."""
+    ramp_time_us = parameters.number(ids.SLOPE_PROFIL_TR_BESCHL_ZU, gear)
+    return parameters.number(ids.SLOPE_PROFIL_A_BESCHL, gear) * 1_000_000 / ramp_time_us
+
+
+def is_modulo(parameters: ParameterSet) -> bool:
+    """A turntable or a conveyor (P-AXIS-00015)."""
+    bits = MODULO | MODULO_LINEAR if parameters.axis_type == "T" else MODULO
+    return bool(int(parameters.number(ids.KENNGR_ACHS_MODE)) & bits)

@@ -1,0 +1,170 @@
+"""A channel as the kernel uses it: its axes and spindles by program name, synchronisation of functions, path limits."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, NamedTuple
+
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.channel_members import (
+    ChannelAxisEntry,
+    axis_entries,
+    coupled_spindle_pairs,
+    main_spindle_number,
+    spindle_entries,
+)
+from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
+
+INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
+GEAR_M_FUNCTIONS = range(40, 46)
+
+
+class ChannelAxis(NamedTuple):
+    """An axis of a channel: what programs call it ("X") and its node ("x")."""
+
+    name: str
+    node: str
+
+
+class ChannelSpindle(NamedTuple):
+    """A spindle of a channel with the synchronisation of its functions.
+
+    name          what programs call it at start-up, and its name in the canonical stream
+    node          empty for a spindle that the PLC moves through the channel's interface (P-CHAN-00069)
+    own_name      what programs call it while it is not the main spindle; empty is `name`
+    ranges        (lowest, highest) speed of each gear stage, rpm; (0, 0) is an unused one
+    """
+
+    name: str
+    node: str
+    m3: Annotated[Synchronisation, ids.SPINDEL_M3_SYNCH]
+    m4: Annotated[Synchronisation, ids.SPINDEL_M4_SYNCH]
+    m5: Annotated[Synchronisation, ids.SPINDEL_M5_SYNCH]
+    m19: Annotated[Synchronisation, ids.SPINDEL_M19_SYNCH]
+    s: Annotated[Synchronisation, ids.SPINDEL_S_SYNCH]
+    own_name: str = ""
+    number: int = 0
+    ranges: tuple[tuple[float, float], ...] = ()
+    from_top: Annotated[bool, ids.SPINDEL_RANGE_WAY] = False
+    automatic: Annotated[bool, ids.SPINDEL_AUTOM_RANGE] = False
+
+    @property
+    def plc_control(self) -> bool:
+        """The PLC moves it through the channel's interface."""
+        return not self.node
+
+
+class ToolLimits(NamedTuple):
+    """What a tool permits to the spindle `node`, rpm and °/s²; None is not limited (P-TOOL-00012 … 00015)."""
+
+    node: str
+    min_speed_rpm: float | None
+    max_speed_rpm: float | None
+    max_acceleration: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelParameters:
+    """An NC channel."""
+
+    name: str
+    axes: tuple[ChannelAxis, ...]
+    spindles: tuple[ChannelSpindle, ...]
+    main_spindle: str
+    """Program name of the main spindle, empty when the channel has no spindle."""
+    m_functions: Mapping[int, Synchronisation]
+    """Synchronisation by M number; an M function that is missing here does not exist on the machine."""
+    max_override_percent: float
+    circle_center_tolerance: Annotated[float, ids.MITTELPKT_DIFF]
+    """Largest shift of an arc's centre in mm …"""
+    circle_center_ratio: Annotated[float, ids.MITTELPKT_FAKTOR]
+    """… and as a part of its radius."""
+    gear_change: Annotated[bool, ids.MAIN_SPINDLE_GEAR_CHANGE] = False
+    """M40 to M45 and S change the gear of the main spindle (P-CHAN-00052)."""
+    coupled: tuple[tuple[str, str], ...] = ()
+    """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
+    tools: Mapping[int, ToolLimits] = field(default_factory=dict)
+    """Limits of the tools that have any, by D number."""
+    tool_records: frozenset[int] = frozenset()
+    """D numbers of all tools that the file knows."""
+    slope: str = "TRAPEZ"
+    """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
+
+
+def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> ChannelParameters:
+    spindles = spindle_entries(channel, sets)
+    main = main_spindle_number(channel, spindles)
+    return ChannelParameters(
+        name=channel.node,
+        axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axis_entries(channel, sets)),
+        spindles=tuple(channel_spindle(channel, entry) for entry in spindles),
+        main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
+        m_functions=m_functions(channel),
+        max_override_percent=channel.percent(ids.MAX_VB_OVERRIDE),
+        coupled=coupled_spindles(channel, spindles),
+        tools=tool_limits(channel, spindles),
+        tool_records=frozenset(channel.used_indexes("wz")),
+        slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
+        **given_fields(ChannelParameters, channel),
+    )
+
+
+def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSpindle:
+    """One of spindel[i], or one that the channel has without listing it: then all parameters have their defaults."""
+    return ChannelSpindle(
+        name=entry.name,
+        node="" if entry.plc_control else str(entry.node),
+        own_name=entry.own_name,
+        number=entry.number,
+        ranges=speed_ranges(channel, *entry.indexes) if entry.indexes else (),
+        **given_fields(ChannelSpindle, channel, *entry.indexes),
+    )
+
+
+def speed_ranges(channel: ParameterSet, spindle: int) -> tuple[tuple[float, float], ...]:
+    """(lowest, highest) speed of the gear stages up to the last one that the file gives, rpm."""
+    given = channel.used_indexes(f"spindel.{spindle}.range_table")
+    ends = (ids.RANGE_TABLE_MIN_SPEED, ids.RANGE_TABLE_MAX_SPEED)
+    speeds = [[float(channel.number(end, spindle, gear)) for end in ends] for gear in range(max(given, default=-1) + 1)]
+    return tuple((lowest, highest) for lowest, highest in speeds)
+
+
+def coupled_spindles(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> tuple[tuple[str, str], ...]:
+    """The pairs of spindles in coupling group 0."""
+    name = {entry.number: entry.name for entry in spindles}
+    return tuple((name.get(slave, ""), name.get(master, "")) for _, slave, master in coupled_spindle_pairs(channel))
+
+
+def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> dict[int, ToolLimits]:
+    """What the tools permit; a limit that the file does not give is none."""
+    node = {entry.number: str(entry.node) for entry in spindles}
+    tools = {}
+    for tool in channel.used_indexes("wz"):
+        number = int(channel.number(ids.WZ_LOG_AX_NR_SPDL, tool))
+        if number:
+            low, high = (limit(channel, parameter, tool) for parameter in (ids.WZ_VB_MIN, ids.WZ_VB_MAX))
+            tools[tool] = ToolLimits(
+                node.get(number, ""),
+                None if low is None else low / DEG_S_PER_RPM,
+                None if high is None else high / DEG_S_PER_RPM,
+                limit(channel, ids.WZ_A_MAX, tool),
+            )
+    return tools
+
+
+def limit(channel: ParameterSet, number: str, tool: int) -> float | None:
+    """A limit of a tool in kernel units; None where it is not given."""
+    return channel.kernel(number, tool) if channel.is_given(number, tool) else None
+
+
+def m_functions(channel: ParameterSet) -> dict[int, Synchronisation]:
+    functions = dict.fromkeys(INTERNAL_M_FUNCTIONS, Synchronisation.NO_SYNCH)
+    if channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
+        functions |= dict.fromkeys(GEAR_M_FUNCTIONS, Synchronisation.MVS_SVS)
+    for number in channel.used_indexes("m_synch"):
+        constants = channel.text(ids.M_SYNCH, number)
+        if constants != "NOT_VALID":
+            functions[number] = synchronisation(constants)
+    return dict(sorted(functions.items()))

@@ -1,0 +1,70 @@
+"""A whole machine as the kernel uses it: typed, in kernel units (mm, °, s), one frozen class a kind of unit."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated
+
+from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.read.messages import Notice
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.view.axis_view import AxisParameters, axis_view
+from cnc_ptp.parameters.view.channel_view import ChannelParameters, channel_view
+from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.spindle_view import SpindleParameters, spindle_view
+
+
+@dataclass(frozen=True)
+class MachineParameters:
+    """A whole machine. Channels, axes and spindles by node name, in the order of /machine."""
+
+    cycle_time_us: Annotated[int, ids.CYCLE_TIME_US]
+    block_cycles: Annotated[int, ids.BLOCK_CYCLES]
+    watchdog_ms: Annotated[int, ids.WATCHDOG_MS]
+    life_sign_timeout_ms: Annotated[int, ids.LIFE_SIGN_TIMEOUT_MS]
+    state_rate_hz: Annotated[float, ids.STATE_RATE_HZ]
+    """Live states a second of each unit, 0 = none."""
+    handshake_timeout_ms: Annotated[int, ids.HANDSHAKE_TIMEOUT_MS]
+    """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
+    channels: Mapping[str, ChannelParameters]
+    axes: Mapping[str, AxisParameters]
+    spindles: Mapping[str, SpindleParameters]
+    warnings: tuple[Notice, ...] = ()
+    """What is accepted but deserves a look, one line each."""
+    sets: Mapping[str, ParameterSet] = field(default_factory=dict, repr=False, compare=False)
+
+    def raw(self, node: str) -> ParameterSet:
+        """All parameters of a node in list units; `machine` is the machine itself."""
+        return self.sets[node]
+
+
+def machine_view(
+    machine: ParameterSet, sets: Mapping[str, ParameterSet], warnings: tuple[Notice, ...]
+) -> MachineParameters:
+    """The machine of the parameters of /machine and of its units by node name."""
+    of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
+    cycle_time = machine.kernel(ids.CYCLE_TIME_US)
+    channels = {unit.node: channel_view(unit, sets) for unit in of_kind["channel"]}
+    axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
+    return MachineParameters(
+        channels=channels,
+        axes=equally_late(axes, channels.values()),
+        spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
+        warnings=warnings,
+        sets={"machine": machine, **sets},
+        **given_fields(MachineParameters, machine),
+    )
+
+
+def equally_late(
+    axes: Mapping[str, AxisParameters], channels: Iterable[ChannelParameters]
+) -> dict[str, AxisParameters]:
+    """The axes, those of a channel behind delay lines of the same length: the longest that one of them needs.
+
+    Otherwise they would be off their path by v · T for each cycle between them.
+    """
+    late = dict(axes)
+    for channel in channels:
+        path = [axes[axis.node] for axis in channel.axes]
+        cycles = max((axis.control.delay_cycles for axis in path), default=0)
+        late |= {axis.name: replace(axis, control=replace(axis.control, path_delay_cycles=cycles)) for axis in path}
+    return late

@@ -1,0 +1,28 @@
+"""The states of a spindle and every way from one to another (PLCopen); `Spindle.take` alone changes the state.
+
+docs/spindles.md shows the diagram that is drawn from this table.
+"""
+
+from __future__ import annotations
+
+from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.transitions import transition
+
+ON = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING, S.STOPPING)
+
+POWER_ON = transition("power on", S.DISABLED, to=S.STANDSTILL)
+POWER_OFF = transition("power off", S.STANDSTILL, S.DISABLED, to=S.DISABLED)
+ROTATE = transition("M3, M4", *ON, to=S.CONTINUOUS_MOTION)
+POSITION = transition("M19", *ON, to=S.DISCRETE_MOTION)
+HOME = transition("G74", *ON, to=S.HOMING)
+STOP = transition("M5", *ON, to=S.STOPPING)
+CHANGE_GEAR = transition("at the position of the gear change", *ON, to=S.STANDSTILL)
+FINISH = transition("finished", *ON, S.DISABLED, to=S.STANDSTILL)
+FINISH_WITHOUT_POWER = transition("finished without power", *ON, S.DISABLED, to=S.DISABLED)
+FAULT = transition("fault", *S, to=S.ERROR_STOP)
+RESET = transition("reset", S.ERROR_STOP, to=S.STANDSTILL)
+RESET_WITHOUT_POWER = transition("reset without power", S.ERROR_STOP, to=S.DISABLED)
+
+SPINDLE_TRANSITIONS = tuple(
+    value for name, value in list(globals().items()) if name.isupper() and name not in ("S", "ON")
+)
