@@ -39,7 +39,7 @@ class RosArgument(NamedTuple):
         return node, name, right.strip()
 
     def refusal(self, reason: str) -> CncError:
-        return CncError(REFUSED, f"ROS argument '{self}' is refused: {reason}; nothing was started")
+        return CncError(REFUSED, f"ROS argument '{self}' is refused: {reason}", "nothing was started")
 
 
 @dataclass(frozen=True)

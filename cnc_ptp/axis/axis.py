@@ -21,6 +21,7 @@ from cnc_ptp.axis.faults import (
 from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator, State
 from cnc_ptp.axis.target_window import TargetWindow
+from cnc_ptp.errors import Value
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -335,8 +336,8 @@ class Axis:
 
     # refusals and faults
 
-    def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
-        raise self.checks.refusal(command, error_id, reason)
+    def refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
+        raise self.checks.refusal(command, number, reason, **values)
 
     def fault(self, cycle: int, error_id: int, reason: str, setpoint: State | None = None) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.

@@ -168,7 +168,7 @@ class MasterSource:
         try:
             setpoints = coupling.follow((axis.carried or axis.ptp).state(first_cycle)[0], states)
         except CncError as error:
-            axis.give_up_coupling(first_cycle, error.error_id, error.message)
+            axis.give_up_coupling(first_cycle, error.number, error.message)
             return []
         if not all(in_range(state) for state in setpoints):
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")

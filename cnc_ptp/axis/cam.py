@@ -94,7 +94,8 @@ def _single_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]:
     if len(points) < SMALLEST_TABLE:
-        raise CncError(BAD_CAM_TABLE, f"a cam table needs {SMALLEST_TABLE} points or more, it has {len(points)}")
+        reason = f"a cam table needs {SMALLEST_TABLE} points or more, it has {len(points)}"
+        raise CncError(BAD_CAM_TABLE, reason, points=len(points))
     try:
         table = np.array(points, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -106,7 +107,8 @@ def _columns(points: Sequence[Sequence[float]]) -> tuple[np.ndarray, np.ndarray]
     steps = np.flatnonzero(np.diff(table[:, 0]) < SMALLEST_STEP)
     if len(steps):
         before, after = table[steps[0], 0], table[steps[0] + 1, 0]
-        raise CncError(BAD_CAM_TABLE, f"master position {after:g} comes after {before:g}; {ASCEND}")
+        reason = f"master position {after:g} comes after {before:g}; {ASCEND}"
+        raise CncError(BAD_CAM_TABLE, reason, position=float(after), before=float(before))
     return table[:, 0], table[:, 1]
 
 
@@ -153,7 +155,7 @@ class CamCoupling(Coupling):
         place = height + self._slave_offset
         if abs(place - position) > BEGIN_TOLERANCE:
             reason = f"the cam table has the slave at {place:g} with its slave_offset, the axis is at {position:g}"
-            raise CncError(CAM_POSITION, reason)
+            raise CncError(CAM_POSITION, reason, place=float(place), position=position)
         self._turn = self.table.turn(x)
 
     def _state(self, master: State) -> State:

@@ -15,7 +15,7 @@ from cnc_ptp.axis.faults import (
     SOFT_LIMIT_POSITIVE,
     VELOCITY_TOO_HIGH,
 )
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value, warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_STATE, SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
@@ -25,7 +25,7 @@ class SoftLimit(NamedTuple):
     """The soft limit of one direction; its `text` names it with position, unit and parameter."""
 
     position: float
-    error_id: int
+    number: int
     text: str
 
 
@@ -43,8 +43,9 @@ class MotionChecks:
         self._positive_limit = SoftLimit(positive, SOFT_LIMIT_POSITIVE, positive_text)
         self._negative_limit = SoftLimit(negative, SOFT_LIMIT_NEGATIVE, negative_text)
 
-    def refusal(self, command: str, error_id: int, reason: str) -> CncError:
-        return CncError(error_id, f"axis {self._parameters.name}: {command} refused: {reason}; nothing was changed")
+    def refusal(self, command: str, number: int, reason: str, /, **values: Value) -> CncError:
+        where = f"axis {self._parameters.name}: {command} refused"
+        return CncError(number, reason, "nothing was changed", where=where, **values)
 
     def own_limits(self) -> Limits:
         """The limits of a motion that says nothing about its dynamics."""
@@ -64,9 +65,11 @@ class MotionChecks:
     def positive(self, command: str, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             if not value > 0.0:
-                raise self.refusal(command, BAD_DYNAMICS, f"{name} = {value} must be greater than 0")
+                reason = f"{name} = {value} must be greater than 0"
+                raise self.refusal(command, BAD_DYNAMICS, reason, argument=name, value=value)
             if value < SMALLEST_LIMIT:
-                raise self.refusal(command, BAD_DYNAMICS, f"{name} = {value} must be at least {SMALLEST_LIMIT:g}")
+                reason = f"{name} = {value} must be at least {SMALLEST_LIMIT:g}"
+                raise self.refusal(command, BAD_DYNAMICS, reason, argument=name, value=value, limit=SMALLEST_LIMIT)
 
     def velocity(self, command: str, velocity: float) -> None:
         """Raises 23004 above the maximum and 23011 above the reference velocity."""
@@ -74,10 +77,10 @@ class MotionChecks:
         unit = f"{self._unit}/s"
         if velocity > highest:
             reason = f"velocity {velocity} {unit} is above the maximum {highest} {unit} (P-AXIS-00212)"
-            raise self.refusal(command, VELOCITY_TOO_HIGH, reason)
+            raise self.refusal(command, VELOCITY_TOO_HIGH, reason, velocity=velocity, limit=highest)
         if velocity > reference:
             reason = f"velocity {velocity} {unit} is above the reference velocity {reference} {unit} (P-MACH-00008)"
-            raise self.refusal(command, ABOVE_REFERENCE_VELOCITY, reason)
+            raise self.refusal(command, ABOVE_REFERENCE_VELOCITY, reason, velocity=velocity, limit=reference)
 
     def acceleration(self, command: str, name: str, value: float) -> None:
         """Raises 23013 above the maximum."""
@@ -85,7 +88,7 @@ class MotionChecks:
         if value > most:
             unit = f"{self._unit}/s²"
             reason = f"{name} {value} {unit} is above the maximum {most} {unit} (P-AXIS-00008)"
-            raise self.refusal(command, ACCELERATION_TOO_HIGH, reason)
+            raise self.refusal(command, ACCELERATION_TOO_HIGH, reason, argument=name, value=value, limit=most)
 
     @property
     def most_deceleration(self) -> float:
@@ -98,10 +101,10 @@ class MotionChecks:
         if limits.jerk <= highest:
             return limits, None
         warning = (
-            f"P-WARN-{JERK_RESCALED} axis {self._parameters.name}: {command}: jerk {limits.jerk} {self._unit}/s³ is "
-            f"above A/T, the acceleration over one cycle; {highest} {self._unit}/s³ is used"
+            f"axis {self._parameters.name}: {command}: jerk {limits.jerk} {self._unit}/s³ is above A/T, the "
+            f"acceleration over one cycle; {highest} {self._unit}/s³ is used"
         )
-        return limits._replace(jerk=highest), warning
+        return limits._replace(jerk=highest), warning_text(JERK_RESCALED, warning)
 
     def soft_limit(self, direction: float) -> SoftLimit:
         """The one to which a motion in this direction (> 0: positive) leads."""
@@ -113,7 +116,8 @@ class MotionChecks:
         for direction in (1.0, -1.0):
             limit = self.soft_limit(direction)
             if direction * target > direction * limit.position:
-                raise self.refusal(command, limit.error_id, f"target {target} {unit} lies beyond the {limit.text}")
+                reason = f"target {target} {unit} lies beyond the {limit.text}"
+                raise self.refusal(command, limit.number, reason, target=target, limit=limit.position)
         if abs(target) > LARGEST_STATE:
             reason = f"target {target} {unit} is not within ±{LARGEST_STATE:g} {unit}"
-            raise self.refusal(command, OUT_OF_RANGE, reason)
+            raise self.refusal(command, OUT_OF_RANGE, reason, target=target, limit=LARGEST_STATE)

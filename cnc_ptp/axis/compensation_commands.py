@@ -16,6 +16,7 @@ from cnc_ptp.axis.faults import (
     VIRTUAL_AXIS,
 )
 from cnc_ptp.axis.ptp import Job
+from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
 from cnc_ptp.motion.profile import State
@@ -81,8 +82,9 @@ class CompensationCommands:
         if axis.coupled and not axis.on_path:
             return
         if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:
-            reason = f"no basic motion is in work (the axis is in {state_name(axis.state)})"
-            axis.refuse(START, NOTHING_TO_COMPENSATE, reason)
+            state = state_name(axis.state)
+            reason = f"no basic motion is in work (the axis is in {state})"
+            axis.refuse(START, NOTHING_TO_COMPENSATE, reason, state=state)
         if axis.ptp.braking(cycle):
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
 
@@ -105,12 +107,14 @@ class CompensationCommands:
     def _check_values(self, difference: float, **positive: float) -> None:
         for name, value in positive.items():
             if not value > 0.0:
-                self._axis.refuse(START, BAD_COMPENSATION, f"{name} = {value} must be greater than 0")
+                reason = f"{name} = {value} must be greater than 0"
+                self._axis.refuse(START, BAD_COMPENSATION, reason, argument=name, value=value)
             if not SMALLEST_LIMIT <= value <= LARGEST_LIMIT:
                 reason = f"{name} = {value} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}"
-                self._axis.refuse(START, BAD_COMPENSATION, reason)
+                self._axis.refuse(START, BAD_COMPENSATION, reason, argument=name, value=value)
         if difference == 0.0:
-            self._axis.refuse(START, BAD_COMPENSATION, "difference = 0 must be different from 0")
+            reason = "difference = 0 must be different from 0"
+            self._axis.refuse(START, BAD_COMPENSATION, reason, argument="difference", value=difference)
         for name in ("acceleration", "deceleration"):
             self._axis.checks.acceleration(START, name, positive[name])
 
@@ -122,7 +126,7 @@ class CompensationCommands:
         highest, unit = axis.parameters.max_velocity, f"{axis.unit}/s"
         if peak > highest:
             reason = f"the axis would get up to {peak:g} {unit}, above the maximum {highest} {unit} (P-AXIS-00212)"
-            axis.refuse(START, VELOCITY_TOO_HIGH, reason)
+            axis.refuse(START, VELOCITY_TOO_HIGH, reason, velocity=peak, limit=highest)
 
     def _cut_warning(self, difference: float, length: float, reached: float, used: float) -> str | None:
         axis, unit = self._axis, self._axis.unit
@@ -133,7 +137,7 @@ class CompensationCommands:
             cuts.append(
                 f"difference {difference:g} {unit} cannot be reached over {used:g} {unit}; {reached:g} {unit} is used"
             )
-        return f"P-WARN-{COMPENSATION_CUT} axis {axis.name}: {START}: {'; '.join(cuts)}" if cuts else None
+        return warning_text(COMPENSATION_CUT, f"axis {axis.name}: {START}: {'; '.join(cuts)}") if cuts else None
 
     def do_compensation_stop(self, cycle: int) -> str | None:
         """Ramps the compensation down; D becomes what has been compensated then. Not in its last ramp."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import copysign, inf
-from typing import Any
+from typing import Any, NoReturn
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
@@ -28,7 +28,7 @@ from cnc_ptp.axis.faults import (
     UNKNOWN_MASTER,
 )
 from cnc_ptp.axis.flying_saw import FlyingSaw
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.motion.limits import SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -80,7 +80,8 @@ class CouplingCommands:
         """The factor comes cyclically; the slave's acceleration stays within `acc_bound` (mm/s²)."""
         self._check("couple_cyclic", master, **group)
         if not acc_bound > 0.0:
-            self._axis.refuse("couple_cyclic", BAD_ACC_BOUND, f"acc_bound = {acc_bound} must be greater than 0")
+            reason = f"acc_bound = {acc_bound} must be greater than 0"
+            self._axis.refuse("couple_cyclic", BAD_ACC_BOUND, reason, acc_bound=acc_bound)
         coupling = CyclicCoupling(master, float(acc_bound), cycle_time=self._cycle_time)
         return self._couple("couple_cyclic", cycle, coupling)
 
@@ -155,7 +156,7 @@ class CouplingCommands:
         try:
             return CamTable(table, cyclic=cyclic)
         except CncError as error:
-            self._axis.refuse(command, BAD_CAM_TABLE, error.message)
+            self._axis.refuse(command, BAD_CAM_TABLE, error.reason, **error.values)
 
     def _check(
         self,
@@ -173,29 +174,35 @@ class CouplingCommands:
             axis.refuse(command, COUPLED_TO_ITSELF, "an axis cannot be its own master")
         if master not in self._axes:
             known = ", ".join(name for name in self._axes if name != axis.name) or "none"
-            axis.refuse(command, UNKNOWN_MASTER, f"there is no axis '{master}'. Known: {known}")
+            axis.refuse(command, UNKNOWN_MASTER, f"there is no axis '{master}'. Known: {known}", master=master)
         if master_lost:
-            axis.refuse(command, UNKNOWN_MASTER, f"the node of the master {master} is lost")
+            axis.refuse(command, UNKNOWN_MASTER, f"the node of the master {master} is lost", master=master)
         if axis.state != S.STANDSTILL and not on_path:
-            reason = f"the axis is in {state_name(axis.state)}, it must be in Standstill"
-            axis.refuse(command, SLAVE_NOT_STANDING, reason)
+            state = state_name(axis.state)
+            reason = f"the axis is in {state}, it must be in Standstill"
+            axis.refuse(command, SLAVE_NOT_STANDING, reason, state=state)
         if axis.name in above:
             chain = " -> ".join([master, *above][: [*above].index(axis.name) + 2])
-            axis.refuse(command, COUPLING_LOOP, f"{master} is a slave of the axis already ({chain})")
+            reason = f"{master} is a slave of the axis already ({chain})"
+            axis.refuse(command, COUPLING_LOOP, reason, master=master, chain=chain)
         if not master_stands:
-            axis.refuse(command, MASTER_NOT_STANDING, f"the master {master} moves; both axes must stand")
+            reason = f"the master {master} moves; both axes must stand"
+            axis.refuse(command, MASTER_NOT_STANDING, reason, master=master)
 
     def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:
         if factor == 0.0:
-            self._axis.refuse(command, BAD_FACTOR, f"{name} = 0 must be different from 0")
+            reason = f"{name} = 0 must be different from 0"
+            self._axis.refuse(command, BAD_FACTOR, reason, argument=name, value=factor)
         if not SMALLEST_FACTOR <= abs(factor) <= LARGEST_FACTOR:
             limits = f"between {SMALLEST_FACTOR:g} and {LARGEST_FACTOR:g} or the negative of it"
-            self._axis.refuse(command, BAD_FACTOR, f"{name} = {factor} must be {limits}")
+            reason = f"{name} = {factor} must be {limits}"
+            self._axis.refuse(command, BAD_FACTOR, reason, argument=name, value=factor)
 
     def _check_positive(self, command: str, **values: float) -> None:
         for name, value in values.items():
             if not value > 0.0:
-                self._axis.refuse(command, BAD_COUPLING_VALUE, f"{name} = {value} must be greater than 0")
+                reason = f"{name} = {value} must be greater than 0"
+                self._axis.refuse(command, BAD_COUPLING_VALUE, reason, argument=name, value=value)
 
     def _couple(self, command: str, cycle: int, coupling: Coupling) -> str | None:
         """A warning when slave and master are not equally late."""
@@ -241,17 +248,21 @@ class CouplingCommands:
         bound = abs(factor) * max(master.acceleration, master.deceleration)
         if bound <= coupling.acc_bound:
             return None
-        return (
-            f"P-WARN-{ACC_BOUND_UNSTABLE} axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is "
-            f"below |factor|·max(A+, A-) = {bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag "
-            "behind"
+        return warning_text(
+            ACC_BOUND_UNSTABLE,
+            f"axis {axis.name}: set_cyclic_factor: AccBound {coupling.acc_bound:g} is below |factor|·max(A+, A-) = "
+            f"{bound:g} {axis.unit}/s² of the master {coupling.master}; the slave may lag behind",
         )
 
     def _coupled(self, command: str) -> Coupling:
         axis = self._axis
         if axis.coupling is None or axis.state != S.SYNCHRONIZED_MOTION:
-            axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state_name(axis.state)})")
+            self._refuse_free(command)
         return axis.coupling
+
+    def _refuse_free(self, command: str) -> NoReturn:
+        state = state_name(self._axis.state)
+        self._axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state})", state=state)
 
     # decouple
 
@@ -264,7 +275,7 @@ class CouplingCommands:
         axis, command = self._axis, "decouple"
         coupling = axis.coupling
         if coupling is None or axis.state not in (S.SYNCHRONIZED_MOTION, S.ERROR_STOP):
-            axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state_name(axis.state)})")
+            self._refuse_free(command)
         if velocity is not None:
             axis.checks.positive(command, {"velocity": velocity})
             axis.checks.velocity(command, velocity)
@@ -284,7 +295,7 @@ class CouplingCommands:
         for name, value in arguments.items():
             if value is not None:
                 reason = f"{name} = {value:g} is not permitted on the path of a channel; leave it out"
-                axis.refuse("decouple", BAD_COUPLING_VALUE, reason)
+                axis.refuse("decouple", BAD_COUPLING_VALUE, reason, argument=name, value=value)
         axis.external.brake(cycle, carried.state(cycle))
         axis.carried = axis.coupling = None
 
@@ -321,8 +332,8 @@ class CouplingCommands:
     def _at_rest(self, target: float | None, velocity: float | None) -> str:
         given = {"target": target, "velocity": velocity}
         unused = " and ".join(f"{name} {value:g}" for name, value in given.items() if value is not None)
-        where = f"P-WARN-{DECOUPLE_AT_REST} axis {self._axis.name}: decouple"
-        return f"{where}: the axis stands; {unused} is not used, start it"
+        text = f"axis {self._axis.name}: decouple: the axis stands; {unused} is not used, start it"
+        return warning_text(DECOUPLE_AT_REST, text)
 
     # the group
 

@@ -17,6 +17,7 @@ from cnc_ptp.axis.faults import (
     EXTERNAL_NOT_ENABLED,
     NOT_READY,
 )
+from cnc_ptp.errors import warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
@@ -69,18 +70,22 @@ class ExternalCommands:
     def _check_state(self, mode: str) -> None:
         axis = self._axis
         if axis.error_id:
-            axis.refuse(ENABLE, EXTERNAL_IN_ERROR, f"the axis has error {axis.error_id}; reset it")
+            reason = f"the axis has error {axis.error_id}; reset it"
+            axis.refuse(ENABLE, EXTERNAL_IN_ERROR, reason, error=axis.error_id)
         if not axis.powered:
             axis.refuse(ENABLE, EXTERNAL_NOT_ENABLED, "the axis is not enabled; power it on")
         if axis.ptp.restricted:
             axis.refuse(ENABLE, EXTERNAL_NOT_ENABLED, "both directions must be released (set_feed_release)")
         if axis.coupled and axis.coupling is not None:
-            axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{axis.coupling.master} is the master of the axis")
+            master = axis.coupling.master
+            axis.refuse(ENABLE, EXTERNAL_COUPLED, f"{master} is the master of the axis", master=master)
         if axis.state == S.STOPPING:
-            axis.refuse(ENABLE, NOT_READY, f"the axis is in {state_name(axis.state)}")
-        if axis.external.mode not in (None, mode):
-            reason = f"external setpoints are enabled as {axis.external.mode}; {mode} does not match"
-            axis.refuse(ENABLE, EXTERNAL_MODE, reason)
+            state = state_name(axis.state)
+            axis.refuse(ENABLE, NOT_READY, f"the axis is in {state}", state=state)
+        enabled = axis.external.mode
+        if enabled is not None and enabled != mode:
+            reason = f"external setpoints are enabled as {enabled}; {mode} does not match"
+            axis.refuse(ENABLE, EXTERNAL_MODE, reason, mode=mode, enabled=enabled)
         if mode == ABSOLUTE and (axis.state == S.DISCRETE_MOTION or axis.ptp.job is not None):
             reason = "absolute setpoints beside a PTP motion are not permitted; use relative"
             axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
@@ -92,7 +97,7 @@ class ExternalCommands:
             self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
         if target is not None:
             reason = f"a target ({target:g}) beside the path of a channel is not permitted; leave it out"
-            self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
+            self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason, target=target)
 
     def do_external_disable(self, cycle: int) -> str | None:
         """The setpoint of this cycle counts once more; an axis that still moves then comes to rest on its ramp."""
@@ -109,9 +114,8 @@ class ExternalCommands:
         """
         axis = self._axis
         if not axis.external.takes(cycle):
-            return (
-                f"P-WARN-{EXTERNAL_IGNORED} axis {axis.name}: {SETPOINTS} ignored: external setpoints are not enabled"
-            )
+            text = f"axis {axis.name}: {SETPOINTS} ignored: external setpoints are not enabled"
+            return warning_text(EXTERNAL_IGNORED, text)
         try:
             packets = read_setpoints(setpoints)
             if packets and packets[0].direction:
@@ -125,10 +129,13 @@ class ExternalCommands:
 
     def _check_limits(self, packet: Setpoint) -> None:
         parameters, unit = self._axis.parameters, self._axis.unit
-        for name, value, most, source in (
-            ("velocity", packet.velocity, parameters.max_velocity, f"{unit}/s (P-AXIS-00212)"),
-            ("acceleration", packet.acceleration, parameters.max_acceleration, f"{unit}/s² (P-AXIS-00008)"),
+        for name, value, most, per, source in (
+            ("velocity", packet.velocity, parameters.max_velocity, f"{unit}/s", "P-AXIS-00212"),
+            ("acceleration", packet.acceleration, parameters.max_acceleration, f"{unit}/s²", "P-AXIS-00008"),
         ):
             if abs(value) > most:
-                reason = f"{name} {value} {source.split()[0]} is above the maximum {most} {source}"
-                self._axis.refuse(SETPOINTS, BAD_SETPOINT, f"setpoint of cycle {packet.cycle}: {reason}")
+                reason = f"{name} {value} {per} is above the maximum {most} {per} ({source})"
+                text = f"setpoint of cycle {packet.cycle}: {reason}"
+                self._axis.refuse(
+                    SETPOINTS, BAD_SETPOINT, text, setpoint=packet.cycle, argument=name, value=value, limit=most
+                )

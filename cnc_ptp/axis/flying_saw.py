@@ -81,7 +81,8 @@ class FlyingSaw(Coupling):
         velocity, unit = self.ratio * self._speed, self._unit
         if abs(velocity) > self._limits.velocity:
             limit = f"its velocity is limited to {self._limits.velocity:g} {unit}/s"
-            raise CncError(SAW_TOO_LATE, f"it would have to run at {abs(velocity):g} {unit}/s, {limit}")
+            reason = f"it would have to run at {abs(velocity):g} {unit}/s, {limit}"
+            raise CncError(SAW_TOO_LATE, reason, velocity=abs(velocity), limit=self._limits.velocity)
         ramp = plan_to_velocity(position, 0.0, 0.0, velocity, self._limits)
         meeting = (self._master_position - self._begin) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
@@ -89,11 +90,14 @@ class FlyingSaw(Coupling):
         if cruise < -ROUNDING - rounding(position, self._slave_position) / abs(velocity):
             distance = (self._slave_position - position) * copysign(1.0, velocity)
             where = f"{distance:g} {unit} away" if distance >= 0.0 else f"{-distance:g} {unit} behind the axis"
-            needed = f"the run-up takes {abs(ramp.end[0] - position):g} {unit}"
-            raise CncError(SAW_TOO_LATE, f"{needed}, the synchronous position is {where}")
+            needed = abs(ramp.end[0] - position)
+            reason = f"the run-up takes {needed:g} {unit}, the synchronous position is {where}"
+            raise CncError(SAW_TOO_LATE, reason, needed=needed, distance=distance)
         if self._wait < -ROUNDING - rounding(self._begin, self._master_position) / abs(self._speed):
             when = f"is there in {meeting:g} s" if meeting >= 0.0 else f"was there {-meeting:g} s ago"
-            raise CncError(SAW_TOO_LATE, f"the run-up takes {ramp.duration + cruise:g} s, the master {when}")
+            needed = ramp.duration + cruise
+            reason = f"the run-up takes {needed:g} s, the master {when}"
+            raise CncError(SAW_TOO_LATE, reason, needed=needed, time=meeting)
         self._wait = max(0.0, self._wait)
         rows = [(self._wait + t, p, v, a, j) for t, p, v, a, j in ramp.rows]
         self._table = Profile([(0.0, position, 0.0, 0.0, 0.0), *rows])

@@ -65,7 +65,8 @@ class JogCommands:
         axis = self._axis
         refuse_other_source(axis, JOG)
         if axis.state != S.STANDSTILL and not self._jogs() and not self._brakes():
-            axis.refuse(JOG, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill or jogging")
+            state = state_name(axis.state)
+            axis.refuse(JOG, NOT_READY, f"the axis is in {state}, it must be in Standstill or jogging", state=state)
         if axis.compensation.active and axis.state != S.STANDSTILL:
             axis.refuse(JOG, COMPENSATION_RUNS, "a position compensation is active")
 
@@ -76,6 +77,6 @@ class JogCommands:
         room = copysign(1.0, velocity) * (limit.position - position)
         if room < -rounding(limit.position, position):
             reason = f"the axis is at {position} {axis.unit}, beyond its {limit.text}"
-            axis.refuse(JOG, limit.error_id, reason)
+            axis.refuse(JOG, limit.number, reason, position=position, limit=limit.position)
         if room <= axis.parameters.encoder_increment and axis.state == S.STANDSTILL:
-            axis.refuse(JOG, limit.error_id, f"the axis is at its {limit.text}")
+            axis.refuse(JOG, limit.number, f"the axis is at its {limit.text}", limit=limit.position)

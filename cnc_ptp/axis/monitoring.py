@@ -128,7 +128,7 @@ class Monitoring:
         outside = position > limit.position if velocity > 0.0 else position < limit.position
         if outside and velocity != 0.0:
             reason = f"set position {position} {axis.unit} is beyond the {limit.text}"
-            axis.fault(cycle, limit.error_id, reason, setpoint)
+            axis.fault(cycle, limit.number, reason, setpoint)
 
     def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
         """Warns once of an axis that has not come into its target window in time."""

@@ -17,6 +17,7 @@ from cnc_ptp.axis.faults import (
 )
 from cnc_ptp.axis.modulo import modulo_target
 from cnc_ptp.axis.two_stage import Request
+from cnc_ptp.errors import warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
@@ -33,7 +34,7 @@ def refuse_other_source(axis: Axis, command: str) -> None:
         axis.refuse(command, START_BESIDE_EXTERNAL, reason)
     if axis.coupled and axis.coupling is not None:
         reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
-        axis.refuse(command, SLAVE_LOCKED, reason)
+        axis.refuse(command, SLAVE_LOCKED, reason, master=axis.coupling.master)
 
 
 class PtpCommands:
@@ -69,7 +70,8 @@ class PtpCommands:
         axis = self._axis
         refuse_other_source(axis, command)
         if axis.state != S.STANDSTILL:
-            axis.refuse(command, NOT_READY, f"the axis is in {state_name(axis.state)}, it must be in Standstill")
+            state = state_name(axis.state)
+            axis.refuse(command, NOT_READY, f"the axis is in {state}, it must be in Standstill", state=state)
         limits = axis.checks.dynamics(command, dynamics)
         limits, warning = axis.checks.rescaled_jerk(command, limits)
         axis.checks.soft_limits(command, target)
@@ -77,10 +79,8 @@ class PtpCommands:
         increment = axis.parameters.encoder_increment
         if distance < increment or distance == 0.0:
             axis.has_been_stopped = False
-            return (
-                f"P-WARN-{BELOW_INCREMENT} axis {axis.name}: {command} over {distance:g} {axis.unit} is below one "
-                f"encoder increment ({increment} {axis.unit}); the axis does not move"
-            )
+            reason = f"{distance:g} {axis.unit} is below one encoder increment ({increment} {axis.unit})"
+            return warning_text(BELOW_INCREMENT, f"axis {axis.name}: {command} over {reason}; the axis does not move")
         axis.absorb(cycle)
         axis.ptp.start(cycle, target, limits)
         axis.target_window.watch()
@@ -96,7 +96,7 @@ class PtpCommands:
         highest = min(100.0, axis.parameters.max_override_percent)
         if not 0.0 <= percent <= highest:
             reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
-            axis.refuse("set_override", BAD_OVERRIDE, reason)
+            axis.refuse("set_override", BAD_OVERRIDE, reason, percent=percent, limit=highest)
         used = axis.override_filter.take(cycle, round(percent, OVERRIDE_DECIMALS))
         if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None
@@ -107,7 +107,7 @@ class PtpCommands:
         """1 reduced, 2 original, 3 and 4 the same iterated; counts from the next override or start on."""
         if type not in OVERRIDE_TYPES:
             reason = f"type = {type} is none of 1, 2, 3, 4"
-            self._axis.refuse("set_override_type", BAD_OVERRIDE_TYPE, reason)
+            self._axis.refuse("set_override_type", BAD_OVERRIDE_TYPE, reason, type=type)
         self._axis.ptp.override_type = type
 
     # new target (2.3), new velocity and new target (2.4)
@@ -137,8 +137,9 @@ class PtpCommands:
     def _check_redirection(self, command: str, target: float) -> None:
         axis = self._axis
         if axis.state not in REDIRECTABLE or not axis.ptp.can_redirect:
-            reason = f"no positioning is in work (the axis is in {state_name(axis.state)}); start one"
-            axis.refuse(command, NO_POSITIONING, reason)
+            state = state_name(axis.state)
+            reason = f"no positioning is in work (the axis is in {state}); start one"
+            axis.refuse(command, NO_POSITIONING, reason, state=state)
         if not axis.powered:
             axis.refuse(command, NOT_READY, "the enable was removed")
         if axis.compensation.active:

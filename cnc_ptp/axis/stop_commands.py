@@ -7,9 +7,10 @@ from math import inf, nan
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
+from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
-from cnc_ptp.protocol.axis_states import state_name
+from cnc_ptp.protocol.notes import without_effect
 
 MOVING = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION)
 
@@ -35,7 +36,7 @@ class StopCommands:
         if taken_back is not None:
             return taken_back
         if axis.state not in MOVING:
-            return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
+            return without_effect(axis.name, command, axis.state)
         axis.stop(cycle, locks=locks)
         self._stopped(locks)
         return None
@@ -52,7 +53,8 @@ class StopCommands:
         axis = self._axis
         if axis.coupled and axis.coupling is not None:
             master = axis.coupling.master
-            axis.refuse(command, SLAVE_LOCKED, f"the axis is a slave of {master}; stop {master} or decouple the axis")
+            reason = f"the axis is a slave of {master}; stop {master} or decouple the axis"
+            axis.refuse(command, SLAVE_LOCKED, reason, master=master)
         if axis.on_path:
             reason = "the channel path moves the axis; use feed_hold or reset of the channel"
             axis.refuse(command, NOT_READY, reason)
@@ -72,7 +74,7 @@ class StopCommands:
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
-            return f"axis {axis.name}: {command} without effect in {state_name(axis.state)}"
+            return without_effect(axis.name, command, axis.state)
         if self._ends_by_itself(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
@@ -100,7 +102,8 @@ class StopCommands:
             a, strong = most, f"deceleration {deceleration} {axis.unit}/s² is above {limit}, which is used"
         ramp, rescaled = axis.checks.rescaled_jerk(command, Limits(start.velocity, a, a, j))
         corrected = "; ".join(filter(None, (weak, strong, slow)))
-        warning = f"P-WARN-{EMERGENCY_CORRECTED} axis {axis.name}: {command}: {corrected}" if corrected else None
+        text = f"axis {axis.name}: {command}: {corrected}"
+        warning = warning_text(EMERGENCY_CORRECTED, text) if corrected else None
         return ramp, "; ".join(filter(None, (warning, rescaled))) or None
 
     def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:

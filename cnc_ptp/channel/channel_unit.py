@@ -267,7 +267,7 @@ class ChannelUnit(Unit):
             goes_on = self._sequence.go_on(first_cycle)
         except CncError as error:
             source = self._sequence.source
-            self._fault(cycle, error.error_id, f"{error.message} in line {source.line} '{source.text}'")
+            self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
             return True
         self._warn(cycle)
         return goes_on
@@ -401,10 +401,10 @@ class ChannelUnit(Unit):
 
     def _check_refused(self, first_cycle: int, node: str, block: SpindleBlock) -> None:
         """A spindle has refused what this channel asked it for: it is at work for somebody else, for instance."""
-        source = f"{self.name}: "
-        refused = next((text for text in block.refused if text.startswith(source)), None)
-        if refused is not None:
-            self._fault(first_cycle, SPINDLE_REFUSED, f"{node} has refused a command, {refused.removeprefix(source)}")
+        refusal = next((refusal for refusal in block.refused if refusal.source == self.name), None)
+        if refusal is not None:
+            reason = f"{node} has refused a command, P-ERR-{refusal.number} {refusal.text}"
+            self._fault(first_cycle, SPINDLE_REFUSED, reason)
 
     def _watch_handshake(self, first_cycle: int) -> None:
         """The PLC must acknowledge within P-MACH-00060."""

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.protocol.blocks import WARNED
 from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.notes import Note
 
 CUT_OFF = 26121
 """Warning: a program was not through when the duration of the run was over."""
@@ -35,9 +35,9 @@ def time_lines(programs: Mapping[str, ProgramReport], cycle_time: float) -> Iter
         yield f"program time{channel} {program.cycles * cycle_time:.3f} s"
 
 
-def cut_off_notes(programs: Mapping[str, ProgramReport], duration: float | None) -> Iterator[str]:
+def cut_off_notes(programs: Mapping[str, ProgramReport], duration: float | None) -> Iterator[Note]:
     """A warning for each program that was not through when the `duration` (s) was over."""
     for name, program in programs.items():
         if duration is not None and not program.done:
             where = f"in line {program.line}, state {ChannelStateCode(program.state).name}"
-            yield f"{WARNED}{CUT_OFF} channel {name}: --duration {duration:g} s has cut off the program {where}"
+            yield Note(CUT_OFF, f"channel {name}: --duration {duration:g} s has cut off the program {where}")

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rich.console import Console
 
 from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.notes import Note
 
 RUN_FAILED = 1
 """The run ended in an error, or a recording differs."""
 WRONG_INPUT = 2
 """Wrong usage or input; nothing was started."""
-
-IDLE_STOP = ": stop without effect in "
 
 
 def print_error(error: CncError) -> None:
@@ -30,7 +31,9 @@ def print_note_of_idle_run(*job: object, options: str = "--program, --scenario o
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
 
 
-def print_faults(console: Console, errors: list[str], notes: list[str], *, stopped: bool, refused: int = 0) -> None:
+def print_faults(
+    console: Console, errors: list[str], notes: Iterable[Note], *, stopped: bool, refused: int = 0
+) -> None:
     """Errors of a run, on standard error; commands that were refused, with their number, or carried out with a warning.
 
     `stopped`: everything was stopped; that some axes stood already then is no news.
@@ -38,8 +41,8 @@ def print_faults(console: Console, errors: list[str], notes: list[str], *, stopp
     console_of_errors = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     for text in errors:
         console_of_errors.print(f"error: {text}", style="red", markup=False)
-    for text in notes:
-        if not (stopped and IDLE_STOP in text):
-            console.print(text, style="yellow", markup=False)
+    for note in notes:
+        if not (stopped and note.idle_stop):
+            console.print(str(note), style="yellow", markup=False)
     if refused:
         console.print(f"{refused} {'command was' if refused == 1 else 'commands were'} refused", style="yellow")

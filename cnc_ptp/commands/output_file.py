@@ -18,15 +18,15 @@ def check_output(output: str | None, **inputs: str | None) -> None:
     if output is None:
         return
     if not Path(output).absolute().parent.is_dir():
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist; nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: its folder does not exist", "nothing was started")
     if what := _overwritten(output, inputs):
-        raise CncError(BAD_OUTPUT, f"{output} would overwrite the {what}; nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output} would overwrite the {what}", "nothing was started")
 
 
 def check_recording(record: str | None, **inputs: str | None) -> None:
     """Raises CncError 26117 when the recording of a run is one of its inputs, as check_output."""
     if record is not None and Path(record).exists() and (what := _overwritten(record, inputs)):
-        raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}; nothing was started")
+        raise CncError(OVERWRITES, f"recording {record} would overwrite the {what}", "nothing was started")
 
 
 def _overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
@@ -48,7 +48,7 @@ def check_page(output: str, **inputs: str | None) -> None:
     """Raises CncError 27030 for a report that is no .html file or would overwrite an input: recording="…"."""
     check_output(output, **inputs)
     if Path(output).suffix.lower() != ".html":
-        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending; nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending", "nothing was started")
 
 
 def write_output(output: str, content: str | bytes, *, remains: str = "the result above is all") -> None:
@@ -57,7 +57,7 @@ def write_output(output: str, content: str | bytes, *, remains: str = "the resul
     try:
         Path(output).write_bytes(data)
     except OSError as error:
-        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}; {remains}") from None
+        raise CncError(BAD_OUTPUT, f"{output} cannot be written: {error.strerror}", remains) from None
 
 
 def deliver(console: Console, output: str | None, text: str) -> None:

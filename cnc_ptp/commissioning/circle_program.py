@@ -67,7 +67,7 @@ def find_plane(name: str) -> Plane:
     for known, plane in PLANES.items():
         if len(name) == 2 and set(known) == wanted:
             return plane
-    raise CncError(BAD_PLANE, f"plane {name} is not one of {', '.join(PLANES)}; nothing was started")
+    raise CncError(BAD_PLANE, f"plane {name} is not one of {', '.join(PLANES)}", "nothing was started")
 
 
 def circle_program(
@@ -123,7 +123,8 @@ def measured_turn(
         if furthest < 360.0 - RUN_IN:
             raise CncError(
                 NOT_COVERED,
-                f"circle test: the turn in line {turn.line} went {furthest:.1f}° of 360°; nothing was evaluated",
+                f"circle test: the turn in line {turn.line} went {furthest:.1f}° of 360°",
+                "nothing was evaluated",
             )
         chosen[rows[(driven >= RUN_IN) & (driven < 360.0 - RUN_IN)]] = True
     return chosen

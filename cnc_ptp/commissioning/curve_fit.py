@@ -103,10 +103,10 @@ def check_range(limit: CurvePoint, top_speed: float, minimum: float) -> None:
     """Raises CncError 27046."""
     if not limit.speed < top_speed <= LARGEST_SPEED:
         reason = f"the largest speed {top_speed:g} °/s is not above the limit speed {limit.speed:g} °/s"
-        raise CncError(BAD_CURVE_RANGE, f"{reason} and up to {LARGEST_SPEED:g} °/s; nothing was fitted")
+        raise CncError(BAD_CURVE_RANGE, f"{reason} and up to {LARGEST_SPEED:g} °/s", "nothing was fitted")
     if minimum > limit.acceleration:
         reason = f"a_min {minimum:g} °/s² (P-AXIS-00010) is above a_konst {limit.acceleration:g} °/s²"
-        raise CncError(BAD_CURVE_RANGE, f"{reason}; nothing was fitted")
+        raise CncError(BAD_CURVE_RANGE, reason, "nothing was fitted")
 
 
 def fit_polynomial(limit: CurvePoint, above: Sequence[CurvePoint]) -> Coefficients:
@@ -139,7 +139,8 @@ def fit_hyperbola(limit: CurvePoint, above: Sequence[CurvePoint]) -> Coefficient
         raise CncError(
             NO_HYPERBOLA,
             f"no hyperbola: the points ask for a_konst/a = {d0:.4g} {d1:+.4g}·x² {d2:+.4g}·x⁴ with x = n/n_grenz, but "
-            "the first must be above 0 (b1) and the second not 0 (b2); nothing was fitted, a polynomial can be",
+            "the first must be above 0 (b1) and the second not 0 (b2)",
+            "nothing was fitted, a polynomial can be",
         )
     return limit.acceleration / d0, d1 / d0, d2 / d1 if d1 else 0.0
 
@@ -167,7 +168,7 @@ def _pole(fit: CurveFit) -> CncError | None:
     poles = roots_between(law.denominator, law.low - law.origin, low - law.origin)
     at = poles[0] + law.origin if poles else low
     reason = f"the {fit.parameters.kind} has a pole at {at:g} °/s, below the largest speed {fit.top_speed:g} °/s"
-    return CncError(CURVE_POLE, f"{reason}; {NO_LINES}")
+    return CncError(CURVE_POLE, reason, NO_LINES)
 
 
 def _not_positive(fit: CurveFit) -> CncError | None:
@@ -175,7 +176,7 @@ def _not_positive(fit: CurveFit) -> CncError | None:
     if lowest > 0.0:
         return None
     reason = f"the {fit.parameters.kind} falls to {lowest:.6g} °/s² at {speed:g} °/s, acceleration must be above 0"
-    return CncError(CURVE_NOT_POSITIVE, f"{reason} (a_min, P-AXIS-00010, is a floor); {NO_LINES}")
+    return CncError(CURVE_NOT_POSITIVE, f"{reason} (a_min, P-AXIS-00010, is a floor)", NO_LINES)
 
 
 def _rise(fit: CurveFit) -> CncError | None:
@@ -184,7 +185,7 @@ def _rise(fit: CurveFit) -> CncError | None:
         before, after = fit.acceleration(speed), fit.acceleration(following)
         if after > before * (1.0 + NEGLIGIBLE):
             reason = f"the {fit.parameters.kind} rises from {before:.6g} °/s² at {speed:g} °/s"
-            return CncError(CURVE_RISES, f"{reason} to {after:.6g} °/s² at {following:g} °/s, it must fall; {NO_LINES}")
+            return CncError(CURVE_RISES, f"{reason} to {after:.6g} °/s² at {following:g} °/s, it must fall", NO_LINES)
     return None
 
 

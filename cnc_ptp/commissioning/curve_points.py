@@ -53,7 +53,7 @@ def parse_point(text: str, unit: str) -> CurvePoint:
     try:
         return _point(speed, acceleration, unit, "it is not SPEED:ACCELERATION, two numbers")
     except ValueError as error:
-        raise CncError(BAD_CURVE_POINT, f"point '{text}': {error}; nothing was fitted") from None
+        raise CncError(BAD_CURVE_POINT, f"point '{text}': {error}", "nothing was fitted") from None
 
 
 def parse_point_file(text: str, file: str) -> list[CurvePoint]:
@@ -102,11 +102,11 @@ def _require_ascending(points: Sequence[CurvePoint], where: str = "") -> None:
     for before, point in pairwise(points):
         if not point.speed > before.speed:
             reason = f"{where}point {point} comes after {before} (°/s:°/s²), speeds must ascend"
-            raise CncError(NOT_ASCENDING, f"{reason}; nothing was fitted")
+            raise CncError(NOT_ASCENDING, reason, "nothing was fitted")
 
 
 def _file_fault(file: str, line: int, reason: str) -> CncError:
-    return CncError(BAD_CURVE_FILE, f"point file {file}:{line}: {reason}; nothing was fitted")
+    return CncError(BAD_CURVE_FILE, f"point file {file}:{line}: {reason}", "nothing was fitted")
 
 
 def limit_index(points: Sequence[CurvePoint], kind: str, limit_speed: float | None) -> int:
@@ -119,7 +119,7 @@ def limit_index(points: Sequence[CurvePoint], kind: str, limit_speed: float | No
     above, needed = max(len(points) - index - 1, 0), NEEDED_ABOVE[kind]
     if above < needed:
         reason = f"the {kind} needs a point at the limit speed and {needed} above it, {above} above it given"
-        raise CncError(TOO_FEW_POINTS, f"{reason}; nothing was fitted")
+        raise CncError(TOO_FEW_POINTS, reason, "nothing was fitted")
     return index
 
 
@@ -129,10 +129,10 @@ def _limit_place(speeds: Sequence[float], limit_speed: float | None) -> int:
     if not places:
         known = ", ".join(f"{speed:g}" for speed in speeds)
         reason = f"no point lies at the limit speed {wanted:g} °/s, which gives a_konst (P-AXIS-00007)"
-        raise CncError(NO_LIMIT_POINT, f"{reason}; nothing was fitted. Points at {known} °/s")
+        raise CncError(NO_LIMIT_POINT, reason, f"nothing was fitted. Points at {known} °/s")
     if round(wanted * STEPS_PER_DEG_S) == 0:
         reason = f"the limit speed {wanted:g} °/s (P-AXIS-00130) must be above 0"
-        raise CncError(NO_LIMIT_POINT, f"{reason}; nothing was fitted. It is the first point, or --limit")
+        raise CncError(NO_LIMIT_POINT, reason, "nothing was fitted. It is the first point, or --limit")
     return places[0]
 
 
@@ -141,5 +141,5 @@ def storable(limit: CurvePoint) -> CurvePoint:
     point = CurvePoint(round(limit.speed * STEPS_PER_DEG_S) / STEPS_PER_DEG_S, float(round(limit.acceleration)))
     if point.acceleration == 0.0:
         reason = f"a_konst {limit.acceleration:g} °/s² is 0 in whole °/s² (P-AXIS-00007)"
-        raise CncError(BAD_CURVE_RANGE, f"{reason}; nothing was fitted")
+        raise CncError(BAD_CURVE_RANGE, reason, "nothing was fitted")
     return point

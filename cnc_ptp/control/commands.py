@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Protocol
+from typing import NoReturn, Protocol
 
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.feedforward import Feedforward
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value, warning_text
 
 BAD_WEIGHT = 23060
 FEEDFORWARD_WAITS = 23061
@@ -60,26 +60,26 @@ class FeedforwardCommands:
             return f"{self._subject}: set_feedforward without effect, neither enabled nor weight_percent is given"
         if weight_percent is not None and not 0.0 <= weight_percent < inf:
             reason = f"weight_percent = {weight_percent} is no number of 0 or more (G136)"
-            self._refuse("set_feedforward", BAD_WEIGHT, reason)
+            self._refuse("set_feedforward", BAD_WEIGHT, reason, weight_percent=weight_percent)
         self._on = self._on if enabled is None else enabled
         if weight_percent is not None:
             self._weight_percent = min(FULL_WEIGHT, float(weight_percent))
         self._feedforward_loop.select_feedforward(self._on, self._weight_percent)
-        warnings, number = [], ""
+        warnings, number = [], 0
         if weight_percent is not None and weight_percent > FULL_WEIGHT:
             warnings.append(f"weight_percent = {weight_percent:g} is above 100 and limited to it (G136)")
-            number = f"P-WARN-{WEIGHT_LIMITED} "
+            number = WEIGHT_LIMITED
         if enabled and self._feedforward_loop.feedforward.mode == 0:
             warnings.append("feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE")
-        return f"{number}{self._subject}: {'; '.join(warnings)}" if warnings else None
+        return warning_text(number, f"{self._subject}: {'; '.join(warnings)}") if warnings else None
 
     def do_reset_feedforward(self, cycle: int) -> None:
         """Start of an NC program: feedforward off, weight 100 %; P-AXIS-00255 keeps it on."""
         self._on, self._weight_percent = False, FULL_WEIGHT
         self._feedforward_loop.select_feedforward(False, FULL_WEIGHT)
 
-    def _refuse(self, command: str, error_id: int, reason: str) -> None:
-        raise CncError(error_id, f"{self._subject}: {command} refused: {reason}; nothing was changed")
+    def _refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
+        raise CncError(number, reason, "nothing was changed", where=f"{self._subject}: {command} refused", **values)
 
 
 class ControlCommands(FeedforwardCommands):

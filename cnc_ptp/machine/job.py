@@ -38,7 +38,7 @@ def read_job(
             text, scenario, unit_kinds(machine), lambda what, path: read_file(what, str(folder / path))
         )
         if len(entries) == (2 if program is not None else 0) and not may_be_empty:
-            raise ScenarioError(BAD_SCENARIO, f"scenario {scenario} has no entries; nothing was started")
+            raise ScenarioError(BAD_SCENARIO, f"scenario {scenario} has no entries", "nothing was started")
         for entry in entries[2 if program is not None else 0 :]:
             if entry.command.command == "load":
                 entry.command.arguments["program"] = str(folder / entry.command.arguments["program"])
@@ -56,6 +56,8 @@ def read_file(what: str, path: str) -> str:
     try:
         return Path(path).read_text(encoding="utf-8")
     except OSError as error:
-        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}; nothing was started") from None
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
     except UnicodeDecodeError:
-        raise CncError(UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text; nothing was started") from None
+        raise CncError(
+            UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text", "nothing was started"
+        ) from None

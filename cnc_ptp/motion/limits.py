@@ -58,8 +58,10 @@ def check_limit(name: str, value: float) -> None:
     if not SMALLEST_LIMIT <= value <= LARGEST_LIMIT:
         raise CncError(
             23001,
-            f"motion limit {name} = {value!r} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}; "
+            f"motion limit {name} = {value!r} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}",
             "the motion is refused",
+            limit=name,
+            value=value,
         )
 
 
@@ -69,6 +71,8 @@ def check_state(**values: float) -> None:
         if not -LARGEST_STATE <= value <= LARGEST_STATE:
             raise CncError(
                 23002,
-                f"motion value {name} = {value!r} must be between {-LARGEST_STATE:g} and {LARGEST_STATE:g}; "
+                f"motion value {name} = {value!r} must be between {-LARGEST_STATE:g} and {LARGEST_STATE:g}",
                 "the motion is refused",
+                state=name,
+                value=value,
             )

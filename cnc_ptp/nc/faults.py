@@ -5,7 +5,7 @@ Numbers are those of the vendor's diagnosis manual where it has the fault (20xxx
 
 from typing import NamedTuple
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.canonical import Source
 
 
@@ -16,10 +16,9 @@ class ProgramError(CncError):
     below it.
     """
 
-    def __init__(self, error_id: int, reason: str, source: Source, column: int) -> None:
+    def __init__(self, number: int, reason: str, source: Source, column: int, /, **values: Value) -> None:
         where = f"{source.file} line {source.line} column {column} '{source.text.strip()}'"
-        super().__init__(error_id, f"{where}: {reason}")
-        self.reason = reason
+        super().__init__(number, reason, where=where, **values)
         self.source = source
         self.file = source.file
         self.line = source.line
@@ -36,12 +35,12 @@ class ProgramError(CncError):
 class Fault(NamedTuple):
     """One kind of error: its number and the template of its reason."""
 
-    error_id: int
+    number: int
     template: str
 
-    def at(self, source: Source, column: int = 1, **values: object) -> ProgramError:
+    def at(self, source: Source, column: int = 1, /, **values: Value) -> ProgramError:
         """The exception for this fault at a place in the program."""
-        return ProgramError(self.error_id, self.template.format(**values), source, column)
+        return ProgramError(self.number, self.template.format(**values), source, column, **values)
 
 
 # Characters and words

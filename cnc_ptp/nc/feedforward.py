@@ -6,6 +6,7 @@ Source: TF5200 feedforward 3. The weights are percent; they and the selection ho
 import re
 from collections.abc import Iterator
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
 from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedforward, number
 from cnc_ptp.nc.lexer import Token, column_of
@@ -87,7 +88,7 @@ def _codes(token: Token, source: Source) -> Iterator[tuple[int, float | None, in
 
 def _fault(
     spindle: str, found: dict[int, float], code: int, value: float | None
-) -> tuple[faults.Fault, dict[str, object]] | None:
+) -> tuple[faults.Fault, dict[str, Value]] | None:
     """What is wrong with a word behind the words `found`, and the values for its text."""
     rival = next((other for other in found if other != WEIGHTS), None)
     if code in found:

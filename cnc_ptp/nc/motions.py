@@ -6,6 +6,7 @@ motion with an absolute target, or None if the block goes nowhere. The interpret
 
 from typing import NamedTuple
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.lexer import column_of
@@ -115,7 +116,7 @@ class _Arc:
             raise self._fault(faults.PLANE_AXIS_MISSING, g=f"G{self.state.plane}", needed=needed, known=known)
         return first, second
 
-    def _fault(self, fault: faults.Fault, place: str = "", **values: object) -> faults.ProgramError:
+    def _fault(self, fault: faults.Fault, place: str = "", **values: Value) -> faults.ProgramError:
         return fault.at(self.block.source, column_of(self.block.source, place or self.code.name), **values)
 
     def by_centre(self, given: list[str]) -> CircularMove:

@@ -8,6 +8,7 @@ end with the program.
 import re
 from collections.abc import Sequence
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
@@ -25,7 +26,7 @@ class _Command:
     def __init__(self, channel: Channel, state: ModalState, block: Block, command: HashCommand) -> None:
         self.channel, self.state, self.block, self.command = channel, state, block, command
 
-    def fault(self, fault: Fault, **values: object) -> ProgramError:
+    def fault(self, fault: Fault, **values: Value) -> ProgramError:
         """The error at the place of the command."""
         return fault.at(self.block.source, self.command.column, **values)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import inf
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
@@ -258,7 +259,7 @@ class _SpindleBlock:
         _note(self.state, self.key, function)
         return function
 
-    def _fault(self, fault: faults.Fault, **values: object) -> faults.ProgramError:
+    def _fault(self, fault: faults.Fault, **values: Value) -> faults.ProgramError:
         column = column_of(self.block.source, self.place)
         return fault.at(self.block.source, column, spindle=self.words.name, **values)
 

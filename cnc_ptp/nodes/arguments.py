@@ -59,5 +59,7 @@ def require_unit(machine: MachineParameters, name: str, kinds: Collection[str]) 
     if units.get(name) not in kinds:
         known = ", ".join(unit for unit, kind in units.items() if kind in kinds) or "none"
         raise CncError(
-            UNKNOWN_UNIT, f"the machine has no {' or '.join(kinds)} '{name}'; the node does not start. Known: {known}"
+            UNKNOWN_UNIT,
+            f"the machine has no {' or '.join(kinds)} '{name}'",
+            f"the node does not start. Known: {known}",
         )

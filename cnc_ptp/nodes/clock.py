@@ -107,7 +107,7 @@ class ClockNode(Node):
         if not self._expected <= self._ready:
             return
         if self.count_publishers(self._publisher.topic_name) > 1:
-            raise CncError(SECOND_CLOCK, "another clock is on this ROS domain; this one ends, nothing was started")
+            raise CncError(SECOND_CLOCK, "another clock is on this ROS domain", "this one ends, nothing was started")
         self._require_one_node_each()
         if self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR}):
             if not self._free_run:
@@ -122,7 +122,7 @@ class ClockNode(Node):
             if len(writers) > 1:
                 nodes = " and ".join(sorted(f"{w.node_namespace.rstrip('/')}/{w.node_name}" for w in writers))
                 reason = f"{len(writers)} nodes have the unit '{unit}' ({nodes})"
-                raise CncError(SECOND_NODE, f"{reason}; the clock ends, nothing was started. End all but one of them")
+                raise CncError(SECOND_NODE, reason, "the clock ends, nothing was started. End all but one of them")
 
     def _tick(self, scheduled_ns: int) -> None:
         if self._cycles is not None and self._first_cycle >= self._cycles:

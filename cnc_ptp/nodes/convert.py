@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from array import array
-from dataclasses import fields
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -21,6 +20,7 @@ from cnc_ptp.protocol.blocks import (
     EventValue,
     HandshakeRequest,
     PlcBlock,
+    Refusal,
     SpindleBlock,
 )
 
@@ -32,7 +32,7 @@ BLOCK_CLASSES: dict[type, type] = {
     msg.SpindleBlock: SpindleBlock,
 }
 BLOCK_MESSAGES = {block: message for message, block in BLOCK_CLASSES.items()}
-NESTED = ("commands", "requests")
+NESTED = ("commands", "requests", "refused")
 
 
 def _plan(message_type: Any) -> list[tuple[str, str]]:
@@ -52,6 +52,8 @@ def block_to_message(block: Block, stamp: Time) -> Any:
         setattr(message, name, array(typecode, value) if typecode else value)
     if isinstance(block, (PlcBlock, ChannelBlock, SpindleBlock)):
         message.commands = [command_to_message(command) for command in block.commands]
+    if isinstance(block, SpindleBlock):
+        message.refused = [refusal.encode() for refusal in block.refused]
     if isinstance(block, ChannelBlock):
         message.requests = [request_to_message(request, stamp) for request in block.requests]
     return message
@@ -63,6 +65,8 @@ def message_to_block(message: Any) -> Any:
     values = {name: getattr(message, name) for name, _ in _PLANS[block_class]}
     if block_class in (PlcBlock, ChannelBlock, SpindleBlock):
         values["commands"] = [message_to_command(command) for command in message.commands]
+    if block_class is SpindleBlock:
+        values["refused"] = [Refusal.decode(text) for text in message.refused]
     if block_class is ChannelBlock:
         values["requests"] = [_message_to_request(request) for request in message.requests]
     return block_class(**values)
@@ -102,7 +106,7 @@ def message_to_tick(message: msg.CycleTick) -> CycleTick:
 
 
 def message_to_record(message: msg.CommandRecord) -> CommandRecord:
-    return CommandRecord(**{field.name: getattr(message, field.name) for field in fields(CommandRecord)})
+    return CommandRecord(**{name: getattr(message, name) for name in _names(msg.CommandRecord)})
 
 
 def message_to_event(message: msg.Event) -> Event:
@@ -115,11 +119,15 @@ def request_to_message(request: HandshakeRequest, stamp: Time) -> msg.HandshakeR
 
 
 def _message_to_request(message: msg.HandshakeRequest) -> HandshakeRequest:
-    return HandshakeRequest(**{field.name: getattr(message, field.name) for field in fields(HandshakeRequest)})
+    return HandshakeRequest(**{name: getattr(message, name) for name in _names(msg.HandshakeRequest)})
+
+
+def _names(message_type: Any) -> list[str]:
+    return [name for name in message_type.get_fields_and_field_types() if name != "header"]
 
 
 def _flat(value: Any, message_type: Any, stamp: Time) -> Any:
-    message = message_type(**{field.name: getattr(value, field.name) for field in fields(value)})
+    message = message_type(**{name: getattr(value, name) for name in _names(message_type)})
     message.header.stamp = stamp
     return message
 

@@ -27,7 +27,8 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Severity, command_note, error_note, event_note, keep_note
+from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit_view import UnitView
 
 SUPERVISOR = "supervisor"
@@ -46,7 +47,7 @@ class RunMonitor(Node):
         """So far is the run."""
         self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
-        self.notes: list[str] = []
+        self.notes = Notes()
         self.refused = 0
         self.run_done = False
         self.ending = ""
@@ -134,13 +135,13 @@ class RunMonitor(Node):
 
     def _on_event(self, message: msg.Event) -> None:
         if message.severity == Severity.ERROR and message.source != SUPERVISOR:
-            self.errors.append(error_note(message.error_id, message.text, message.cycle, message.line))
+            self.errors.append(error_text(message))
             self._last_fault = max(self._last_fault, message.cycle)
-        keep_note(self.notes, event_note(message.severity, message.error_id, message.text))
+        self.notes.add(Note.of_event(message))
 
     def _on_command(self, message: msg.CommandRecord) -> None:
         self.refused += not message.accepted
-        keep_note(self.notes, command_note(message.accepted, message.error_id, message.message))
+        self.notes.add(Note.of_command(message))
 
     def _on_lateness(self, message: msg.LatenessHistogram) -> None:
         self._histograms[message.source] = message

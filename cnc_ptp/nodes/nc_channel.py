@@ -61,7 +61,7 @@ class ChannelNode(UnitNode):
             try:
                 text = read_file("NC program", path)
             except CncError as error:
-                return self.refuse(command, error.error_id, error.message.rpartition("; ")[0])
+                return self.refuse(command, error.number, error.reason)
             command = Command(self.unit.name, "load", {"program": path, "text": text})
         return super().command(command)
 

@@ -87,12 +87,12 @@ def initialise() -> None:
     except RuntimeError as error:
         reason, _, _place_in_its_source = str(error).partition(", at /")
         hints = "".join(f" ({text})" for part, text in ROS_HINTS.items() if part in reason)
-        raise CncError(NO_ROS, f"ROS does not start: {reason}{hints}; nothing was started") from None
+        raise CncError(NO_ROS, f"ROS does not start: {reason}{hints}", "nothing was started") from None
     domain = rclpy.get_default_context().get_domain_id()
     if domain > HIGHEST_DOMAIN:
         rclpy.try_shutdown()
         reason = f"ROS_DOMAIN_ID = {domain} is not within 0 ... {HIGHEST_DOMAIN}"
-        raise CncError(NO_ROS, f"ROS does not start: {reason}; nothing was started")
+        raise CncError(NO_ROS, f"ROS does not start: {reason}", "nothing was started")
 
 
 def claim_domain() -> socket.socket:
@@ -111,8 +111,8 @@ def claim_domain() -> socket.socket:
         raise CncError(
             DOMAIN_TAKEN,
             f"a run is under way on ROS domain {domain}{f' in namespace {namespace}' if namespace else ''} "
-            "of this machine; nothing was started. "
-            "Wait for its end, choose another --namespace, or set ROS_DOMAIN_ID to another number",
+            "of this machine",
+            "nothing was started. Wait for its end, choose another --namespace, or set ROS_DOMAIN_ID to another number",
         ) from None
     return claim
 

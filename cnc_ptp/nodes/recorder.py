@@ -230,7 +230,7 @@ def require_writable(path: str) -> None:
             file.unlink()
     except OSError as error:
         raise CncError(
-            NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}; nothing was started"
+            NOT_WRITABLE, f"recording {path} cannot be written: {error.strerror}", "nothing was started"
         ) from None
 
 

@@ -68,7 +68,7 @@ class SpindleNode(UnitNode):
         if done is None or not isinstance(block, SpindleBlock):
             return None
         refusal = self.spindle.refusal(number)
-        result.error_id = refusal.error_id if refusal else block.error_id[-1]
+        result.error_id = refusal.number if refusal else block.error_id[-1]
         if command == "orient":
             result.position_deg = block.actual_position_deg[-1]
         if not done:

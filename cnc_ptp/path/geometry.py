@@ -139,8 +139,10 @@ class Arc:
         if not (0.0 < self.radius < inf and 0.0 < abs(sweep_deg) < inf):
             raise CncError(
                 22102,
-                f"arc with radius {self.radius!r} mm and sweep {sweep_deg!r} deg: both must be finite and not 0; "
+                f"arc with radius {self.radius!r} mm and sweep {sweep_deg!r} deg: both must be finite and not 0",
                 "the motion is refused",
+                radius=self.radius,
+                sweep_deg=sweep_deg,
             )
         sweep = radians(sweep_deg)
         others = [(n, b - a) for n, (a, b) in enumerate(zip(start, target, strict=True)) if n not in self.plane]
@@ -161,8 +163,10 @@ class Arc:
             raise CncError(
                 22101,
                 f"arc around ({self.center[0]!r}, {self.center[1]!r}) with radius {self.radius:.6g} mm "
-                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm beside its target; the limit is {limit:.6g} mm; "
+                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm beside its target; the limit is {limit:.6g} mm",
                 "the motion is refused",
+                miss=miss,
+                limit=limit,
             )
         self._drift = (miss_x / self.length, miss_y / self.length)
         self._center = (
@@ -269,7 +273,7 @@ def _combine(feed: float, parts: Sequence[Limits]) -> Limits:
 def _check_feed(feed: float) -> None:
     """Refuse a feed that is not above 0 (inf is rapid traverse). Raises CncError 22103."""
     if not feed > 0.0:
-        raise CncError(22103, f"path feed {feed!r} mm/s must be greater than 0; the motion is refused")
+        raise CncError(22103, f"path feed {feed!r} mm/s must be greater than 0", "the motion is refused", feed=feed)
 
 
 def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
@@ -278,10 +282,10 @@ def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
     Raises CncError 22100.
     """
     if len(start) != len(target):
-        raise CncError(22100, f"path from {len(start)} to {len(target)} axes; the motion is refused")
+        reason = f"path from {len(start)} to {len(target)} axes"
+        raise CncError(22100, reason, "the motion is refused", start=len(start), target=len(target))
     for name, point in (("start", start), ("target", target)):
         for n, value in enumerate(point):
             if not isfinite(value):
-                raise CncError(
-                    22100, f"path {name} of axis {n} = {value!r} must be a finite number; the motion is refused"
-                )
+                reason = f"path {name} of axis {n} = {value!r} must be a finite number"
+                raise CncError(22100, reason, "the motion is refused", point=name, axis=n, value=value)

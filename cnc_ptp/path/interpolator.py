@@ -98,7 +98,8 @@ class PathInterpolator:
         self._check_free("the next element")
         feed = limits.velocity if feed is None or feed == inf else feed
         if not feed > 0.0:
-            raise CncError(22111, f"path feed {feed!r} mm/s must be greater than 0; the element is not started")
+            reason = f"path feed {feed!r} mm/s must be greater than 0"
+            raise CncError(22111, reason, "the element is not started", feed=feed)
         check_limits(limits)
         velocity = min(feed * self.factor, limits.velocity)
         if velocity < SMALLEST_LIMIT and element.length > 0.0:
@@ -116,9 +117,8 @@ class PathInterpolator:
         """
         self._check_free("a dwell")
         if not 0.0 <= seconds <= LONGEST_DWELL:
-            raise CncError(
-                22112, f"dwell of {seconds!r} s must be between 0 and {LONGEST_DWELL:g} s; it is not started"
-            )
+            reason = f"dwell of {seconds!r} s must be between 0 and {LONGEST_DWELL:g} s"
+            raise CncError(22112, reason, "it is not started", seconds=seconds, limit=LONGEST_DWELL)
         s = self._length if self.done else self.state[0]
         self._limits = None
         self._begin(s, Profile(((0.0, s, 0.0, 0.0, 0.0), (seconds, s, 0.0, 0.0, 0.0))), True)
@@ -130,9 +130,8 @@ class PathInterpolator:
         Raises CncError 22113 for a factor outside 0 … 1000.
         """
         if not 0.0 <= factor <= LARGEST_FACTOR:
-            raise CncError(
-                22113, f"path velocity factor {factor!r} must be between 0 and {LARGEST_FACTOR:g}; it is not changed"
-            )
+            reason = f"path velocity factor {factor!r} must be between 0 and {LARGEST_FACTOR:g}"
+            raise CncError(22113, reason, "it is not changed", factor=factor, limit=LARGEST_FACTOR)
         if factor != self.factor:
             self.factor = factor
             self._plan_anew()
@@ -171,8 +170,9 @@ class PathInterpolator:
         if not self.done and not self.stopped:
             raise CncError(
                 22110,
-                f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element; "
+                f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element",
                 "the running one goes on",
+                distance_to_go=self.distance_to_go,
             )
 
     def _begin(self, length: float, profile: Profile, reaches_end: bool) -> None:

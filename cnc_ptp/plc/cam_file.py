@@ -16,7 +16,7 @@ def parse_cam(text: str, file: str) -> list[list[float]]:
     """The points of a file, mm (deg). Raises CncError 25103 with file, line and value."""
 
     def fault(line: int, reason: str) -> CncError:
-        return CncError(BAD_CAM_FILE, f"cam file {file}:{line}: {reason}; nothing was started")
+        return CncError(BAD_CAM_FILE, reason, "nothing was started", where=f"cam file {file}:{line}", line=line)
 
     points: list[list[float]] = []
     number = 1
@@ -33,5 +33,5 @@ def parse_cam(text: str, file: str) -> list[list[float]]:
     try:
         CamTable(points, cyclic=False)
     except CncError as error:
-        raise fault(number, error.message) from None
+        raise fault(number, error.reason) from None
     return points

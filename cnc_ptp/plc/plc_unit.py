@@ -107,7 +107,10 @@ class PlcUnit(Unit):
             waiting = ", ".join(map(str, self._pending)) or "none"
             raise CncError(
                 NOTHING_TO_ACKNOWLEDGE,
-                f"plc {self.name}: acknowledge refused: no request {id} waits; nothing was changed. Waiting: {waiting}",
+                f"no request {id} waits",
+                f"nothing was changed. Waiting: {waiting}",
+                where=f"plc {self.name}: acknowledge refused",
+                request=id,
             )
         self._outgoing.append(Command(request.channel, "acknowledge", {"id": id}))
 

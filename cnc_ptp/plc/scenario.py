@@ -72,12 +72,12 @@ def parse_scenario(text: str, file: str, kinds: Mapping[str, str], read: ReadFil
     try:
         root = yaml.compose(text, _Loader)
     except yaml.YAMLError as error:
-        raise ScenarioError(BAD_SCENARIO, f"scenario {file} is not YAML: {error}; nothing was started") from None
+        raise ScenarioError(BAD_SCENARIO, f"scenario {file} is not YAML: {error}", "nothing was started") from None
     if root is None:
         return []
     if not isinstance(root, yaml.SequenceNode):
         raise ScenarioError(
-            BAD_SCENARIO, f"scenario {file}: a list of entries {{at, to, do, ...}} is expected; nothing was started"
+            BAD_SCENARIO, f"scenario {file}: a list of entries {{at, to, do, ...}} is expected", "nothing was started"
         )
     entries, faults = [], []
     for node in root.value:
@@ -114,7 +114,11 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
     for name in sorted((OF_CHANNELS | OF_PLC) & arguments.keys()):
         giver = "for channels only" if name in OF_CHANNELS else "filled in by the PLC"
         raise CncError(
-            BAD_ARGUMENT, f"{kinds[to]} {to}: {do} refused: argument '{name}' is {giver}; nothing was changed"
+            BAD_ARGUMENT,
+            f"argument '{name}' is {giver}",
+            "nothing was changed",
+            where=f"{kinds[to]} {to}: {do} refused",
+            argument=name,
         )
     _check_master(kinds, to, do, arguments.get("master"))
     if do == "load" and "text" not in arguments and read:
@@ -128,7 +132,7 @@ def _check_master(kinds: Mapping[str, str], slave: str, command: str, master: ob
     known = sorted(unit for unit in kinds if kinds[unit] == kind and unit != slave)
     if master is not None and master != slave and master not in known:
         reason = f"there is no {kind} '{master}'. Known: {', '.join(known) or 'none'}"
-        raise CncError(BAD_SCENARIO, f"{kind} {slave}: {command} refused: {reason}; nothing was changed")
+        raise CncError(BAD_SCENARIO, reason, "nothing was changed", where=f"{kind} {slave}: {command} refused")
 
 
 def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None) -> None:
@@ -138,9 +142,7 @@ def _read_setpoints(axis: str, arguments: dict[str, Any], read: ReadFile | None)
         return
     file = arguments.get("file")
     if not isinstance(file, str):
-        raise CncError(
-            BAD_ARGUMENT, f"axis {axis}: {SETPOINTS} refused: argument 'file' is missing; nothing was changed"
-        )
+        raise _bad_setpoints(axis, "argument 'file' is missing")
     if read:
         arguments["setpoints"] = parse_setpoints(read("setpoint file", arguments.pop("file")), file)
 
@@ -149,7 +151,11 @@ def _check_setpoints(axis: str, rows: object) -> None:
     try:
         read_setpoints(rows if isinstance(rows, list) else [])
     except ValueError as error:
-        raise CncError(BAD_ARGUMENT, f"axis {axis}: {SETPOINTS} refused: {error}; nothing was changed") from None
+        raise _bad_setpoints(axis, str(error)) from None
+
+
+def _bad_setpoints(axis: str, reason: str) -> CncError:
+    return CncError(BAD_ARGUMENT, reason, "nothing was changed", where=f"axis {axis}: {SETPOINTS} refused")
 
 
 def _construct(node: yaml.Node) -> dict[str, Any]:

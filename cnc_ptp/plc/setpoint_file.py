@@ -45,7 +45,7 @@ def _row(values: Sequence[str]) -> Row:
 
 
 def _fault(file: str, line: int, reason: str) -> CncError:
-    return CncError(BAD_SETPOINT_FILE, f"setpoint file {file}:{line}: {reason}; nothing was started")
+    return CncError(BAD_SETPOINT_FILE, reason, "nothing was started", where=f"setpoint file {file}:{line}", line=line)
 
 
 def placed(rows: Sequence[Row], cycle: int) -> list[Row]:

@@ -7,10 +7,13 @@ Units: mm, s, deg and their derivatives; the .msg files say the rest.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from math import isfinite
 from typing import Any, NamedTuple
+
+from cnc_ptp.errors import Value
 
 
 class Severity(IntEnum):
@@ -65,37 +68,8 @@ class CommandRecord:
     error_id: int
     message: str
     id: int = 0
-
-
-REFUSED, WARNED = "refused: P-ERR-", "warning: P-WARN-"
-
-
-def command_note(accepted: bool, error_id: int, message: str) -> str:
-    """What people should hear of a command: its refusal, or the warning with which it was carried out."""
-    if accepted:
-        return f"warning: {message}" if message else ""
-    return f"{REFUSED}{error_id} {message}"
-
-
-def error_note(error_id: int, text: str, cycle: int, line: int) -> str:
-    """An error as it is told at the end of a run: with its cycle, and the line of the NC program where there is one."""
-    where = f"cycle {cycle}, line {line}" if line else f"cycle {cycle}"
-    return f"P-ERR-{error_id} {text} ({where})"
-
-
-def event_note(severity: int, error_id: int, text: str) -> str:
-    """What people should hear of an event: warnings."""
-    return f"{WARNED}{error_id} {text}" if severity == Severity.WARNING else ""
-
-
-def keep_note(notes: list[str], note: str) -> None:
-    """Adds a note once. A refused command is an event too: it is told as refused, in whatever order the two come."""
-    if not note or note in notes or note.replace(WARNED, REFUSED, 1) in notes:
-        return
-    event = note.replace(REFUSED, WARNED, 1)
-    if event in notes:
-        notes.remove(event)
-    notes.append(note)
+    values: Mapping[str, Value] = field(default_factory=dict, compare=False)
+    """Of the unit that has refused the command, the values of its text; messages do not hold them."""
 
 
 class EventValue(NamedTuple):
@@ -215,6 +189,23 @@ class AxisBlock:
     couples_actual: bool = False
 
 
+class Refusal(NamedTuple):
+    """A spindle's refusal of what `source` has commanded; a message has it as one text."""
+
+    source: str
+    number: int
+    text: str
+
+    def encode(self) -> str:
+        return f"{self.source}: P-ERR-{self.number} {self.text}"
+
+    @classmethod
+    def decode(cls, message: str) -> Refusal:
+        source, _, refusal = message.partition(": P-ERR-")
+        number, _, text = refusal.partition(" ")
+        return cls(source, int(number), text)
+
+
 @dataclass(slots=True)
 class SpindleBlock:
     """SpindleBlock.msg"""
@@ -249,7 +240,7 @@ class SpindleBlock:
     source: str = ""
     plc_commands: int = 0
     plc_acknowledged: int = 0
-    refused: list[str] = field(default_factory=list)
+    refused: list[Refusal] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
 
 

@@ -206,7 +206,11 @@ def check_command(
     if specification is None:
         known = ", ".join(sorted(set(COMMANDS[kind]) - INTERNAL))
         raise CncError(
-            UNKNOWN_COMMAND, f"{kind} {unit}: unknown command '{command}'; nothing was changed. Known: {known}"
+            UNKNOWN_COMMAND,
+            f"unknown command '{command}'",
+            f"nothing was changed. Known: {known}",
+            where=f"{kind} {unit}",
+            command=command,
         )
     check_arguments(f"{kind} {unit}: {command} refused", specification, arguments, sources)
 
@@ -218,17 +222,17 @@ def check_arguments(
     for name in arguments:
         if name not in specification:
             known = ", ".join(known for known in specification if known not in OF_PLC) or "none"
-            raise CncError(BAD_ARGUMENT, f"{where}: unknown argument '{name}'; nothing was changed. Known: {known}")
+            raise _bad(where, name, f"unknown argument '{name}'", f"nothing was changed. Known: {known}")
     if "file" in arguments:
         for name in FILE_CONTENTS & arguments.keys():
-            raise CncError(BAD_ARGUMENT, f"{where}: '{name}' and 'file' are both given; nothing was changed. Give one")
+            raise _bad(where, name, f"'{name}' and 'file' are both given", "nothing was changed. Give one")
     for name, argument in specification.items():
         if name in arguments:
             _check_argument(where, name, argument, arguments[name])
             if argument.kind == "source":
                 _check_source(where, arguments[name], sources)
         elif argument.required:
-            raise CncError(BAD_ARGUMENT, f"{where}: argument '{name}' is missing; nothing was changed")
+            raise _bad(where, name, f"argument '{name}' is missing")
 
 
 def _check_argument(where: str, name: str, argument: Argument, value: Any) -> None:
@@ -237,15 +241,17 @@ def _check_argument(where: str, name: str, argument: Argument, value: Any) -> No
     is_type = isinstance(value, TYPES[argument.kind])  # type: ignore[arg-type]
     article = "an" if argument.kind == "integer" else "a"
     if not is_type or (isinstance(value, bool) and argument.kind != "switch"):
-        raise CncError(
-            BAD_ARGUMENT, f"{where}: {name} = {value!r} is not {article} {argument.kind}; nothing was changed"
-        )
+        raise _bad(where, name, f"{name} = {value!r} is not {article} {argument.kind}")
     if argument.kind == "number" and not is_finite(value):
         shown = value if isinstance(value, float) else "an integer that long"
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} = {shown} is not finite; nothing was changed")
+        raise _bad(where, name, f"{name} = {shown} is not finite")
     if argument.choices and value not in argument.choices:
         allowed = " or ".join(argument.choices)
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} = '{value}' is not {allowed}; nothing was changed")
+        raise _bad(where, name, f"{name} = '{value}' is not {allowed}")
+
+
+def _bad(where: str, argument: str, reason: str, effect: str = "nothing was changed") -> CncError:
+    return CncError(BAD_ARGUMENT, reason, effect, where=where, argument=argument)
 
 
 def sources_of(kinds: Mapping[str, str]) -> list[str]:
@@ -256,7 +262,7 @@ def sources_of(kinds: Mapping[str, str]) -> list[str]:
 def _check_source(where: str, source: str, sources: Collection[str]) -> None:
     if source and sources and source not in sources:
         known = ", ".join(sources)
-        raise CncError(BAD_ARGUMENT, f"{where}: unknown source '{source}'; nothing was changed. Known: {known}")
+        raise _bad(where, "source", f"unknown source '{source}'", f"nothing was changed. Known: {known}")
 
 
 def is_finite(value: float) -> bool:

@@ -47,22 +47,23 @@ class Unit(ABC):
 
     def command(self, command: Command, cycle: int) -> CommandRecord:
         """Carries out or refuses a command that takes effect at `cycle`, the first cycle of the next block."""
-        error_id, message = 0, ""
+        refusal = None
         try:
             self._dispatch(command.command, command.arguments, cycle)
         except CncError as error:
-            error_id, message = error.error_id, error.message
-            self.event(cycle, Severity.WARNING, error_id, message)
+            refusal = error
+            self.event(cycle, Severity.WARNING, error.number, error.message)
         shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
         record = CommandRecord(
             cycle,
             self.name,
             command.command,
             shown.arguments_json,
-            error_id == 0,
-            error_id,
-            message or self._warning,
-            command.id,
+            accepted=refusal is None,
+            error_id=refusal.number if refusal else 0,
+            message=refusal.message if refusal else self._warning,
+            id=command.id,
+            values=refusal.values if refusal else {},
         )
         self.records.append(record)
         return record

@@ -97,7 +97,8 @@ def misfit(block: Any, reason: str) -> CncError:
     return CncError(
         26006,
         f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does not fit its "
-        f"message: {reason}; it was not recorded",
+        f"message: {reason}",
+        "it was not recorded",
     )
 
 

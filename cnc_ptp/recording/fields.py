@@ -107,4 +107,4 @@ def _unknown(recorded: Recorded, what: str, word: str, known: Sequence[str]) -> 
 
 
 def _unnamed(recorded: Recorded, what: str) -> CncError:
-    return CncError(NOT_RECORDED, f"recording {recorded.path}: holds {what}; nothing was drawn")
+    return CncError(NOT_RECORDED, f"recording {recorded.path}: holds {what}", "nothing was drawn")

@@ -125,7 +125,7 @@ def _walk(schema: Schema, value: Any, header_of: Callable[[Any], Header]) -> _Wr
         writer.message(schema.name, value)
     except (struct.error, TypeError, AttributeError, KeyError) as error:
         raise CncError(
-            26006, f"recording: {full_name(schema.name)} cannot be encoded: {error}; it was not recorded"
+            26006, f"recording: {full_name(schema.name)} cannot be encoded: {error}", "it was not recorded"
         ) from error
     return writer
 

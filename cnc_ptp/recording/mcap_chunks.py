@@ -71,7 +71,7 @@ class McapRecords:
             self._data = memoryview(path.read_bytes())
         except OSError as error:
             raise CncError(
-                26001, f"recording {path}: cannot be opened: {error.strerror}; nothing was read, check the path"
+                26001, f"recording {path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
             ) from error
         self._data_ended = False
         self._require_magic()
@@ -155,8 +155,8 @@ class McapRecords:
     def corrupt(self, offset: int, reason: str) -> CncError:
         return CncError(
             26003,
-            f"recording {self.path}: corrupt at offset {offset}: {reason}; nothing was read, take an intact "
-            "copy of the file or save what is whole with 'mcap recover'",
+            f"recording {self.path}: corrupt at offset {offset}: {reason}",
+            "nothing was read, take an intact copy of the file or save what is whole with 'mcap recover'",
         )
 
     def _require_magic(self) -> None:
@@ -164,7 +164,7 @@ class McapRecords:
         if begin != MCAP0_MAGIC:
             raise CncError(
                 26002,
-                f"recording {self.path}: not an MCAP file: it begins with {begin!r} instead of {MCAP0_MAGIC!r}; "
+                f"recording {self.path}: not an MCAP file: it begins with {begin!r} instead of {MCAP0_MAGIC!r}",
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )
 

@@ -106,7 +106,7 @@ class McapFile:
                 self._stream.truncate()
         except OSError as error:
             raise CncError(
-                26007, f"recording {path}: cannot be created: {error.strerror}; nothing is recorded"
+                26007, f"recording {path}: cannot be created: {error.strerror}", "nothing is recorded"
             ) from error
         forget_beside(path)
         if found is None:
@@ -298,7 +298,7 @@ class McapFile:
     def _failed(self, error: OSError) -> CncError:
         self._failure = CncError(
             26007,
-            f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}; "
+            f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}",
             "recording ends here, the chunks before it stay readable",
         )
         return self._failure

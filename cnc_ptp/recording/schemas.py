@@ -133,7 +133,8 @@ def message_file(type_name: str) -> Path:
     raise CncError(
         26005,
         f"recording: message type {full_name(type_name)} is not installed (looked for msg/{name}.msg in the "
-        f"ROS prefixes and {sys.prefix}/share/{package}); it cannot be recorded, install package {package}",
+        f"ROS prefixes and {sys.prefix}/share/{package})",
+        f"it cannot be recorded, install package {package}",
     )
 
 
@@ -158,7 +159,9 @@ def _fields(owner: str, text: str) -> Iterator[Field]:
         match = _FIELD.fullmatch(code)
         if match is None:
             raise CncError(
-                26005, f"recording: message type {full_name(owner)}: '{code}' is not a field; the schema is not usable"
+                26005,
+                f"recording: message type {full_name(owner)}: '{code}' is not a field",
+                "the schema is not usable",
             )
         if not match["rest"].lstrip().startswith("="):  # the others are constants
             yield Field(match["name"], _type_in(package, match["type"]), _length(match["array"]))
@@ -184,6 +187,6 @@ def _require_complete(name: str, types: dict[str, tuple[Field, ...]]) -> None:
                 raise CncError(
                     26005,
                     f"recording: message type {full_name(name)}: type {field.type} of field "
-                    f"{full_name(owner)}.{field.name} is neither defined in the schema nor supported; the schema is "
-                    "not usable",
+                    f"{full_name(owner)}.{field.name} is neither defined in the schema nor supported",
+                    "the schema is not usable",
                 )

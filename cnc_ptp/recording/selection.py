@@ -32,7 +32,9 @@ def selected(
     high = np.inf if end is None else end / cycle_time - 1e-6
     states = {topic: _between(rows, low, high) for topic, rows in recorded.states.items()}
     if not any(len(rows) for rows in states.values()):
-        raise CncError(NOT_RECORDED, f"recording {recorded.path}: {_nothing(recorded, begin, end)}; nothing was drawn")
+        raise CncError(
+            NOT_RECORDED, f"recording {recorded.path}: {_nothing(recorded, begin, end)}", "nothing was drawn"
+        )
     return replace(
         recorded,
         states={topic: rows for topic, rows in states.items() if len(rows)},
@@ -55,7 +57,7 @@ def _of_units(recorded: Recorded, units: Sequence[str]) -> Recorded:
         if unit not in known:
             hint = nearest(unit, known)
             raise CncError(
-                NOT_RECORDED, f"recording {recorded.path}: holds no axis or spindle '{unit}'{hint}; nothing was drawn"
+                NOT_RECORDED, f"recording {recorded.path}: holds no axis or spindle '{unit}'{hint}", "nothing was drawn"
             )
     left_out = {*known} - {*units}
     states = {

@@ -137,8 +137,8 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
     if not recorded.machine_yaml:
         raise CncError(
             26004,
-            f"recording {recorded.path}: holds no attachment machine.yaml; it cannot be verified, record it "
-            "with cnc_ptp",
+            f"recording {recorded.path}: holds no attachment machine.yaml",
+            "it cannot be verified, record it with cnc_ptp",
         )
     checks = {topic: _Check(topic, rows, recorded) for topic, rows in recorded.states.items()}
     for name, block in replay(recorded):
@@ -197,7 +197,8 @@ class _Check:
             raise CncError(
                 26004,
                 f"recording {self.recorded.path}: {self.result.topic} has the fields {', '.join(unknown)}, which this "
-                "version does not compute; it cannot be verified, use the version that recorded it",
+                "version does not compute",
+                "it cannot be verified, use the version that recorded it",
             )
         self.result.not_recorded = [name for name in computed if name not in recorded]
 

@@ -7,6 +7,7 @@ passed.
 from __future__ import annotations
 
 from collections.abc import Hashable
+from copy import copy
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
@@ -262,7 +263,9 @@ class Recording:
 
     def spindle_block_message(self, name: str, block: SpindleBlock) -> None:
         """`/<name>/block`."""
-        self._block_alone(name, block)
+        message: Any = copy(block)
+        message.refused = [refusal.encode() for refusal in block.refused]
+        self._block_alone(name, message)
 
     def channel_block_message(self, name: str, block: ChannelBlock) -> None:
         self._block_alone(name, block)
@@ -383,14 +386,15 @@ class Recording:
             raise CncError(
                 26008,
                 f"recording {self.path}: topic {topic} holds {known.type_names[1]}, a message of "
-                f"{full_name(type_name)} came; it was not recorded",
+                f"{full_name(type_name)} came",
+                "it was not recorded",
             )
         return known
 
     def _require_open(self, what: str) -> None:
         if self._closed:
             raise CncError(
-                26009, f"recording {self.path}: {what} came after the recording was closed; it was not recorded"
+                26009, f"recording {self.path}: {what} came after the recording was closed", "it was not recorded"
             )
 
     def _begin_chunk(self, first_cycle: int) -> None:

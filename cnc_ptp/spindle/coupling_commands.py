@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import (
     BAD_RATIO,
@@ -52,17 +51,20 @@ class CouplingCommands:
             spindle.refuse("couple", COUPLED_TO_ITSELF, "a spindle cannot be its own master")
         if master not in self._spindles:
             known = ", ".join(self._spindles)
-            spindle.refuse("couple", UNKNOWN_MASTER, f"'{master}' is no spindle of the machine ({known})")
+            spindle.refuse(
+                "couple", UNKNOWN_MASTER, f"'{master}' is no spindle of the machine ({known})", master=master
+            )
         for name, value in (("factor_num", factor_num), ("factor_den", factor_den)):
             if value == 0.0:
-                spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0")
+                spindle.refuse("couple", BAD_RATIO, f"{name} = {value} must not be 0", argument=name, value=value)
         ratio = factor_num / factor_den
         if not is_permitted(ratio):
             bounds = f"within ±{SMALLEST_RATIO:g} ... ±{LARGEST_RATIO:g}"
-            spindle.refuse("couple", BAD_RATIO, f"factor_num / factor_den = {ratio:g} is not {bounds}")
+            spindle.refuse("couple", BAD_RATIO, f"factor_num / factor_den = {ratio:g} is not {bounds}", ratio=ratio)
         if self.master or self.wanted:
-            reason = f"the spindle is a slave of {self.master or self.wanted}; decouple it first"
-            spindle.refuse("couple", COUPLED_ALREADY, reason)
+            other = self.master or self.wanted
+            reason = f"the spindle is a slave of {other}; decouple it first"
+            spindle.refuse("couple", COUPLED_ALREADY, reason, master=other)
         self.wanted, self._wanted_ratio, self.owner = master, ratio, owner
 
     def do_coupling_answer(self, cycle: int, *, granted: bool, reason: str) -> None:
@@ -93,8 +95,3 @@ class CouplingCommands:
 def can_follow(spindle: Spindle) -> bool:
     """False for a slave that is in error or has no power: it does nothing that its master does."""
     return spindle.state not in (S.ERROR_STOP, S.DISABLED)
-
-
-def why_not(error: CncError) -> str:
-    """The reason in the text of a refusal."""
-    return error.message.partition("refused: ")[2].removesuffix("; nothing was changed")

@@ -72,11 +72,11 @@ class Orders:
         """
         if master and command != "stop":
             reason = f"the spindle is a slave of {master}; command {master} or decouple the spindle"
-            self._spindle.refuse(command, SLAVE_LOCKED, reason)
+            self._spindle.refuse(command, SLAVE_LOCKED, reason, master=master)
         stops_its_own = command == "stop" and source == self.commander
         if source and source != PLC and self.source and source != self.source and not stops_its_own:
             reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
-            self._spindle.refuse(command, AT_WORK, reason)
+            self._spindle.refuse(command, AT_WORK, reason, owner=self.source, source=source)
 
     def must_wait(self, command: str, source: str) -> bool:
         """For what is finished first; those of the PLC for whatever is active. A stop never waits."""

@@ -45,11 +45,12 @@ class PositionCommands:
         spindle.require_ready("orient")
         if not abs(position_deg) <= LARGEST_POSITION:
             reason = f"position {position_deg} deg is not within ±{LARGEST_POSITION} deg"
-            spindle.refuse("orient", BAD_POSITION, reason)
+            spindle.refuse("orient", BAD_POSITION, reason, position=position_deg, limit=LARGEST_POSITION)
         if speed_rpm is not None:
             check_speed(spindle, "orient", speed_rpm)
             if speed_rpm == 0.0:
-                spindle.refuse("orient", BAD_SPEED, "speed 0 rpm must be greater than 0 for a positioning")
+                reason = "speed 0 rpm must be greater than 0 for a positioning"
+                spindle.refuse("orient", BAD_SPEED, reason, speed=speed_rpm)
         self._require_position("orient")
         check_direction(spindle, "orient", cycle, direction)
         self._require_reference("orient", cycle)
@@ -101,7 +102,8 @@ class PositionCommands:
         spindle.require_ready("select_gear")
         if stage not in spindle.parameters.gears:
             known = ", ".join(map(str, spindle.parameters.gears))
-            spindle.refuse("select_gear", NO_SUCH_GEAR, f"gear {stage} has no record getriebe[i]; there are {known}")
+            reason = f"gear {stage} has no record getriebe[i]; there are {known}"
+            spindle.refuse("select_gear", NO_SUCH_GEAR, reason, gear=stage)
         if stage == spindle.gear.stage:
             return f"spindle {spindle.name}: gear {stage} is selected already"
         rotation = spindle.programmed_speed if resume and spindle.state == S.CONTINUOUS_MOTION else 0.0

@@ -91,7 +91,7 @@ class RotationCommands:
         limit = spindle.parameters.max_override_percent
         if not 0.0 <= percent <= limit:
             reason = f"percent = {percent} is not within 0 ... {limit:g} (P-AXIS-00109)"
-            spindle.refuse("set_override", BAD_OVERRIDE, reason)
+            spindle.refuse("set_override", BAD_OVERRIDE, reason, percent=percent, limit=limit)
         if percent == spindle.override_percent:
             return None
         spindle.override_percent = float(percent)
@@ -127,10 +127,10 @@ class RotationCommands:
             low, high, parameter = LIMIT_RANGES[name]
             if value is not None and not low <= value <= high:
                 reason = f"{name} = {value} is not within {low:g} ... {high:g} ({parameter})"
-                spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)
-        if None not in (min_speed_rpm, max_speed_rpm) and float(min_speed_rpm or 0) > float(max_speed_rpm or 0):
+                spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason, argument=name, value=value, low=low, high=high)
+        if min_speed_rpm is not None and max_speed_rpm is not None and min_speed_rpm > max_speed_rpm:
             reason = f"min_speed_rpm = {min_speed_rpm} is above max_speed_rpm = {max_speed_rpm}"
-            spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason)
+            spindle.refuse("set_limits", BAD_TOOL_LIMITS, reason, low=min_speed_rpm, high=max_speed_rpm)
         none = ToolLimits()
         self._take(
             cycle,
@@ -157,12 +157,13 @@ class RotationCommands:
 def check_speed(spindle: Spindle, command: str, speed_rpm: float) -> None:
     """Raises 24001 and 24002."""
     if speed_rpm < 0.0:
-        spindle.refuse(command, BAD_SPEED, f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw")
+        reason = f"speed {speed_rpm} rpm must not be negative; the direction is cw or ccw"
+        spindle.refuse(command, BAD_SPEED, reason, speed=speed_rpm)
     limit_rpm = spindle.gear.max_speed / DEG_S_PER_RPM
     if speed_rpm > limit_rpm:
         gear = f" of gear {spindle.gear.stage}" if len(spindle.parameters.gears) > 1 else ""
         reason = f"speed {speed_rpm} rpm is above the maximum {limit_rpm:g} rpm{gear} (P-AXIS-00212)"
-        spindle.refuse(command, SPEED_TOO_HIGH, reason)
+        spindle.refuse(command, SPEED_TOO_HIGH, reason, speed=speed_rpm, limit=limit_rpm, gear=spindle.gear.stage)
 
 
 def check_direction(spindle: Spindle, command: str, cycle: int, direction: str) -> None:
@@ -171,4 +172,4 @@ def check_direction(spindle: Spindle, command: str, cycle: int, direction: str) 
     if preferred and DIRECTIONS.get(direction, preferred) != preferred:
         word = "positive" if preferred > 0 else "negative"
         reason = f"{direction} contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: {word})"
-        spindle.fail(command, cycle, AGAINST_PREFERRED_DIRECTION, reason)
+        spindle.fail(command, cycle, AGAINST_PREFERRED_DIRECTION, reason, direction=direction, preferred=word)

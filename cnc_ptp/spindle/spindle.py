@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from cnc_ptp.control.control_loop import State
 from cnc_ptp.control.drives import Drive
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -89,7 +89,7 @@ class Spindle:
         """Tells a warning as an event; returns it as the record of a command shows it."""
         text = f"spindle {self.name}: {reason}"
         self.report_warning(cycle, number, text)
-        return f"P-WARN-{number} {text}"
+        return warning_text(number, text)
 
     # setpoints
 
@@ -255,15 +255,19 @@ class Spindle:
 
     # refusals and faults
 
-    def refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
-        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; nothing was changed")
+    def refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
+        raise self._refusal(command, number, reason, "nothing was changed", **values)
+
+    def _refusal(self, command: str, number: int, reason: str, effect: str, /, **values: Value) -> CncError:
+        return CncError(number, reason, effect, where=f"spindle {self.name}: {command} refused", **values)
 
     def require_ready(self, command: str) -> None:
         """Raises 24003 in ErrorStop and without power."""
         if self.state == S.ERROR_STOP:
-            self.refuse(command, NOT_READY, f"the spindle is in ErrorStop (P-ERR-{self.error_id}); reset it first")
+            reason = f"the spindle is in ErrorStop (P-ERR-{self.error_id}); reset it first"
+            self.refuse(command, NOT_READY, reason, state="ErrorStop", error=self.error_id)
         if self.state == S.DISABLED:
-            self.refuse(command, NOT_READY, "the spindle is in Disabled; give it power first")
+            self.refuse(command, NOT_READY, "the spindle is in Disabled; give it power first", state="Disabled")
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
@@ -278,8 +282,8 @@ class Spindle:
         text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
         self.report_error(cycle, error_id, text)
 
-    def fail(self, command: str, cycle: int, error_id: int, reason: str) -> NoReturn:
+    def fail(self, command: str, cycle: int, number: int, reason: str, /, **values: Value) -> NoReturn:
         """A command that is refused and puts the spindle into ErrorStop."""
-        self.fault(cycle, error_id, reason)
+        self.fault(cycle, number, reason)
         self.job_error = True
-        raise CncError(error_id, f"spindle {self.name}: {command} refused: {reason}; the spindle is in ErrorStop")
+        raise self._refusal(command, number, reason, "the spindle is in ErrorStop", **values)

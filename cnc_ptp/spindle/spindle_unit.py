@@ -9,14 +9,14 @@ from typing import Any, ClassVar
 
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, feedforward_warning
 from cnc_ptp.control.drives import Drive, make_drive
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
-from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow, why_not
+from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
 from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
@@ -74,7 +74,7 @@ class SpindleUnit(Unit):
         """Number of the next motion command."""
         self._turned_down: tuple[int, CncError | None] = 0, None
         self._passed_on: list[Command] = []
-        self._refused: list[str] = []
+        self._refused: list[Refusal] = []
         self._last_block: SpindleBlock | None = None
 
     def _make_drive(self, gear: GearParameters, position: float) -> Drive:
@@ -109,7 +109,7 @@ class SpindleUnit(Unit):
         record = super().command(command, cycle)
         source = command.arguments.get("source") or command.arguments.get("owner")
         if not record.accepted and source and command.command != "upstream_lost":
-            self._refused.append(f"{source}: P-ERR-{record.error_id} {record.message}")
+            self._refused.append(Refusal(source, record.error_id, record.message))
         return record
 
     def handler(self, command: str) -> Handler:
@@ -148,7 +148,8 @@ class SpindleUnit(Unit):
         """PLC and people hear what their order waits for; in a program it is the order of things."""
         if order.source not in ("", PLC):
             return None
-        return f"P-WARN-{ORDER_WAITS} spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
+        text = f"spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
+        return warning_text(ORDER_WAITS, text)
 
     def _carry_out(self, cycle: int, order: Order) -> str | None:
         work = self.spindle.work
@@ -176,7 +177,7 @@ class SpindleUnit(Unit):
             return
         text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
         self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
-        self._refused.append(f"{source}: P-ERR-{GEAR_CHANGE_OVERTAKEN} {text}")
+        self._refused.append(Refusal(source, GEAR_CHANGE_OVERTAKEN, text))
 
     def _tell_lost_homings(self, cycle: int, by: str) -> None:
         """A homing whose zero pulse has not come, and those that wait, do not take place: nobody waits for them."""
@@ -205,9 +206,9 @@ class SpindleUnit(Unit):
                 self._carry_out(cycle, order)
             except CncError as error:
                 self._turned_down = order.number, error
-                self.event(cycle, Severity.WARNING, error.error_id, error.message)
+                self.event(cycle, Severity.WARNING, error.number, error.message)
                 if order.source:
-                    self._refused.append(f"{order.source}: P-ERR-{error.error_id} {error.message}")
+                    self._refused.append(Refusal(order.source, error.number, error.message))
 
     def outcome(self, number: int) -> bool | None:
         """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
@@ -301,7 +302,7 @@ class SpindleUnit(Unit):
         text = f"spindle {self.name}: {reason}: the spindle is in Disabled; give it power first; nothing was changed"
         self._report(Severity.ERROR, cycle, SLAVE_CANNOT, text)
         if "source" in command.arguments:
-            self._refused.append(f"{command.arguments['source']}: P-ERR-{SLAVE_CANNOT} {text}")
+            self._refused.append(Refusal(command.arguments["source"], SLAVE_CANNOT, text))
 
     def _do_as_master(self, cycle: int, command: Command) -> None:
         """During a gear change of the slave the command waits; a stop forgets what waits."""
@@ -323,7 +324,7 @@ class SpindleUnit(Unit):
             self._group_handler(order.command)(cycle, **order.arguments)
         except CncError as error:
             if can_follow(self.spindle):
-                reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {why_not(error)}"
+                reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {error.reason}"
                 self.spindle.fault(cycle, SLAVE_CANNOT, reason)
 
 

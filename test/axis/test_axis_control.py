@@ -18,6 +18,7 @@ from axis_control_support import (
     move,
     plain_control,
 )
+from error_support import refused
 from loop_support import KV, PLANT, TA, feedforward
 from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
@@ -113,17 +114,9 @@ def test_refusals_and_warnings_of_the_unit() -> None:
     assert bench.accepted("set_feedforward", enabled=True) == (
         "axis x: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
     )
-    assert bench.refused("set_feedforward", weight_percent=-0.5) == (
-        "P-ERR-23060 axis x: set_feedforward refused: weight_percent = -0.5 is no number of 0 or more (G136); nothing "
-        "was changed"
-    )
-    assert bench.refused("set_friction_compensation", enabled=True) == (
-        "P-ERR-70495 axis x: set_friction_compensation refused: friction compensation is not activated (P-AXIS-00522 "
-        "lr_param.frict_comp = 0); nothing was changed"
-    )
-    assert bench.refused("set_feedforward", enabled="yes") == (
-        "P-ERR-22001 axis x: set_feedforward refused: enabled = 'yes' is not a switch; nothing was changed"
-    )
+    assert bench.refusal("set_feedforward", weight_percent=-0.5) == refused(23060, weight_percent=-0.5)
+    assert bench.refusal("set_friction_compensation", enabled=True) == refused(70495)
+    assert bench.refusal("set_feedforward", enabled="yes") == refused(22001, argument="enabled")
     bench.run(10)
     assert [event.severity for event in bench.events] == [Severity.WARNING] * 3
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from axis_motion_support import motion, ramp_time, ramp_way, run_to_standstill
 from axis_states_support import A, J
+from error_support import Refused, refused
 from machine_support import CYCLE_TIME, PTP, MachineBench, UnitBench, assert_axis_smooth, axis_bench, seven_phases
 from ruckig import ControlInterface, InputParameter, Result, Ruckig, Trajectory
 from superposition_support import feed, generator
@@ -316,23 +317,22 @@ def test_random_jogs_stay_within_all_limits() -> None:
 
 
 @pytest.mark.parametrize(
-    ("velocity", "number", "reason"),
+    ("velocity", "wanted"),
     [
-        (150.0, 23004, "velocity 150.0 mm/s is above the maximum 100.0 mm/s (P-AXIS-00212)"),
-        (-150.0, 23004, "velocity 150.0 mm/s is above the maximum 100.0 mm/s (P-AXIS-00212)"),
-        (90.0, 23011, "velocity 90.0 mm/s is above the reference velocity 80.0 mm/s (P-MACH-00008)"),
-        (1e-12, 23003, "velocity = 1e-12 must be at least 1e-09"),
+        (150.0, refused(23004, velocity=150.0, limit=100.0)),
+        (-150.0, refused(23004, velocity=150.0, limit=100.0)),
+        (90.0, refused(23011, velocity=90.0, limit=80.0)),
+        (1e-12, refused(23003, argument="velocity", value=1e-12, limit=1e-09)),
     ],
 )
 @pytest.mark.parametrize("moving", [False, True])
-def test_a_velocity_out_of_range_changes_nothing(velocity: float, number: int, reason: str, moving: bool) -> None:
+def test_a_velocity_out_of_range_changes_nothing(velocity: float, wanted: Refused, moving: bool) -> None:
     benches = [axis_bench(max_velocity=100.0, reference_velocity=80.0) for _ in range(2)]
     for bench in benches:
         if moving:
             bench.accepted("jog", velocity=20.0)
         bench.run(100)
-    expected = f"P-ERR-{number} axis x: jog refused: {reason}; nothing was changed"
-    assert benches[0].refused("jog", velocity=velocity) == expected
+    assert benches[0].refusal("jog", velocity=velocity) == wanted
     for bench in benches:
         bench.run(500)
     assert benches[0].columns() == benches[1].columns()
@@ -344,17 +344,13 @@ def test_a_slave_and_a_compensated_jog_are_refused() -> None:
     bench.run(500)
     bench.accepted("compensation_start", length=50.0, difference=-1.0, process_velocity=100.0, velocity_increase=20.0)
     bench.run(50)
-    assert bench.refused("jog", velocity=50.0) == (
-        "P-ERR-23015 axis x: jog refused: a position compensation is active; nothing was changed"
-    )
+    assert bench.refusal("jog", velocity=50.0) == refused(23015)
     bench.run(2000)
     assert bench.accepted("jog", velocity=50.0) == ""
     bench.run(500)
     assert motion(bench)[-1][1] == pytest.approx(50.0)
     machine = MachineBench(scenario='[{at: 0, to: "y", do: couple, master: x, factor: 1}]', machine=PTP).run(0.1)
-    assert machine.refused("y", "jog", velocity=1.0) == (
-        "P-ERR-23040 axis y: jog refused: the axis is a slave of x; decouple it; nothing was changed"
-    )
+    assert machine.refusal("y", "jog", velocity=1.0) == refused(23040, master="x")
 
 
 def test_a_jerk_above_a_over_t_is_rescaled_with_a_warning() -> None:

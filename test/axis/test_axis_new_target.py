@@ -15,6 +15,7 @@ from axis_motion_support import (
     to_rest,
 )
 from axis_states_support import A, J, V
+from error_support import Refused, refused
 from machine_support import UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -293,21 +294,21 @@ def test_an_unreachable_velocity_becomes_reachable_again(kind: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("target", "text"),
+    ("target", "wanted"),
     [
         (
             4000.5,
-            "P-ERR-120002 axis x: new_target refused: target 4000.5 mm lies beyond the positive soft limit 4000.0 mm (P-AXIS-00178); nothing was changed",
+            refused(120002, target=4000.5, limit=4000.0),
         ),
         (
             -0.5,
-            "P-ERR-120003 axis x: new_target refused: target -0.5 mm lies beyond the negative soft limit 0.0 mm (P-AXIS-00177); nothing was changed",
+            refused(120003, target=-0.5, limit=0.0),
         ),
-        (float("nan"), "P-ERR-22001 axis x: new_target refused: target = nan is not finite; nothing was changed"),
+        (float("nan"), refused(22001, argument="target")),
     ],
 )
 @pytest.mark.parametrize("command", [None, "stop", "halt"])
-def test_a_refused_target_leaves_the_motion_to_the_bit(target: float, text: str, command: str | None) -> None:
+def test_a_refused_target_leaves_the_motion_to_the_bit(target: float, wanted: Refused, command: str | None) -> None:
     benches = []
     for _ in range(2):
         bench = axis_bench(count=100, soft_limit_negative=0.0, soft_limit_positive=4000.0)
@@ -317,7 +318,7 @@ def test_a_refused_target_leaves_the_motion_to_the_bit(target: float, text: str,
             bench.accepted(command)
             bench.run(50)
         benches.append(bench)
-    assert benches[0].refused("new_target", target=target) == text
+    assert benches[0].refusal("new_target", target=target) == wanted
     for bench in benches:
         bench.run(2000)
     assert benches[0].columns() == benches[1].columns()
@@ -335,9 +336,7 @@ def test_a_target_out_of_all_range_on_an_axis_without_soft_limits(command: str |
         if command is not None:
             bench.accepted(command)
         benches.append(bench)
-    assert benches[0].refused("new_target", target=-1e300) == (
-        "P-ERR-23002 axis x: new_target refused: target -1e+300 mm is not within ±1e+12 mm; nothing was changed"
-    )
+    assert benches[0].refusal("new_target", target=-1e300) == refused(23002, target=-1e300, limit=1000000000000.0)
     for bench in benches:
         bench.run(3000)
     assert benches[0].columns() == benches[1].columns()

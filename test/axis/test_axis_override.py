@@ -16,6 +16,7 @@ from axis_motion_support import (
     time_of_arrival,
 )
 from axis_states_support import A, J, V
+from error_support import refused
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -210,9 +211,7 @@ def test_override_outside_0_to_100_is_refused(percent: float) -> None:
     bench = axis_bench()
     start(bench, 1000.0)
     bench.run(100)
-    assert bench.refused("set_override", percent=percent) == (
-        f"P-ERR-23006 axis x: set_override refused: percent = {percent} is not within 0 ... 100 (P-AXIS-00109, at most 100); nothing was changed"
-    )
+    assert bench.refusal("set_override", percent=percent) == refused(23006, percent=percent, limit=100.0)
     bench.run(10)
     assert set(bench.column("override_percent")) == {100.0}
 
@@ -301,9 +300,7 @@ def test_the_type_can_be_changed_and_counts_from_the_next_override_on() -> None:
 @pytest.mark.parametrize("kind", [0, 5, -1, 10**9])
 def test_there_are_four_types(kind: int) -> None:
     bench, undisturbed = started(3000.0, 100), started(3000.0, 100)
-    assert bench.refused("set_override_type", type=kind) == (
-        f"P-ERR-23035 axis x: set_override_type refused: type = {kind} is none of 1, 2, 3, 4; nothing was changed"
-    )
+    assert bench.refusal("set_override_type", type=kind) == refused(23035, type=kind)
     for each in (bench, undisturbed):
         each.accepted("set_override", percent=50.0)
         each.run(100)
@@ -311,9 +308,7 @@ def test_there_are_four_types(kind: int) -> None:
 
 
 def test_a_type_is_a_whole_number() -> None:
-    assert axis_bench().refused("set_override_type", type=1.5) == (
-        "P-ERR-22001 axis x: set_override_type refused: type = 1.5 is not an integer; nothing was changed"
-    )
+    assert axis_bench().refusal("set_override_type", type=1.5) == refused(22001, argument="type")
 
 
 # ---------------------------------------------------------------- stop, toggling

@@ -9,6 +9,7 @@ from math import inf, nan
 import pytest
 from axis_motion_support import expected, motion, ramp_way, run_to_standstill, start, started, to_rest
 from axis_states_support import A, J, V, error_ramp, held
+from error_support import refused
 from machine_support import CYCLE_TIME, UnitBench, assert_axis_smooth, axis_bench, position_after, seven_phases
 from superposition_support import feed, generator
 
@@ -314,9 +315,7 @@ def test_what_was_corrected_is_told_with_the_target_that_was_taken_back() -> Non
 
 def test_no_emergency_stop_in_the_natural_brake_phase() -> None:
     bench, undisturbed = started(1000.0, 501), started(1000.0, 501)
-    assert bench.refused("emergency_stop", **STRONG) == (
-        "P-ERR-23017 axis x: emergency_stop refused: the axis is in its brake phase; nothing was changed"
-    )
+    assert bench.refusal("emergency_stop", **STRONG) == refused(23017)
     for each in (bench, undisturbed):
         each.run(1000)
     assert bench.columns() == undisturbed.columns()

@@ -150,7 +150,7 @@ def test_bad_table(name: str, cyclic: bool) -> None:
     points, text = BAD[name]
     with pytest.raises(CncError) as caught:
         CamTable(points, cyclic=cyclic)
-    assert (caught.value.error_id, caught.value.message) == (23052, text)
+    assert (caught.value.number, caught.value.message) == (23052, text)
 
 
 # coupling
@@ -216,7 +216,7 @@ def test_slave_offset_that_does_not_fit_is_told_and_nothing_begins() -> None:
     with pytest.raises(CncError) as caught:
         cam.follow(7.5, sweep(180.0, 0.0, 0.01))
     text = "the cam table has the slave at 107 with its slave_offset, the axis is at 7.5"
-    assert (caught.value.error_id, caught.value.message) == (23053, text)
+    assert (caught.value.number, caught.value.message) == (23053, text)
     assert cam.follow(107.0, sweep(180.0, 0.0, 0.01))[0][0] == 107.0
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from error_support import refused
 from machine_support import CYCLE_TIME, UnitBench
 from superposition_support import (
     COMPENSATING,
@@ -247,9 +248,7 @@ def test_a_new_target_waits_for_the_end_of_the_compensations_ramp_too() -> None:
     bench = compensating_axis(1000)
     bench.accepted("halt")
     bench.run(100)
-    assert bench.refused("new_target", target=100.0) == (
-        "P-ERR-23015 axis x: new_target refused: a position compensation is active; nothing was changed"
-    )
+    assert bench.refusal("new_target", target=100.0) == refused(23015)
     bench.run(150)
     bench.accepted("new_target", target=100.0)
     settle(bench)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from error_support import refused
 from machine_support import UnitBench, axis_bench
 from superposition_support import moving_axis, settle
 
@@ -72,9 +73,7 @@ def test_values_that_are_no_numbers(value: Any) -> None:
 def test_values_that_are_missing() -> None:
     bench = moving_axis()
     values = {name: value for name, value in VALUES.items() if name != "process_velocity"}
-    assert bench.refused("compensation_start", **values) == (
-        "P-ERR-22001 axis x: compensation_start refused: argument 'process_velocity' is missing; nothing was changed"
-    )
+    assert bench.refusal("compensation_start", **values) == refused(22001, argument="process_velocity")
 
 
 def test_a_difference_of_zero() -> None:
@@ -158,10 +157,7 @@ def test_the_velocity_that_the_way_allows_counts(side: float) -> None:
     settle(bench)
     assert 800.0 < max(map(abs, bench.column("set_velocity"))) < 831.3 and bench.events == []
     bench = moving_axis(velocity=830.0, max_velocity=831.2, **short)
-    assert bench.refused("compensation_start", **values) == (
-        "P-ERR-23004 axis x: compensation_start refused: the axis would get up to 831.287 mm/s, above the maximum "
-        "831.2 mm/s (P-AXIS-00212); nothing was changed"
-    )
+    assert bench.refusal("compensation_start", **values) == refused(23004, velocity=831.2866636212369, limit=831.2)
 
 
 def test_a_velocity_that_is_being_left_counts_too() -> None:
@@ -356,9 +352,7 @@ def test_no_new_target_during_a_compensation(command: str, arguments: dict[str, 
     for each in (bench, twin):
         each.accepted("compensation_start", **VALUES)
         each.run(700)
-    assert bench.refused(command, **arguments) == (
-        f"P-ERR-23015 axis x: {command} refused: a position compensation is active; nothing was changed"
-    )
+    assert bench.refusal(command, **arguments) == refused(23015)
     assert_untouched(bench, twin)
 
 

@@ -68,12 +68,8 @@ def test_enable_while_stopping() -> None:
 def test_enable_on_the_path_of_a_channel() -> None:
     bench = MachineBench("%P\nG01 X100 F6000\nM30", end_when_idle=False).run(0.2)
     refused = "P-ERR-23026 axis x: external_enable refused: {} beside the path of a channel {}; nothing was changed"
-    assert bench.refused("x", "external_enable", mode="absolute") == (
-        refused.format("absolute setpoints", "are not permitted; use relative")
-    )
-    assert bench.refused("x", "external_enable", mode="relative", target=12.5) == (
-        refused.format("a target (12.5)", "is not permitted; leave it out")
-    )
+    assert bench.refusal("x", "external_enable", mode="absolute") == refused(23026)
+    assert bench.refusal("x", "external_enable", mode="relative", target=12.5) == refused(23026, target=12.5)
 
 
 def test_only_relative_beside_a_ptp_motion() -> None:

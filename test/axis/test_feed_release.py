@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from error_support import refused
 from machine_support import MILL, MachineBench, UnitBench, assert_axis_smooth, axis_bench
 from slave_support import SlaveBench, assert_linear
 from superposition_support import A, J, column, external_axis, feed, generator, has_bit, moving_axis
@@ -249,10 +250,7 @@ def test_external_setpoints_the_released_way_on_top_of_a_motion_that_waits() -> 
 def test_external_setpoints_need_both_releases() -> None:
     bench = axis_bench()
     release(bench, backward=False)
-    assert bench.refused("external_enable", mode="relative") == (
-        "P-ERR-23028 axis x: external_enable refused: both directions must be released (set_feed_release); "
-        "nothing was changed"
-    )
+    assert bench.refusal("external_enable", mode="relative") == refused(23028)
 
 
 # masters and slaves

@@ -144,7 +144,7 @@ def test_synchronous_slave_stays_so_when_the_master_comes_back() -> None:
 def refused(factor: float, master_position: float, slave_position: float, states: list[State]) -> str:
     with pytest.raises(CncError) as caught:
         follow(saw(factor, master_position, slave_position), states)
-    assert caught.value.error_id == 23051
+    assert caught.value.number == 23051
     return caught.value.message
 
 

@@ -30,7 +30,7 @@ def test_a_start_that_cannot_be_planned_changes_nothing(kind: int, override: flo
     ptp.set_override(0, override)
     with pytest.raises(CncError) as caught:
         ptp.start(5, 10.0, limits)
-    assert caught.value.error_id == 23001
+    assert caught.value.number == 23001
     assert ptp.job is None and ptp.state(100) == (3.0, 0.0, 0.0, 0.0)
 
 
@@ -131,7 +131,7 @@ def test_a_request_that_no_table_can_be_made_for_changes_nothing(
     before = vars(ptp).copy()
     with pytest.raises(CncError) as caught:
         ptp.redirect(410, request_)
-    assert caught.value.error_id == error_id and vars(ptp) == before
+    assert caught.value.number == error_id and vars(ptp) == before
 
 
 @pytest.mark.parametrize("duration_cycles", range(40, 60))

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from error_support import refused
 from machine_support import position_after, seven_phases
 from slave_support import (
     COMPENSATION,
@@ -301,26 +302,24 @@ def test_refusals_at_standstill(fault: str) -> None:
 def test_neither_of_the_two_may_move() -> None:
     bench = SlaveBench()
     bench.send_all([start()])
-    assert bench.denied("x", "couple", master="y", factor=1.0) == (
-        "P-ERR-23044 axis x: couple refused: the axis is in DiscreteMotion, it must be in Standstill; nothing was changed"
-    )
-    moving = "P-ERR-23045 axis y: couple refused: the master x moves; both axes must stand; nothing was changed"
-    assert bench.denied("y", "couple", master="x", factor=1.0) == moving
+    assert bench.denial("x", "couple", master="y", factor=1.0) == refused(23044, state="DiscreteMotion")
+    assert bench.denial("y", "couple", master="x", factor=1.0) == refused(23045, master="x")
     bench.send_all([("x", "set_override", {"percent": 0.0})])
     bench.run(1.0)
     assert bench.last("x").set_velocity[-1] == 0.0
-    assert bench.denied("y", "couple", master="x", factor=1.0) == moving, "held by override 0 it may start any time"
+    assert bench.denial("y", "couple", master="x", factor=1.0) == refused(23045, master="x"), (
+        "held by override 0 it may start any time"
+    )
 
 
 def test_a_master_whose_own_master_moves_or_is_held_does_not_stand() -> None:
     bench = SlaveBench()
     bench.send_all([couple("y", 1.0), start()])
-    moving = "P-ERR-23045 axis z: couple refused: the master y moves; both axes must stand; nothing was changed"
-    assert bench.denied("z", "couple", master="y", factor=1.0) == moving
+    assert bench.denial("z", "couple", master="y", factor=1.0) == refused(23045, master="y")
     bench.send_all([("x", "set_override", {"percent": 0.0})])
     bench.run(1.0)
     assert bench.last("y").set_velocity[-1] == 0.0
-    assert bench.denied("z", "couple", master="y", factor=1.0) == moving
+    assert bench.denial("z", "couple", master="y", factor=1.0) == refused(23045, master="y")
 
 
 def test_a_start_in_the_same_block_counts_in_the_order_of_the_commands() -> None:
@@ -342,10 +341,8 @@ def test_circles_are_refused_in_one_block_and_later() -> None:
     assert (records[0].accepted, records[1].error_id) == (True, 23046)
     assert records[1].message == loop.format("y", "y -> x")
     bench.do("z", "couple", master="y", factor=1.0)
-    assert bench.denied("x", "couple", master="z", factor=1.0) == "P-ERR-23046 " + loop.format("z", "z -> y -> x")
-    assert bench.denied("y", "couple", master="z", factor=1.0) == (
-        "P-ERR-23044 axis y: couple refused: the axis is in SynchronizedMotion, it must be in Standstill; nothing was changed"
-    )
+    assert bench.denial("x", "couple", master="z", factor=1.0) == refused(23046, master="z", chain="z -> y -> x")
+    assert bench.denial("y", "couple", master="z", factor=1.0) == refused(23044, state="SynchronizedMotion")
     bench.do("y", "decouple")
     bench.do("x", "couple", master="z", factor=1.0)
     bench.send_all([start(10.0, "y")])
@@ -366,33 +363,23 @@ def test_master_and_slave_change_places_in_one_block() -> None:
 def test_a_disabled_axis_is_no_slave_but_may_be_a_master() -> None:
     bench = SlaveBench()
     bench.do("y", "power", enabled=False)
-    assert bench.denied("y", "couple", master="x", factor=1.0) == (
-        "P-ERR-23044 axis y: couple refused: the axis is in Disabled, it must be in Standstill; nothing was changed"
-    )
+    assert bench.denial("y", "couple", master="x", factor=1.0) == refused(23044, state="Disabled")
     bench.do("x", "couple", master="y", factor=1.0)
 
 
 def test_factors_of_axes_that_are_no_slaves_and_factor_0() -> None:
     bench = SlaveBench()
-    assert bench.denied("y", "set_coupling_factor", factor=1.0) == (
-        "P-ERR-23047 axis y: set_coupling_factor refused: the axis is no slave (it is in Standstill); nothing was changed"
-    )
+    assert bench.denial("y", "set_coupling_factor", factor=1.0) == refused(23047, state="Standstill")
     bench.do("y", "couple", master="x", factor=1.0)
-    assert bench.denied("y", "set_coupling_factor", factor=0.0) == (
-        "P-ERR-23043 axis y: set_coupling_factor refused: factor = 0 must be different from 0; nothing was changed"
-    )
-    assert bench.denied("y", "set_cyclic_factor", factor=1.0) == (
-        "P-ERR-23050 axis y: set_cyclic_factor refused: the axis is not coupled cyclically; nothing was changed"
-    )
+    assert bench.denial("y", "set_coupling_factor", factor=0.0) == refused(23043, argument="factor", value=0.0)
+    assert bench.denial("y", "set_cyclic_factor", factor=1.0) == refused(23050)
     bench.send_all([start(100.0)])
     bench.settle()
     assert bench.position("y") == pytest.approx(100.0, abs=1e-9)
 
 
 def test_decoupling_of_an_axis_that_is_no_slave() -> None:
-    assert SlaveBench().denied("y", "decouple") == (
-        "P-ERR-23047 axis y: decouple refused: the axis is no slave (it is in Standstill); nothing was changed"
-    )
+    assert SlaveBench().denial("y", "decouple") == refused(23047, state="Standstill")
 
 
 @pytest.mark.parametrize("factor", [1e6, -1e6])

@@ -15,7 +15,8 @@ from cnc_ptp import cli
 from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands.run.simulate import Result, print_summary
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.protocol.blocks import Severity, command_note, event_note, keep_note
+from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
+from cnc_ptp.protocol.notes import Note, Notes
 from cnc_ptp.recording.reader import read_recording
 
 ROOT = Path(__file__).parents[2]
@@ -264,15 +265,40 @@ def test_a_refusal_is_told_once(tmp_path):
 
 
 def test_a_refusal_is_told_once_in_whatever_order_command_and_event_come():
-    event = event_note(Severity.WARNING, 20131, "mdi: unknown")
-    refusal, other = command_note(False, 20131, "mdi: unknown"), event_note(Severity.WARNING, 20132, "mdi: unknown")
-    assert (refusal, event) == ("refused: P-ERR-20131 mdi: unknown", "warning: P-WARN-20131 mdi: unknown")
-    for order in ((refusal, event), (event, refusal), (event, "", refusal, event, refusal)):
-        notes = [other]
-        for note in order:
-            keep_note(notes, note)
-        assert notes == [other, refusal]
-    assert event_note(Severity.INFO, 0, "y: Standstill -> Stopping") == command_note(True, 0, "") == ""
+    event = Note.of_event(Event(0, "c", Severity.WARNING, 20131, "mdi: unknown"))
+    refusal = Note.of_command(CommandRecord(0, "c", "mdi", "{}", False, 20131, "mdi: unknown"))
+    other = Note(20132, "mdi: unknown")
+    assert (str(refusal), str(event)) == ("refused: P-ERR-20131 mdi: unknown", "warning: P-WARN-20131 mdi: unknown")
+    for order in ((refusal, event), (event, refusal), (event, None, refusal, event, refusal)):
+        notes = Notes()
+        for note in (other, *order):
+            notes.add(note)
+        assert [*notes] == [other, refusal]
+    assert Note.of_event(Event(0, "y", Severity.INFO, 0, "y: Standstill -> Stopping")) is None
+    assert Note.of_command(CommandRecord(0, "y", "stop", "{}", True, 0, "")) is None
+
+
+def test_a_warning_is_told_once_whether_command_or_event_tells_it():
+    notes = Notes()
+    notes.add(Note.of_command(CommandRecord(0, "s", "orient", "{}", True, 0, "P-WARN-24003 spindle s: no limit")))
+    notes.add(Note.of_event(Event(0, "s", Severity.WARNING, 24003, "spindle s: no limit")))
+    notes.add(Note.of_command(CommandRecord(0, "s", "orient", "{}", True, 0, "spindle s: no limit")))
+    assert [*map(str, notes)] == ["warning: P-WARN-24003 spindle s: no limit", "warning: spindle s: no limit"]
+
+
+@pytest.mark.parametrize(
+    ("command", "message", "idle"),
+    [
+        ("stop", "axis x: stop without effect in Standstill", True),
+        ("stop", "axis x: stop without effect in Disabled", True),
+        ("stop", "axis y: stop without effect in Standstill", False),
+        ("stop", "axis x: stop takes the new target back; the axis stops", False),
+        ("halt", "axis x: halt without effect in Standstill", False),
+    ],
+)
+def test_a_stop_of_an_axis_that_stands_is_known(command, message, idle):
+    note = Note.of_command(CommandRecord(0, "x", command, "{}", True, 0, message))
+    assert note.idle_stop == idle and str(note) == f"warning: {message}"
 
 
 def test_a_run_that_ends_in_an_error_is_status_1(program, tmp_path):

@@ -100,7 +100,7 @@ def test_numbers_of_constants(number):
 def test_numbers_of_program_faults(number):
     name, template, said = PROGRAM[number]
     fault = getattr(import_module("cnc_ptp.nc.faults"), name)
-    assert fault.error_id == number and template in fault.template
+    assert fault.number == number and template in fault.template
     assert said in documented()[number]
 
 

@@ -179,12 +179,12 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
             continue
         fault = curve_fault(found)
         pasted = paste(machine, curve_yaml(found, "s", 0), tmp_path / "pasted.yaml")
-        if fault is None or fault.error_id == CURVE_RISES:
+        if fault is None or fault.number == CURVE_RISES:
             assert read_machine(str(pasted)).spindles["s"].gears[1].curve == found.parameters
         else:
             with pytest.raises(ParameterError, match=f"the {kind} gives .* °/s² at"):
                 read_machine(str(pasted))
-        verdicts.append(fault and fault.error_id)
+        verdicts.append(fault and fault.number)
     assert {None, 27048, 27049, 27050} <= set(verdicts)
 
 

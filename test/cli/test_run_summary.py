@@ -12,6 +12,7 @@ from cnc_ptp.commands.run.run import print_summary
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
+from cnc_ptp.protocol.notes import Note
 
 ONE_CHANNEL = {"channel": ProgramReport(40)}
 PTP = Path(__file__).parents[2] / "config" / "ptp.yaml"
@@ -30,7 +31,7 @@ def monitor(diagnostics, *, notes=(), run_failed=False, programs=ONE_CHANNEL):
         lateness=Lateness,
         errors=[],
         notes=list(notes),
-        refused=sum(note.startswith("refused") for note in notes),
+        refused=sum(note.refused for note in notes),
         run_failed=run_failed,
     )
 
@@ -66,10 +67,12 @@ def test_each_channel_has_its_program_time_and_is_told_when_it_was_cut_off(capsy
 
 @pytest.mark.parametrize(("failures", "run_failed"), [([], False), (["P-ERR-26106 interrupted"], False), ([], True)])
 def test_axes_that_stood_when_everything_was_stopped_are_no_news(failures, run_failed, capsys):
-    notes = ["warning: axis x: stop without effect in Standstill", "warning: axis x: target is its position"]
+    stood, news = "axis x: stop without effect in Standstill", "axis x: target is its position"
+    notes = [Note(0, stood, idle_stop=True), Note(0, news)]
     print_summary(read_machine(PTP), monitor({}, notes=notes, run_failed=run_failed), failures)
     told = capsys.readouterr().out.splitlines()[3:]
-    assert told == [*(f"failed: {text}" for text in failures), *notes[bool(failures or run_failed) :]]
+    warnings = [f"warning: {text}" for text in (stood, news)]
+    assert told == [*(f"failed: {text}" for text in failures), *warnings[bool(failures or run_failed) :]]
 
 
 @pytest.mark.parametrize(("duration", "told"), [(None, True), (0.0, False)])

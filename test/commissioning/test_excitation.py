@@ -61,7 +61,7 @@ def test_motions_stay_within_soft_limits_and_follow_each_other(seed):
     try:
         speeds = speed_ladder(room, always(steady))
     except CncError as refusal:
-        assert refusal.error_id == 27010 and room.travel < 1000.0
+        assert refusal.number == 27010 and room.travel < 1000.0
         return
     place, free = room.position, rest
     motions = forth_and_back(room, speeds, steady=always(steady), rest=rest)

@@ -61,7 +61,7 @@ def test_bad_limits(name, value, text):
 def test_bad_states(plan, name, text):
     with pytest.raises(CncError) as fault:
         plan()
-    assert fault.value.error_id == 23002
+    assert fault.value.number == 23002
     assert str(fault.value) == (
         f"P-ERR-23002 motion value {name} = {text} must be between -1e+12 and 1e+12; the motion is refused"
     )

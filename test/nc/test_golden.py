@@ -56,9 +56,9 @@ def test_check_finds_the_same_error(path):
 
 
 def test_every_fault_has_a_bad_program():
-    known = {fault.error_id for fault in FAULTS}
+    known = {fault.number for fault in FAULTS}
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
-    assert known == shown | {faults.TOO_MANY_BLOCKS.error_id}
+    assert known == shown | {faults.TOO_MANY_BLOCKS.number}
 
 
 def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
@@ -71,5 +71,5 @@ def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
 
 
 def test_fault_numbers_are_unique():
-    numbers = [fault.error_id for fault in FAULTS]
+    numbers = [fault.number for fault in FAULTS]
     assert len(numbers) == len(set(numbers))

@@ -282,7 +282,7 @@ def test_veto_of_an_arc_between_its_ends():
 
 def test_check_collects_syntax_errors_and_the_modal_error_before_them():
     text = "G01 X1\nG0 X2 E5 E6\nG05\nX3 X4\n#VAR\nM30"
-    assert [(error.line, error.error_id) for error in check(text, "a.nc", AXES)] == [
+    assert [(error.line, error.number) for error in check(text, "a.nc", AXES)] == [
         (1, 20008),
         (2, 21002),
         (3, 20131),
@@ -297,7 +297,7 @@ def test_check_does_not_guess_behind_a_syntax_error():
 
 def test_check_reports_structure_and_line_once():
     text = "%L UP\nLL NOWHERE\n%MAIN\nLL UP\nM29"
-    found = [(error.line, error.error_id) for error in check(text, "a.nc", AXES)]
+    found = [(error.line, error.number) for error in check(text, "a.nc", AXES)]
     assert found == [(2, 21017), (5, 21017)]
 
 
@@ -308,8 +308,8 @@ def test_check_takes_start_limits_and_veto():
         check(text, "a.nc", AXES, start=(1.5, 0.0, 0.0), check_target=veto(2.0))
     arc = "G02 X10 I5.01 F60\nM30"
     assert check(arc, "a.nc", AXES) == []
-    assert [error.error_id for error in check(arc, "a.nc", AXES, centre_offset=0.005)] == [21035]
-    assert [error.error_id for error in check(arc, "a.nc", AXES, centre_offset_ratio=0.001)] == [21035]
+    assert [error.number for error in check(arc, "a.nc", AXES, centre_offset=0.005)] == [21035]
+    assert [error.number for error in check(arc, "a.nc", AXES, centre_offset_ratio=0.001)] == [21035]
 
 
 def test_format_block_rounds_to_six_decimals():

@@ -114,4 +114,4 @@ def survives(text: str) -> None:
         assert 1 <= error.column <= len(error.text) + 1
         assert 1 <= error.line <= text.count("\n") + text.count("\r") + 1
     for error in check(text, "a.nc", AXES):
-        assert str(error).startswith(f"P-ERR-{error.error_id} a.nc line {error.line} column {error.column} ")
+        assert str(error).startswith(f"P-ERR-{error.number} a.nc line {error.line} column {error.column} ")

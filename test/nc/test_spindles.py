@@ -44,7 +44,7 @@ def test_commands_that_are_not_known_stay_unknown() -> None:
     for text in ("#MAIN", "#EXPL SYNC", "N10 #AX LINKS ON"):
         with pytest.raises(ProgramError) as caught:
             lines(text)
-        assert caught.value.error_id == 21006
+        assert caught.value.number == 21006
 
 
 def test_a_refused_line_leaves_a_copied_state_alone() -> None:

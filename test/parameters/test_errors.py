@@ -462,7 +462,7 @@ def test_all_problems_come_at_once_in_the_order_of_the_file() -> None:
         "P-ERR-25008 m.yaml:8:39: axis list, P-AXIS-00099 getriebe[0].kv of /x: value 0 is not above 0 (0.01/s)" + END,
         "P-ERR-25005 m.yaml:8:51: axis /x has no parameter 'kopf.nr', did you mean kopf.achs_nr (P-AXIS-00016)?" + END,
     ]
-    assert caught.value.error_id == 25004
+    assert caught.value.number == 25004
     assert [problem.error_id for problem in caught.value.problems] == [25004, 25008, 25005]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from error_support import refused
 from machine_support import PTP, ROOT, MachineBench
 from slave_support import SlaveBench, axes_named
 
@@ -187,9 +188,7 @@ def test_an_axis_takes_a_table_or_a_file() -> None:
     assert bench.denied("y", "couple_cam", master="x", table=TABLE, file="a.csv") == (
         f"P-ERR-22001 axis y: couple_cam refused: {text}"
     )
-    assert bench.denied("y", "couple_cam", master="x", file="a.csv") == (
-        "P-ERR-22001 axis y: couple_cam refused: argument 'table' is missing; nothing was changed"
-    )
+    assert bench.denial("y", "couple_cam", master="x", file="a.csv") == refused(22001, argument="table")
 
 
 def test_the_points_of_a_file_take_its_place() -> None:

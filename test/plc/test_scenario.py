@@ -319,7 +319,7 @@ def test_the_check_of_a_program_finds_syntax_modal_and_machine_errors() -> None:
     def ids(text: str) -> list[int]:
         errors = check.errors(text, "p.nc")
         assert all(isinstance(error, ProgramError) for error in errors)
-        return [error.error_id for error in errors]
+        return [error.number for error in errors]
 
     assert ids("%P\nG01 X5 F3000\nM30") == []
     assert ids("%P\nG01 X1.2.3\nG77\nM30") == [21003, 20131]

@@ -30,7 +30,7 @@ KINDS = unit_kinds(PTP)
 def fault(text: str) -> str:
     with pytest.raises(CncError) as caught:
         parse_setpoints(text, "s.csv")
-    assert caught.value.error_id == 25102
+    assert caught.value.number == 25102
     where, _, reason = caught.value.message.partition(": ")
     reason, _, end = reason.rpartition("; ")
     assert end == "nothing was started"
@@ -141,7 +141,7 @@ def write(folder: Path, scenario: str, **files: str) -> str:
 def scenario_fault(path: str) -> str:
     with pytest.raises(ScenarioError) as caught:
         read_job(PTP, program=None, scenario=path)
-    assert caught.value.error_id == 25101
+    assert caught.value.number == 25101
     return str(caught.value)
 
 

@@ -226,7 +226,7 @@ def test_corrupt_recording_is_not_touched(path, tmp_path):
     cut.write_bytes(data)
     with pytest.raises(CncError) as error:
         close_cut(cut)
-    assert error.value.error_id == 26003
+    assert error.value.number == 26003
     assert cut.read_bytes() == data
 
 

@@ -154,7 +154,7 @@ def test_any_altered_byte_is_noticed(path, scratch, place, flip):
     try:
         recorded = read_recording(scratch)
     except CncError as error:
-        assert error.error_id in (26002, 26003)
+        assert error.number in (26002, 26003)
         assert str(scratch) in error.message
     else:
         assert not recorded.complete
@@ -170,7 +170,7 @@ def test_footer_without_the_end_of_the_data_section(path, tmp_path):
     altered.write_bytes(data)
     with pytest.raises(CncError) as error:
         read_recording(altered)
-    assert error.value.error_id == 26003
+    assert error.value.number == 26003
     assert "the footer comes without an end of the data section before it; nothing was read" in error.value.message
 
 
@@ -211,7 +211,7 @@ def refusal(scratch, data):
     scratch.write_bytes(data)
     with pytest.raises(CncError) as error:
         read_recording(scratch)
-    assert error.value.error_id == 26003
+    assert error.value.number == 26003
     text = str(error.value)
     assert text.startswith(f"P-ERR-26003 recording {scratch}: corrupt at offset ")
     assert text.endswith(ADVICE)

@@ -61,7 +61,7 @@ def test_state_columns_are_the_fields_of_the_contract(name):
 def test_unknown_type_is_refused():
     with pytest.raises(CncError) as error:
         schema_text("nowhere/msg/Thing")
-    assert error.value.error_id == 26005
+    assert error.value.number == 26005
     assert str(error.value).startswith(
         "P-ERR-26005 recording: message type nowhere/msg/Thing is not installed (looked for msg/Thing.msg in the "
         "ROS prefixes and "

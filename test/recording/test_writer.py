@@ -13,7 +13,7 @@ from mcap_ros2.decoder import DecoderFactory
 from recording_support import MACHINE, record
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleTick, Event, PlcBlock
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleTick, Event, PlcBlock, Refusal
 from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import read_recording
 from cnc_ptp.recording.schemas import load_schema
@@ -271,7 +271,7 @@ def test_first_block_with_another_number_of_values_is_refused(path, blocks, make
 def test_blocks_of_a_spindle_with_commands_and_texts(path, blocks):
     """What its slaves do too, who commands it and what was refused: such blocks have a length of their own."""
     plain, busy = blocks.spindle(0), blocks.spindle(10)
-    busy.master, busy.source, busy.refused = "t", "channel", ["channel: P-ERR-24012 spindle s: ..."]
+    busy.master, busy.source, busy.refused = "t", "channel", [Refusal("channel", 24012, "spindle s: ...")]
     busy.commands = [Command("s", "start", {"direction": "cw", "speed_rpm": 1000.0})]
     with Recording(path, MACHINE) as recording:
         for block in (plain, busy, blocks.spindle(20)):
@@ -280,7 +280,9 @@ def test_blocks_of_a_spindle_with_commands_and_texts(path, blocks):
         message.first_cycle: message for schema, _, _, message in messages(path) if schema.name.endswith("SpindleBlock")
     }
     assert sorted(found) == [0, 10, 20]
-    assert (found[10].master, found[10].source, list(found[10].refused)) == (busy.master, busy.source, busy.refused)
+    assert (found[10].master, found[10].source) == (busy.master, busy.source)
+    assert list(found[10].refused) == ["channel: P-ERR-24012 spindle s: ..."]
+    assert [Refusal.decode(text) for text in found[10].refused] == busy.refused
     assert [(each.command, each.arguments_json) for each in found[10].commands] == [
         ("start", '{"direction": "cw", "speed_rpm": 1000.0}')
     ]
@@ -307,7 +309,7 @@ def test_value_beyond_its_field_is_refused(path, blocks, field, value):
         recording.axis_block("x", blocks.axis(0))
         with pytest.raises(CncError, match="does not fit its message") as error:
             recording.axis_block("x", bad)
-    assert error.value.error_id == 26006
+    assert error.value.number == 26006
 
 
 def test_topic_with_two_types_is_refused(path, blocks):

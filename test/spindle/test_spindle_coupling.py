@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from error_support import Refused, refused
 from machine_support import MILL, MachineBench, spindle_bench, spindle_parameters
 from spindle_support import two_gears
 
@@ -115,10 +116,7 @@ def test_a_slave_keeps_within_its_own_limits() -> None:
 
 def test_a_slave_takes_no_motion_from_others_but_a_stop() -> None:
     run = coupled("- {at: 0.1, to: s, do: start, direction: cw, speed_rpm: 1000.0}").run(0.5)
-    reason = "the spindle is a slave of s; command s or decouple the spindle"
-    assert run.refused("t", "start", direction="cw", speed_rpm=5.0) == (
-        f"P-ERR-24022 spindle t: start refused: {reason}; nothing was changed"
-    )
+    assert run.refusal("t", "start", direction="cw", speed_rpm=5.0) == refused(24022, master="s")
     assert run.give("t", "stop").accepted
     run.run(0.3)
     assert run.column("t", "set_speed_rpm")[-1] == 0.0 and run.column("s", "set_speed_rpm")[-1] == 1000.0
@@ -329,27 +327,21 @@ def spindle_block(name: str, wanted: str) -> SpindleBlock:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "wanted"),
     [
-        ({"master": "s"}, "24019 spindle s: couple refused: a spindle cannot be its own master; nothing was changed"),
-        ({"master": "x"}, "24020 spindle s: couple refused: 'x' is no spindle of the machine (s); nothing was changed"),
+        ({"master": "s"}, refused(24019)),
+        ({"master": "x"}, refused(24020, master="x")),
     ],
 )
-def test_refused_couplings(arguments: dict[str, Any], text: str) -> None:
-    assert spindle_bench().refused("couple", **arguments) == f"P-ERR-{text}"
+def test_refused_couplings(arguments: dict[str, Any], wanted: Refused) -> None:
+    assert spindle_bench().refusal("couple", **arguments) == wanted
 
 
 def test_more_refusals() -> None:
     run = coupled().run(0.1)
-    assert run.refused("u", "couple", master="s", factor_num=0.0) == (
-        "P-ERR-24021 spindle u: couple refused: factor_num = 0.0 must not be 0; nothing was changed"
-    )
-    assert run.refused("t", "couple", master="u") == (
-        "P-ERR-24027 spindle t: couple refused: the spindle is a slave of s; decouple it first; nothing was changed"
-    )
-    assert run.refused("u", "decouple") == (
-        "P-ERR-24023 spindle u: decouple refused: the spindle is not coupled; nothing was changed"
-    )
+    assert run.refusal("u", "couple", master="s", factor_num=0.0) == refused(24021, argument="factor_num", value=0.0)
+    assert run.refusal("t", "couple", master="u") == refused(24027, master="s")
+    assert run.refusal("u", "decouple") == refused(24023)
 
 
 def test_coupling_of_a_turning_spindle_changes_nothing_yet() -> None:

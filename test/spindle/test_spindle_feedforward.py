@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from error_support import refused
 from machine_support import CYCLE_TIME, UnitBench
 
 from cnc_ptp.control.feedforward import Feedforward
@@ -67,10 +68,7 @@ def test_weight_and_reset() -> None:
 
 
 def test_refusal_and_warning() -> None:
-    assert bench().refused("set_feedforward", weight_percent=-1.0) == (
-        "P-ERR-23060 spindle s: set_feedforward refused: weight_percent = -1.0 is no number of 0 or more (G136); "
-        "nothing was changed"
-    )
+    assert bench().refusal("set_feedforward", weight_percent=-1.0) == refused(23060, weight_percent=-1.0)
     assert bench("vorsteuerung: NONE").accepted("set_feedforward", enabled=True) == (
         "spindle s: feedforward without effect, P-AXIS-00223 (vorsteuer.vorsteuerung) is NONE"
     )

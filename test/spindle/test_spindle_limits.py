@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from curve_support import CURVES, TOP, integrated
+from error_support import Refused, refused
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import RPM, StuckDrive, bench_of
 
@@ -128,19 +129,17 @@ def test_what_is_left_out_is_that_of_the_gear() -> None:
 
 
 @pytest.mark.parametrize(
-    ("limits", "reason"),
+    ("limits", "wanted"),
     [
-        ({"max_speed_rpm": 0.0}, "max_speed_rpm = 0.0 is not within 0.000166667 ... 333333 (P-TOOL-00014)"),
-        ({"max_acceleration": 0.5}, "max_acceleration = 0.5 is not within 1 ... 1e+08 (P-TOOL-00015)"),
-        ({"min_speed_rpm": -0.5}, "min_speed_rpm = -0.5 is not within 0 ... 333333 (P-TOOL-00013)"),
-        ({"min_speed_rpm": 500.0, "max_speed_rpm": 400}, "min_speed_rpm = 500.0 is above max_speed_rpm = 400"),
+        ({"max_speed_rpm": 0.0}, refused(24018, argument="max_speed_rpm", value=0.0, low=0.001 / 6.0, high=2e6 / 6.0)),
+        ({"max_acceleration": 0.5}, refused(24018, argument="max_acceleration", value=0.5, low=1.0, high=100000000.0)),
+        ({"min_speed_rpm": -0.5}, refused(24018, argument="min_speed_rpm", value=-0.5, low=0.0, high=2e6 / 6.0)),
+        ({"min_speed_rpm": 500.0, "max_speed_rpm": 400}, refused(24018, low=500.0, high=400)),
     ],
 )
-def test_refused_limits(limits: dict[str, Any], reason: str) -> None:
+def test_refused_limits(limits: dict[str, Any], wanted: Refused) -> None:
     bench = spindle_bench()
-    assert bench.refused("set_limits", **limits) == (
-        f"P-ERR-24018 spindle s: set_limits refused: {reason}; nothing was changed"
-    )
+    assert bench.refusal("set_limits", **limits) == wanted
     bench.run(10)
     assert not bench.column("status_bits")[-1] & SpindleBit.TOOL_LIMITS
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from error_support import refused
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import bench_of, first_cycle, states
 
@@ -117,11 +118,8 @@ def test_without_a_position_there_is_no_m19_and_no_homing(feedback: str) -> None
     bench = open_loop(feedback)
     bench.accepted("start", direction="cw", speed_rpm=100.0)
     bench.run(100)
-    where = "the spindle has no actual position (P-AXIS-00320, P-SIM-00050) and cannot be"
-    assert bench.refused("orient", position_deg=0.0) == (
-        f"P-ERR-70252 spindle s: orient refused: {where} positioned; nothing was changed"
-    )
-    assert bench.refused("home") == f"P-ERR-24008 spindle s: home refused: {where} homed; nothing was changed"
+    assert bench.refusal("orient", position_deg=0.0) == refused(70252)
+    assert bench.refusal("home") == refused(24008)
     bench.run(100)
     assert set(bench.column("state")) == {S.CONTINUOUS_MOTION} and bench.column("set_speed_rpm")[-1] == 100.0
     assert set(bench.column("referenced")) == {False}

@@ -121,7 +121,7 @@ def test_one_that_is_refused_in_its_turn() -> None:
     bench.accepted("gear_changed")
     assert outcomes(bench, number, 5) == [False]
     refusal = bench.unit.refusal(number)
-    assert (refusal.error_id, refusal.message) == (
+    assert (refusal.number, refusal.message) == (
         24002,
         "spindle s: orient refused: speed 200.0 rpm is above the maximum 100 rpm of gear 2 (P-AXIS-00212); nothing was "
         "changed",

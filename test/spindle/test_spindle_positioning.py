@@ -7,6 +7,7 @@ import random
 from typing import Any
 
 import pytest
+from error_support import Refused, refused
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import RPM, StuckDrive, bench_of, first_cycle, states, trapezoid
 
@@ -199,38 +200,36 @@ def test_suppressed_override() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "wanted"),
     [
         (
             {"position_deg": 214_748.4},
-            "24006 spindle s: orient refused: position 214748.4 deg is not within ±214748.3647 deg; nothing was changed",
+            refused(24006, position=214748.4, limit=214748.3647),
         ),
         (
             {"position_deg": 0.0, "speed_rpm": 0.0},
-            "24001 spindle s: orient refused: speed 0 rpm must be greater than 0 for a positioning; nothing was changed",
+            refused(24001, speed=0.0),
         ),
         (
             {"position_deg": 0.0, "speed_rpm": -5.0},
-            "24001 spindle s: orient refused: speed -5.0 rpm must not be negative; the direction is cw or ccw; "
-            "nothing was changed",
+            refused(24001, speed=-5.0),
         ),
         (
             {"position_deg": 0.0, "speed_rpm": 12_001.0},
-            "24002 spindle s: orient refused: speed 12001.0 rpm is above the maximum 12000 rpm (P-AXIS-00212); "
-            "nothing was changed",
+            refused(24002, speed=12001.0, limit=12000.0, gear=1),
         ),
         (
             {"position_deg": 0.0, "direction": "left"},
-            "22001 spindle s: orient refused: direction = 'left' is not cw or ccw or shortest; nothing was changed",
+            refused(22001, argument="direction"),
         ),
     ],
 )
-def test_refused_positionings_change_nothing(arguments: dict[str, Any], text: str) -> None:
+def test_refused_positionings_change_nothing(arguments: dict[str, Any], wanted: Refused) -> None:
     bench, undisturbed = spindle_bench(), spindle_bench()
     for each in (bench, undisturbed):
         each.accepted("start", direction="cw", speed_rpm=1000.0)
         each.run(100)
-    assert bench.refused("orient", **arguments) == f"P-ERR-{text}"
+    assert bench.refusal("orient", **arguments) == wanted
     for each in (bench, undisturbed):
         each.run(300)
     assert bench.columns() == undisturbed.columns()
@@ -238,16 +237,12 @@ def test_refused_positionings_change_nothing(arguments: dict[str, Any], text: st
 
 def test_positioning_against_the_preferred_direction() -> None:
     bench = spindle_bench(preferred_direction=-1)
-    reason = "cw contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: negative)"
-    assert bench.refused("orient", position_deg=0.0, direction="cw") == (
-        f"P-ERR-60254 spindle s: orient refused: {reason}; the spindle is in ErrorStop"
+    assert bench.refusal("orient", position_deg=0.0, direction="cw") == refused(
+        60254, direction="cw", preferred="negative"
     )
     bench.run(10)
     assert bench.state == S.ERROR_STOP
-    assert bench.refused("orient", position_deg=0.0) == (
-        "P-ERR-24003 spindle s: orient refused: the spindle is in ErrorStop (P-ERR-60254); reset it first; "
-        "nothing was changed"
-    )
+    assert bench.refusal("orient", position_deg=0.0) == refused(24003, state="ErrorStop", error=60254)
 
 
 def test_a_position_that_is_not_reached_in_time() -> None:

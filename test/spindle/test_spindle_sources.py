@@ -6,17 +6,12 @@ from typing import Any
 
 import pytest
 from channel_spindle_support import two_channels
+from error_support import refused
 from machine_support import MachineBench, UnitBench, spindle_bench
 from spindle_support import bench_of, first_cycle, two_gears
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
-
-
-def at_work(command: str, owner: str, other: str) -> str:
-    return (
-        f"P-ERR-24012 spindle s: {command} refused: the spindle is at work for '{owner}', '{other}' must wait until that is "
-        "done; nothing was changed"
-    )
+from cnc_ptp.protocol.blocks import Refusal
 
 
 def per_cycle(bench: UnitBench) -> dict[str, list[Any]]:
@@ -45,12 +40,12 @@ def test_two_channels_at_once(command: str, arguments: dict[str, Any]) -> None:
     bench, undisturbed = spindle_bench(), spindle_bench()
     for each in (bench, undisturbed):
         each.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
-    text = at_work(command, "one", "two")
-    assert bench.refused(command, **arguments, source="two") == text
+    assert bench.refusal(command, **arguments, source="two") == refused(24012, owner="one", source="two")
     for each in (bench, undisturbed):
         each.run(100)
     assert per_cycle(bench) == per_cycle(undisturbed)
-    assert bench.blocks[0].refused == [f"two: {text}"] and bench.blocks[1].refused == []
+    assert [(each.source, each.number) for each in bench.blocks[0].refused] == [("two", 24012)]
+    assert bench.blocks[1].refused == []
     assert bench.last.source == "one"
     bench.run(200)
     assert bench.column("speed_reached")[-1] and bench.last.source == ""
@@ -75,7 +70,9 @@ def test_a_command_of_the_plc_takes_its_turn_after_the_channel() -> None:
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
     waits = "P-WARN-24030 spindle s: orient waits until the speed is reached"
     assert bench.accepted("orient", position_deg=90.0, source="plc") == waits
-    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    assert bench.refusal("start", direction="cw", speed_rpm=5.0, source="two") == refused(
+        24012, owner="one", source="two"
+    )
     bench.run(800)
     reached = first_cycle(bench, "speed_reached", bool, 5)
     assert bench.column("set_speed_rpm")[reached] == pytest.approx(1000.0, rel=0.05)
@@ -107,7 +104,9 @@ def test_a_channel_has_the_spindle_until_m19_is_done() -> None:
     bench = spindle_bench()
     bench.accepted("orient", position_deg=90.0, source="one")
     bench.run(100)
-    assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two") == at_work("start", "one", "two")
+    assert bench.refusal("start", direction="cw", speed_rpm=5.0, source="two") == refused(
+        24012, owner="one", source="two"
+    )
     bench.run(200)
     assert bench.column("in_position")[-1]
     bench.accepted("start", direction="cw", speed_rpm=5.0, source="two")
@@ -174,7 +173,7 @@ def test_a_command_of_the_plc_that_is_refused_in_its_turn() -> None:
     assert bench.event_texts() == [f"P-ERR-70252 spindle s: orient refused: {text}"]
     assert acknowledged(bench)[-1] == (2, 2) and bench.column("set_speed_rpm")[-1] == 1000.0
     refused = [entry for block in bench.blocks for entry in block.refused]
-    assert refused == [f"plc: P-ERR-70252 spindle s: orient refused: {text}"]
+    assert refused == [Refusal("plc", 70252, f"spindle s: orient refused: {text}")]
 
 
 # ---------------------------------------------------------------- whose spindle it is
@@ -252,7 +251,7 @@ def test_who_has_commanded_a_gear_change_hears_that_it_was_overtaken(
     bench.accepted(command, **arguments)
     bench.run(10)
     text = f"spindle s: {by} while the PLC changes the gear for 'one'; the spindle stays at rest"
-    assert bench.last.refused == [f"one: P-ERR-24017 {text}"]
+    assert bench.last.refused == [Refusal("one", 24017, text)]
     assert bench.events[-1].text == text
 
 

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from error_support import refused
 from loop_support import feedforward
 from machine_support import UnitBench, spindle_bench, spindle_parameters
 from spindle_support import DOWN, RPM, StuckDrive, bench_of, first_cycle, states, two_gears
@@ -269,9 +270,7 @@ def test_a_spindle_that_does_not_home_by_itself_has_lost_its_reference_in_that_c
     bench.accepted("start", direction="cw", speed_rpm=2000.0)
     while bench.unit.spindle.motion(bench.cycle)[1] <= LIMIT:
         bench.run(1)
-    assert bench.refused("orient", position_deg=100.0) == (
-        f"P-ERR-24007 spindle s: orient refused: {NO_REFERENCE}; the spindle is in ErrorStop"
-    )
+    assert bench.refusal("orient", position_deg=100.0) == refused(24007)
 
 
 def test_below_the_control_limit_m05_simply_stops() -> None:
@@ -323,9 +322,7 @@ def test_without_reference_m19_and_gear_changes_are_an_error(rotates: bool, comm
     if rotates:
         turn(bench, 500.0)
     arguments: dict[str, Any] = {"position_deg": 0.0} if command == "orient" else {"stage": 2}
-    assert bench.refused(command, **arguments) == (
-        f"P-ERR-24007 spindle s: {command} refused: {NO_REFERENCE}; the spindle is in ErrorStop"
-    )
+    assert bench.refusal(command, **arguments) == refused(24007)
     bench.run(200)
     assert bench.event_texts()[0] == f"P-ERR-24007 spindle s: {NO_REFERENCE}; the spindle stops on its ramp (ErrorStop)"
     assert bench.state == S.ERROR_STOP and bench.column("set_speed_rpm")[-1] == 0.0
@@ -340,10 +337,7 @@ def test_without_reference_m19_and_gear_changes_are_an_error(rotates: bool, comm
 def test_g74_from_motion_is_refused() -> None:
     bench = digital()
     turn(bench, 500.0)
-    assert bench.refused("home") == (
-        "P-ERR-24009 spindle s: home refused: the drive homes the spindle from standstill only (P-AXIS-00015 0x100); stop "
-        "it first; nothing was changed"
-    )
+    assert bench.refusal("home") == refused(24009)
     bench.run(10)
     assert bench.state == S.CONTINUOUS_MOTION
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from error_support import Refused, refused
 from machine_support import CYCLE_TIME, UnitBench, spindle_bench
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -206,10 +207,7 @@ def test_override_does_not_touch_a_stop() -> None:
 
 @pytest.mark.parametrize("percent", [-1.0, 150.1])
 def test_override_out_of_range(percent: float) -> None:
-    assert spindle_bench().refused("set_override", percent=percent) == (
-        f"P-ERR-24005 spindle s: set_override refused: percent = {percent} is not within 0 ... 150 (P-AXIS-00109); "
-        "nothing was changed"
-    )
+    assert spindle_bench().refusal("set_override", percent=percent) == refused(24005, percent=percent, limit=150.0)
 
 
 def test_a_largest_override_below_100_percent_holds_from_the_start() -> None:
@@ -223,39 +221,37 @@ def test_a_largest_override_below_100_percent_holds_from_the_start() -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "text"),
+    ("arguments", "wanted"),
     [
         (
             {"direction": "cw", "speed_rpm": -1.0},
-            "24001 spindle s: start refused: speed -1.0 rpm must not be negative; the direction is cw or ccw; "
-            "nothing was changed",
+            refused(24001, speed=-1.0),
         ),
         (
             {"direction": "ccw", "speed_rpm": 12000.5},
-            "24002 spindle s: start refused: speed 12000.5 rpm is above the maximum 12000 rpm (P-AXIS-00212); "
-            "nothing was changed",
+            refused(24002, speed=12000.5, limit=12000.0, gear=1),
         ),
         (
             {"direction": "left", "speed_rpm": 1.0},
-            "22001 spindle s: start refused: direction = 'left' is not cw or ccw; nothing was changed",
+            refused(22001, argument="direction"),
         ),
         (
             {"direction": 3, "speed_rpm": 1.0},
-            "22001 spindle s: start refused: direction = 3 is not a text; nothing was changed",
+            refused(22001, argument="direction"),
         ),
-        ({"direction": "cw"}, "22001 spindle s: start refused: argument 'speed_rpm' is missing; nothing was changed"),
+        ({"direction": "cw"}, refused(22001, argument="speed_rpm")),
         (
             {"direction": "cw", "speed_rpm": math.nan},
-            "22001 spindle s: start refused: speed_rpm = nan is not finite; nothing was changed",
+            refused(22001, argument="speed_rpm"),
         ),
     ],
 )
-def test_refused_starts_change_nothing(arguments: dict[str, Any], text: str) -> None:
+def test_refused_starts_change_nothing(arguments: dict[str, Any], wanted: Refused) -> None:
     bench, undisturbed = spindle_bench(), spindle_bench()
     for each in (bench, undisturbed):
         each.accepted("start", direction="cw", speed_rpm=1000.0)
         each.run(100)
-    assert bench.refused("start", **arguments) == f"P-ERR-{text}"
+    assert bench.refusal("start", **arguments) == wanted
     for each in (bench, undisturbed):
         each.run(500)
     assert bench.columns() == undisturbed.columns()
@@ -270,19 +266,11 @@ def test_a_speed_alone_keeps_the_direction_and_starts_nothing() -> None:
     bench.give("set_speed", speed_rpm=400.0)
     bench.run(1000)
     assert bench.column("set_speed_rpm")[-1] == -400.0
-    assert bench.refused("set_speed", speed_rpm=-1.0) == (
-        "P-ERR-24001 spindle s: set_speed refused: speed -1.0 rpm must not be negative; the direction is cw or ccw; "
-        "nothing was changed"
-    )
+    assert bench.refusal("set_speed", speed_rpm=-1.0) == refused(24001, speed=-1.0)
 
 
 def test_unknown_command() -> None:
-    assert spindle_bench().refused("turn") == (
-        "P-ERR-22002 spindle s: unknown command 'turn'; nothing was changed. Known: couple, decouple, gear_changed, home, "
-        "orient, power, reset, reset_feedforward, reset_limits, select_gear, set_feedforward, set_limits, "
-        "set_override, set_speed, start, stop, "
-        "stop_at_program_end, suppress_override"
-    )
+    assert spindle_bench().refusal("turn") == refused(22002, command="turn")
 
 
 @pytest.mark.parametrize(("preferred", "wrong", "word"), [(1, "ccw", "positive"), (-1, "cw", "negative")])
@@ -293,9 +281,7 @@ def test_against_the_preferred_direction(preferred: int, wrong: str, word: str) 
     bench.accepted("start", direction=right, speed_rpm=1200.0)
     bench.run(300)
     reason = f"{wrong} contradicts the preferred direction of rotation (P-AXIS-00224, P-AXIS-00031: {word})"
-    assert bench.refused("start", direction=wrong, speed_rpm=500.0) == (
-        f"P-ERR-60254 spindle s: start refused: {reason}; the spindle is in ErrorStop"
-    )
+    assert bench.refusal("start", direction=wrong, speed_rpm=500.0) == refused(60254, direction=wrong, preferred=word)
     bench.run(400)
     assert bench.event_texts()[0] == f"P-ERR-60254 spindle s: {reason}; the spindle stops on its ramp (ErrorStop)"
     assert_speeds(bench, 300, 700, preferred * 1200.0, 0.0)
@@ -330,14 +316,8 @@ def test_watchdog_stops_on_the_ramp_of_the_spindle() -> None:
 def test_commands_in_error_stop() -> None:
     bench = turning_in_error()
     bench.run(50)
-    assert bench.refused("start", direction="cw", speed_rpm=100.0) == (
-        "P-ERR-24003 spindle s: start refused: the spindle is in ErrorStop (P-ERR-26101); reset it first; "
-        "nothing was changed"
-    )
-    assert bench.refused("reset") == (
-        "P-ERR-24004 spindle s: reset refused: the spindle still turns on its error ramp; wait for standstill; "
-        "nothing was changed"
-    )
+    assert bench.refusal("start", direction="cw", speed_rpm=100.0) == refused(24003, state="ErrorStop", error=26101)
+    assert bench.refusal("reset") == refused(24004)
     assert bench.accepted("stop") == "" and bench.accepted("set_override", percent=50.0) == ""
     bench.run(300)
     assert_speeds(bench, 300, 650, 1200.0, 0.0)
@@ -374,9 +354,7 @@ def test_following_error_fault() -> None:
 
 def test_a_spindle_without_power() -> None:
     bench = spindle_bench(powered_at_start=False)
-    assert bench.refused("start", direction="cw", speed_rpm=100.0) == (
-        "P-ERR-24003 spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed"
-    )
+    assert bench.refusal("start", direction="cw", speed_rpm=100.0) == refused(24003, state="Disabled")
     for command in ("stop", "reset"):
         assert bench.accepted(command) == ""
     bench.accepted("upstream_lost", source="plc")

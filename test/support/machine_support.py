@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from error_support import Refused, refusal_of
+
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.runner import UnitRunner
@@ -51,6 +53,10 @@ class UnitBench:
         record = self.give(command, **arguments)
         assert record.accepted, record.message
         return record.message
+
+    def refusal(self, command: str, **arguments: Any) -> Refused:
+        """Gives a command that must be refused; number and values."""
+        return refusal_of(self.give(command, **arguments))
 
     def refused(self, command: str, **arguments: Any) -> str:
         """Gives a command that must be refused; "P-ERR-… text"."""
@@ -177,6 +183,10 @@ class MachineBench:
     def give(self, unit: str, command: str, **arguments: Any) -> CommandRecord:
         """A command from a service: acts at the first cycle of the next block."""
         return self.offline.runner(unit).command(Command(unit, command, arguments))
+
+    def refusal(self, unit: str, command: str, **arguments: Any) -> Refused:
+        """Gives a command that must be refused; number and values."""
+        return refusal_of(self.give(unit, command, **arguments))
 
     def refused(self, unit: str, command: str, **arguments: Any) -> str:
         record = self.give(unit, command, **arguments)

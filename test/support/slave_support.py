@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from error_support import Refused, refusal_of
 from machine_support import PTP, MachineBench, changed
 
 from cnc_ptp.parameters import MachineParameters
@@ -64,6 +65,10 @@ class SlaveBench(MachineBench):
         record = self.send(unit, command, **arguments)
         assert record.accepted, record.message
         return record.message
+
+    def denial(self, unit: str, command: str, **arguments: Any) -> Refused:
+        """Sends a command that must be refused; number and values."""
+        return refusal_of(self.send(unit, command, **arguments))
 
     def denied(self, unit: str, command: str, **arguments: Any) -> str:
         """Sends a command that must be refused; "P-ERR-… text"."""

@@ -26,7 +26,7 @@ def read_arguments(kind: str, unit: str, command: str, words: Sequence[str], kno
     for word in words:
         name, text = _split(where, word, known)
         if name in texts:
-            raise CncError(BAD_ARGUMENT, f"{where}: argument '{name}' is given twice; nothing was sent")
+            raise CncError(BAD_ARGUMENT, f"argument '{name}' is given twice", "nothing was sent", where=where)
         texts[name] = text
     texts = current_names(kind, command, texts)
     arguments = {name: _value(name, text, known[name]) if name in known else text for name, text in texts.items()}
@@ -39,9 +39,9 @@ def read_arguments(kind: str, unit: str, command: str, words: Sequence[str], kno
 def _check_sendable(where: str, name: str, value: Any, argument: Argument) -> None:
     """A service takes a 0 that makes no sense for left out, and texts of UTF-8 only. Raises CncError 22001."""
     if argument.positive and value == 0.0:
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} = 0 must be greater than 0; nothing was sent")
+        raise CncError(BAD_ARGUMENT, f"{name} = 0 must be greater than 0", "nothing was sent", where=where)
     if isinstance(value, str) and value != value.encode(errors="ignore").decode():
-        raise CncError(BAD_ARGUMENT, f"{where}: {name} is no text in UTF-8; nothing was sent")
+        raise CncError(BAD_ARGUMENT, f"{name} is no text in UTF-8", "nothing was sent", where=where)
 
 
 def _split(where: str, word: str, known: Arguments) -> tuple[str, str]:
@@ -53,7 +53,7 @@ def _split(where: str, word: str, known: Arguments) -> tuple[str, str]:
     if len(required) != 1:
         names = ", ".join(known) or "none"
         reason = f"'{word}' has no name; write name=value. Known: {names}"
-        raise CncError(BAD_ARGUMENT, f"{where}: {reason}; nothing was sent")
+        raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
     return required[0], word
 
 

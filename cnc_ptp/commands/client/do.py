@@ -28,7 +28,7 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
         try:
             answer = client.ask(unit, command, arguments)
         except CncError as error:
-            if error.error_id != NO_ANSWER:
+            if error.number != NO_ANSWER:
                 raise
             print_error(error)
             return RUN_FAILED

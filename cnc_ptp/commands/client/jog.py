@@ -12,8 +12,8 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.nodes.bridge.jog_topics import JOG_IN_FREE_RUN, SECOND_JOG
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as SILENCE
+from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
 from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
@@ -132,9 +132,9 @@ class Jogger:
                 self._errors.print(f"warning: {message.message}", style="yellow", markup=False)
 
     def _on_event(self, message: msg.Event) -> None:
-        if message.error_id in (SECOND_JOG, JOG_IN_FREE_RUN) and jog_topic(self._axis) in message.text:
-            self._ignored = self._ignored or self._client.get_name() in message.text or message.error_id != SECOND_JOG
-            self._refused = self._refused or self._ignored
+        axis, client = self._axis, self._client.get_name()
+        if message.text in (free_run_text(axis), second_client_text(axis, client)):
+            self._ignored = self._refused = True
         if message.source == self._axis and message.severity > Severity.INFO and self._sequence:
             self._errors.print(f"P-ERR-{message.error_id} {message.text}", style="yellow", markup=False)
 

@@ -119,7 +119,7 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
     elif recorded is not None and recorded.machine_yaml:
         text, file = recorded.machine_yaml, f"{recording}:machine.yaml"
     else:
-        raise CncError(NO_MACHINE, f"recording {recording} holds no machine file; nothing was made, give --machine")
+        raise CncError(NO_MACHINE, f"recording {recording} holds no machine file", "nothing was made, give --machine")
     parameters = load_machine(text, file)
     if axis not in parameters.axes:
         kind = "a spindle" if axis in parameters.spindles else "no axis"
@@ -136,7 +136,8 @@ def recorded_trace(data: AxisData, recorded: Recorded) -> AxisTrace:
         known = ", ".join(states) or "none"
         raise CncError(
             NOT_RECORDED,
-            f"recording {recorded.path} holds no states of axis {axis}; nothing was made. Axes in it: {known}",
+            f"recording {recorded.path} holds no states of axis {axis}",
+            f"nothing was made. Axes in it: {known}",
         )
     return AxisTrace.of_rows(axis, recorded.cycle_time_ns * 1e-9, states[axis], mean_velocity=data.mean_velocity)
 

@@ -134,7 +134,7 @@ def check_numbers(
         if not least <= value <= LARGEST or (above and value == 0.0):
             shown = f"{value:g} {unit}".rstrip()
             permitted = f"above 0 and up to {LARGEST:g}" if above else f"within {least:g} … {LARGEST:g}"
-            raise CncError(BAD_CIRCLE, f"{name} {shown} is not {permitted}; nothing was started")
+            raise CncError(BAD_CIRCLE, f"{name} {shown} is not {permitted}", "nothing was started")
 
 
 def check_time(program: CircleProgram, feed: float) -> None:
@@ -143,7 +143,7 @@ def check_time(program: CircleProgram, feed: float) -> None:
     if seconds > LONGEST_TEST:
         circle = f"radius {program.radius:g} mm at feed {feed:g} mm/min"
         limit = f"{seconds:g} s of machine time, the limit is {LONGEST_TEST:.0f} s"
-        raise CncError(BAD_CIRCLE, f"{circle} takes {limit}; nothing was started")
+        raise CncError(BAD_CIRCLE, f"{circle} takes {limit}", "nothing was started")
 
 
 def machine_time(program: CircleProgram, feed: float) -> float:
@@ -158,7 +158,7 @@ def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, fl
     Raises CncError 26112 without channel, 27024 where it has not both axes.
     """
     if not machine.channels:
-        raise CncError(NO_CHANNEL, "the machine has no channel to run a circle; nothing was started")
+        raise CncError(NO_CHANNEL, "the machine has no channel to run a circle", "nothing was started")
     channel = next(iter(machine.channels.values()))
     nodes = {axis.name: axis.node for axis in channel.axes}
     missing = [axis for axis in plane.axes if axis not in nodes]
@@ -166,14 +166,14 @@ def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, fl
         known = ", ".join(nodes)
         raise CncError(
             BAD_PLANE,
-            f"channel {channel.name} has no axis {' and no axis '.join(missing)} for plane {''.join(plane.axes)}; "
+            f"channel {channel.name} has no axis {' and no axis '.join(missing)} for plane {''.join(plane.axes)}",
             f"nothing was started. Axes: {known}",
         )
     first, second = (machine.axes[nodes[axis]] for axis in plane.axes)
     for axis in (first, second):
         if axis.rotary:
             raise CncError(
-                BAD_PLANE, f"axis {axis.name} is rotary, a circle needs two linear axes; nothing was started"
+                BAD_PLANE, f"axis {axis.name} is rotary, a circle needs two linear axes", "nothing was started"
             )
     return Place(channel.name, (first.name, second.name), centre or (first.start_position, second.start_position))
 
@@ -192,14 +192,15 @@ def check_comparison(machine: MachineParameters, place: Place, chosen: Sequence[
     if any(variant.feedforward for variant in chosen) and not any(map(_feeds_forward, axes)):
         raise CncError(
             NOTHING_TO_COMPARE,
-            f"axes {names}: feedforward has no effect, vorsteuer.vorsteuerung (P-AXIS-00223) is NONE; nothing "
-            "was started",
+            f"axes {names}: feedforward has no effect, vorsteuer.vorsteuerung (P-AXIS-00223) is NONE",
+            "nothing was started",
         )
     if any(variant.friction for variant in chosen) and not any(axis.control.friction.active for axis in axes):
         raise CncError(
             NOTHING_TO_COMPARE,
             f"axes {names}: friction compensation has no effect, it needs lr_param.frict_comp (P-AXIS-00522) and a "
-            "table; nothing was started, see cnc_ptp identify friction",
+            "table",
+            "nothing was started, see cnc_ptp identify friction",
         )
 
 

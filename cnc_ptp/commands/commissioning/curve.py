@@ -36,7 +36,7 @@ def curve_fit(
 ) -> int:
     """Fits, prints the table and the lines for the machine file. Status 1 when no spindle can run on the curve."""
     if trouble := name_trouble(spindle, {}):
-        raise CncError(BAD_SPINDLE_NAME, f"spindle name '{spindle}' {trouble}; nothing was fitted")
+        raise CncError(BAD_SPINDLE_NAME, f"spindle name '{spindle}' {trouble}", "nothing was fitted")
     check_outputs(outputs, csv)
     given = (
         [parse_point(point, unit) for point in points]
@@ -71,7 +71,7 @@ def check_outputs(outputs: Sequence[str], csv: str | None) -> None:
     for output in outputs:
         if picture_kind(output) not in (*KINDS, *YAML):
             known = "a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml)"
-            raise CncError(BAD_OUTPUT, f"{output}: an output is {known} by its ending; nothing was started")
+            raise CncError(BAD_OUTPUT, f"{output}: an output is {known} by its ending", "nothing was started")
         check_output(output, point_file=csv)
 
 

@@ -21,6 +21,7 @@ from cnc_ptp.machine.wiring import PLC, build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import PlcBlock
+from cnc_ptp.protocol.notes import Note
 from cnc_ptp.recording.writer import Recording
 
 Columns = Mapping[str, npt.NDArray[np.float64]]
@@ -34,9 +35,9 @@ class Trial:
     result: Result = field(default_factory=Result)
 
     @property
-    def refusals(self) -> list[str]:
+    def refusals(self) -> list[Note]:
         """Commands that were not carried out: then the motion is not the one that was wanted."""
-        return [note for note in self.result.notes if note.startswith("refused: ")]
+        return [note for note in self.result.notes if note.refused]
 
     @property
     def failed(self) -> bool:

@@ -11,7 +11,7 @@ from cnc_ptp.commands.console import WRONG_INPUT, print_error
 from cnc_ptp.machine.job import read_file
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.protocol.blocks import Severity, event_note
+from cnc_ptp.protocol.notes import Note
 
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
@@ -40,4 +40,4 @@ def print_notices(machine: MachineParameters) -> None:
     """What deserves a look in a machine file, on standard error."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     for notice in machine.warnings:
-        console.print(event_note(Severity.WARNING, notice.error_id, str(notice)), style="yellow", markup=False)
+        console.print(str(Note(notice.error_id, str(notice))), style="yellow", markup=False)

@@ -51,7 +51,7 @@ def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[Row]:
     if not rows:
         why = "no axis and no spindle moves there" if recorded.states else "holds no states"
         raise CncError(
-            NOT_RECORDED, f"recording {recorded.path}: {why}; nothing was drawn, choose fields with --topics"
+            NOT_RECORDED, f"recording {recorded.path}: {why}", "nothing was drawn, choose fields with --topics"
         )
     return rows
 

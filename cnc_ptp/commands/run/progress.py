@@ -14,6 +14,7 @@ from rich.text import Text
 
 from cnc_ptp.machine.offline import Outputs
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, SpindleBlock
+from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 
 PERIOD = 0.1
@@ -33,7 +34,7 @@ class RunProgress:
         self._line = LiveLine()
         self._live = Live(self._line, console=console, refresh_per_second=round(1.0 / PERIOD))
         self._next = 0.0
-        self._told: set[str] = set()
+        self._told: set[Note] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
@@ -56,12 +57,12 @@ class RunProgress:
         """True when somebody looks and the line is a tenth of a second old."""
         return self._on and time.monotonic() >= self._next
 
-    def tell(self, notes: Iterable[str]) -> None:
+    def tell(self, notes: Iterable[Note]) -> None:
         """Shows what has come to `notes`, above the line: a run that waits for somebody says so at once."""
         for note in notes:
             if self._on and note not in self._told:
                 self._told.add(note)
-                self._live.console.print(note, style="yellow", markup=False, highlight=False, soft_wrap=True)
+                self._live.console.print(str(note), style="yellow", markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:
         """Progress of an offline run."""

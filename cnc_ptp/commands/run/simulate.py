@@ -27,11 +27,8 @@ from cnc_ptp.protocol.blocks import (
     CycleTick,
     PlcBlock,
     Severity,
-    command_note,
-    error_note,
-    event_note,
-    keep_note,
 )
+from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.recording.writer import Recording
 
 
@@ -45,7 +42,7 @@ class Result:
     interrupted: str = ""
     following_errors: dict[str, float] = field(default_factory=lambda: defaultdict(float))
     errors: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
+    notes: Notes = field(default_factory=Notes)
     refused: int = 0
 
     def add(self, outputs: Outputs) -> None:
@@ -60,16 +57,10 @@ class Result:
                 self.cycles = block.first_cycle + block.count
                 # The PLC knows of a fault a block later, which may not come any more.
                 self.failed = block.run_failed or any(error_of(other.block) for other in outputs.values())
-            self.errors += [
-                error_note(event.error_id, event.text, event.cycle, event.line)
-                for event in output.events
-                if event.severity == Severity.ERROR
-            ]
+            self.errors += [error_text(event) for event in output.events if event.severity == Severity.ERROR]
             self.refused += sum(not record.accepted for record in output.records)
-            notes = (command_note(record.accepted, record.error_id, record.message) for record in output.records)
-            warnings = (event_note(event.severity, event.error_id, event.text) for event in output.events)
-            for note in (*notes, *warnings):
-                keep_note(self.notes, note)
+            for note in (*map(Note.of_command, output.records), *map(Note.of_event, output.events)):
+                self.notes.add(note)
 
 
 def simulate(
@@ -145,10 +136,10 @@ def print_summary(
         console.print(line, markup=False)
     for axis, error in result.following_errors.items():
         console.print(f"largest following error {axis}: {error:.4f} {'deg' if machine.axes[axis].rotary else 'mm'}")
-    notes = result.notes
+    notes = [*result.notes]
     if result.interrupted:
         console.print(f"failed: {result.interrupted}", style="bold red", markup=False)
     else:
-        notes = [*notes, *cut_off_notes(result.programs, duration)]
+        notes += cut_off_notes(result.programs, duration)
     stopped = result.failed or bool(result.interrupted)
     print_faults(console, result.errors, notes, stopped=stopped, refused=result.refused)

@@ -64,7 +64,7 @@ class CouplingServices:
         try:
             arguments = self._arguments(command, request)
         except CncError as error:
-            return answered(response, error.error_id, error.message)
+            return answered(response, error.number, error.message)
         if self._node.is_over:
             return answered(response, RUN_OVER, f"axis {axis}: {command} refused: the run is over; nothing was changed")
         if self._plc.is_lost(axis):

@@ -42,12 +42,10 @@ class JogTopics:
         """
         client = message.header.frame_id
         if not paced:
-            text = f"is not obeyed in free run, where {SILENCE} may be a long motion"
-            self._tell(JOG_IN_FREE_RUN, axis, client, text)
+            self._tell(JOG_IN_FREE_RUN, axis, client, free_run_text(axis))
             return None
         if self._is_foreign(axis, client, now):
-            text = f"has a second client '{client}'; it is ignored while the first one jogs {axis}"
-            self._tell(SECOND_JOG, axis, client, text)
+            self._tell(SECOND_JOG, axis, client, second_client_text(axis, client))
             return None
         if not is_newer(message.sequence, self._sequence.get((axis, client), 0)):
             return None
@@ -75,4 +73,14 @@ class JogTopics:
     def _tell(self, error_id: int, axis: str, client: str, text: str) -> None:
         if (error_id, axis, client) not in self._told:
             self._told.add((error_id, axis, client))
-            self._warn(error_id, f"plc: /{jog_topic(axis)} {text}")
+            self._warn(error_id, text)
+
+
+def free_run_text(axis: str) -> str:
+    """The warning that jogs of an axis are not obeyed."""
+    return f"plc: /{jog_topic(axis)} is not obeyed in free run, where {SILENCE} may be a long motion"
+
+
+def second_client_text(axis: str, client: str) -> str:
+    """The warning that a client is ignored."""
+    return f"plc: /{jog_topic(axis)} has a second client '{client}'; it is ignored while the first one jogs {axis}"

@@ -67,7 +67,7 @@ class MachineClient(Node):
         if answer is None:
             where = f"ROS domain {self.context.get_domain_id()}"
             where += "" if self.get_namespace() == "/" else f" in namespace {self.get_namespace()}"
-            raise CncError(NO_MACHINE, f"no machine is running on {where}; nothing was asked")
+            raise CncError(NO_MACHINE, f"no machine is running on {where}", "nothing was asked")
         for kind, value in zip(UNITS.values(), answer, strict=True):
             self.kinds |= dict.fromkeys(value.string_array_value, kind)
         self.kinds[PLC] = "plc"
@@ -92,7 +92,7 @@ class MachineClient(Node):
         if self.kinds.get(unit) not in wanted:
             known = ", ".join(name for name, kind in self.kinds.items() if kind in wanted) or "none"
             what = " or ".join(wanted) if kinds else "unit"
-            raise CncError(UNKNOWN_UNIT, f"the machine has no {what} '{unit}'; nothing was asked. Known: {known}")
+            raise CncError(UNKNOWN_UNIT, f"the machine has no {what} '{unit}'", f"nothing was asked. Known: {known}")
         return self.kinds[unit]
 
     def look_at(self, units: Iterable[str]) -> LatestBlocks:
@@ -112,7 +112,7 @@ class MachineClient(Node):
         answer = self._answer(client, request_of(service, arguments), patience)
         if answer is None:
             text = f"{self.kinds[unit]} {unit}: {command}: no answer within {patience:g} s"
-            raise CncError(NO_ANSWER, f"{text}; whether it was carried out is not known, see `cnc_ptp status`")
+            raise CncError(NO_ANSWER, text, "whether it was carried out is not known, see `cnc_ptp status`")
         return answer
 
     def _answer(self, client: Client[Any, Any], request: Any, patience: float = PATIENCE) -> Any:
@@ -147,15 +147,15 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
     """What the service of a command takes. Raises CncError 22002 when there is none."""
     service = services_of(kind).get(command)
     if service is None:
-        where = f"{kind} {unit}: "
+        where = f"{kind} {unit}"
         known = ", ".join(sorted(services_of(kind)))
         if command == "jog" and kind == "axis":
-            raise CncError(UNKNOWN_COMMAND, f"{where}jog has no service, use: cnc_ptp jog {unit} + --speed ...")
+            raise CncError(UNKNOWN_COMMAND, f"jog has no service, use: cnc_ptp jog {unit} + --speed ...", where=where)
         if command in COMMANDS[kind].keys() - INTERNAL:
             text = f"'{command}' is a command of scenarios only"
         else:
             text = f"unknown command '{command}'"
-        raise CncError(UNKNOWN_COMMAND, f"{where}{text}; nothing was sent. Known: {known}")
+        raise CncError(UNKNOWN_COMMAND, text, f"nothing was sent. Known: {known}", where=where)
     fields = service.Request.get_fields_and_field_types()
     return {name: argument for name, argument in COMMANDS[kind][command].items() if name in fields}
 
@@ -168,7 +168,7 @@ def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> No
             low, high = integer_range(found[1] == "u", int(found[2]))
             if not low <= value <= high:
                 reason = f"{name} = {value} is not within {low} … {high}"
-                raise CncError(BAD_ARGUMENT, f"{where}: {reason}; nothing was sent")
+                raise CncError(BAD_ARGUMENT, reason, "nothing was sent", where=where)
 
 
 def integer_range(unsigned: bool, bits: int) -> tuple[int, int]:

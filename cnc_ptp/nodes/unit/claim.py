@@ -52,7 +52,8 @@ def _taken(node: Node, unit: str) -> CncError:
     return CncError(
         UNIT_TAKEN,
         f"{unit}: {_holder(_name(node, unit))} on this computer has this unit on ROS domain "
-        f"{node.context.get_domain_id()} already; nothing was started. End one of the two",
+        f"{node.context.get_domain_id()} already",
+        "nothing was started. End one of the two",
     )
 
 

@@ -71,7 +71,7 @@ def _given(override: Any) -> Any:
 def _refused_value(node: Node, name: str, override: Any, reason: str) -> CncError:
     given = shown(_given(override))
     text = f"{node.get_name()}: parameter {name} = {given} of the ROS arguments is refused: {reason}"
-    return CncError(REFUSED, f"{text}; the node does not start")
+    return CncError(REFUSED, text, "the node does not start")
 
 
 def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersResult | None:

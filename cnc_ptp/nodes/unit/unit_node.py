@@ -182,8 +182,8 @@ class UnitNode(Node):
         if not self._running and message.first_cycle:
             self.failure = CncError(
                 TOO_LATE,
-                f"{self.unit.name}: the run is at cycle {message.first_cycle}; the node takes no part and ends: "
-                "nodes must be there before the clock starts",
+                f"{self.unit.name}: the run is at cycle {message.first_cycle}",
+                "the node takes no part and ends: nodes must be there before the clock starts",
             )
             return
         if not self._running and message.scheduled_monotonic_ns:

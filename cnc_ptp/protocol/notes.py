@@ -1,0 +1,76 @@
+"""What people are told of a run: refused commands and warnings, each once; and its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from cnc_ptp.errors import read_warning, warning_text
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
+from cnc_ptp.protocol.blocks import Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A refused command, or a warning: of an event, or with which a command was carried out (may have no number)."""
+
+    number: int
+    text: str
+    refused: bool = False
+    idle_stop: bool = False
+    """A stop of an axis that stands already."""
+
+    def __str__(self) -> str:
+        if self.refused:
+            return f"refused: P-ERR-{self.number} {self.text}"
+        return f"warning: {warning_text(self.number, self.text)}"
+
+    @classmethod
+    def of_command(cls, record: Any) -> Note | None:
+        """`record`: a CommandRecord or its message; None for a command that was carried out without a warning."""
+        if not record.accepted:
+            return cls(record.error_id, record.message, refused=True)
+        if not record.message:
+            return None
+        number, text = read_warning(record.message)
+        idle = record.command == "stop" and text in {without_effect(record.target, "stop", s) for s in AxisStateCode}
+        return cls(number, text, idle_stop=idle)
+
+    @classmethod
+    def of_event(cls, event: Any) -> Note | None:
+        """`event`: an Event or its message; None for one that is no warning."""
+        return cls(event.error_id, event.text) if event.severity == Severity.WARNING else None
+
+
+class Notes:
+    """Notes in the order in which they came, each once.
+
+    A refused command is an event too: it is told as refused, in whatever order the two come.
+    """
+
+    def __init__(self) -> None:
+        self._notes: dict[tuple[int, str], Note] = {}
+
+    def add(self, note: Note | None) -> None:
+        if note is None:
+            return
+        key = note.number, note.text
+        known = self._notes.get(key)
+        if known is None or (note.refused and not known.refused):
+            self._notes.pop(key, None)
+            self._notes[key] = note
+
+    def __iter__(self) -> Iterator[Note]:
+        return iter(self._notes.values())
+
+
+def without_effect(axis: str, command: str, state: AxisStateCode) -> str:
+    """The warning that there was nothing to stop. A record has no place for its number: it is known by this text."""
+    return f"axis {axis}: {command} without effect in {state_name(state)}"
+
+
+def error_text(event: Any) -> str:
+    """`event`: an error (Event or its message), told with its cycle, and the line of the program where there is one."""
+    where = f"cycle {event.cycle}, line {event.line}" if event.line else f"cycle {event.cycle}"
+    return f"P-ERR-{event.error_id} {event.text} ({where})"

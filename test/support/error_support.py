@@ -1,0 +1,19 @@
+"""Refusals by number and values: the texts themselves are tested in test/wording."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cnc_ptp.protocol.blocks import CommandRecord
+
+Refused = tuple[int, dict[str, Any]]
+
+
+def refused(number: int, /, **values: Any) -> Refused:
+    """What the bench is to say of a refusal with this number and all values of its text."""
+    return number, values
+
+
+def refusal_of(record: CommandRecord) -> Refused:
+    assert not record.accepted
+    return record.error_id, dict(record.values)
