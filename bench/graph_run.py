@@ -59,11 +59,11 @@ def run_graph(
 
 def _run(arguments: tuple[str, str | None, str | None, float, str, bool], composed: bool) -> GraphRun:
     from cnc_ptp.nodes.composed import run_composed
-    from cnc_ptp.nodes.supervisor import Job, Supervisor
+    from cnc_ptp.nodes.supervisor import RunOrder, Supervisor
     from cnc_ptp.parameters import read_machine
     from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS
 
-    job = Job(*arguments)
+    job = RunOrder(*arguments)
     parameters, seconds = read_machine(job.machine), arguments[3]
     watch = Watch(memory_at=0.8 * seconds * 1e6 / parameters.cycle_time_us, own=COMPOSED if composed else SUPERVISOR)
 

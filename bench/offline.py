@@ -17,8 +17,8 @@ from typing import Any
 from bench.figures import Effort, Figure, Say, Stopwatch, stopwatch
 from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
 from cnc_ptp.commands.run.simulate import write
-from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.unit import Unit
@@ -51,7 +51,7 @@ def run_offline(
 ) -> OfflineRun:
     """As `cnc_ptp simulate` does it; the machine and the job are read before the watch starts."""
     parameters = read_machine(machine)
-    entries = read_job(parameters, program=program, scenario=scenario)
+    entries = read_entries(parameters, program=program, scenario=scenario)
     units = build_units(parameters, scenario=entries, end_when_idle=seconds is None)
     shares = measure_units(units) if split else {}
     offline = OfflineMachine(parameters, units)

@@ -11,7 +11,7 @@ from mcap.writer import CompressionType, Writer
 
 from bench.figures import Effort, Figure, Say, median_of, medians_of, stopwatch
 from cnc_ptp.plots.report import report_page
-from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, CycleTick, PlcBlock, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
 from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.verify import verify
@@ -23,7 +23,7 @@ AXES = ("x", "y", "z")
 MACHINE = "/machine: {}\n"
 CYCLE_TIME = 1e-3
 
-Run = list[list[tuple[str, Block]]]
+Run = list[list[tuple[str, CycleBlock]]]
 
 
 def run_of_blocks(blocks: int) -> Run:
@@ -31,7 +31,7 @@ def run_of_blocks(blocks: int) -> Run:
     return [unit_blocks(COUNT * index) for index in range(blocks)]
 
 
-def unit_blocks(first: int) -> list[tuple[str, Block]]:
+def unit_blocks(first: int) -> list[tuple[str, CycleBlock]]:
     """The blocks of all units from cycle `first` on."""
 
     def wave(factor: float) -> list[float]:
@@ -63,7 +63,7 @@ def unit_blocks(first: int) -> list[tuple[str, Block]]:
         state=[2] * COUNT,
         error_id=zero,
     )
-    blocks: list[tuple[str, Block]] = [("plc", PlcBlock(first, COUNT, first)), ("channel", channel)]
+    blocks: list[tuple[str, CycleBlock]] = [("plc", PlcBlock(first, COUNT, first)), ("channel", channel)]
     for index, axis in enumerate(AXES):
         moving = [wave(1.0 + index + 0.1 * column) for column in range(8)]
         rest = [flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(0.0), flat(100.0)]

@@ -10,8 +10,8 @@ import yaml
 
 from bench.figures import Effort, Figure, Say, medians_of, stopwatch
 from bench.graph_run import run_graph
-from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 
@@ -67,7 +67,7 @@ def files(folder: Path, count: int, master_of: object) -> tuple[str, str]:
 def offline_rate(machine: str, scenario: str, seconds: float) -> float:
     """Machine time over wall time."""
     parameters = read_machine(machine)
-    units = build_units(parameters, scenario=read_job(parameters, program=None, scenario=scenario))
+    units = build_units(parameters, scenario=read_entries(parameters, program=None, scenario=scenario))
     offline = OfflineMachine(parameters, units)
     cycles = round(seconds * 1e6 / parameters.cycle_time_us)
     with stopwatch() as watch:

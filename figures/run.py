@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
@@ -83,7 +83,7 @@ def run_figure(figure: FigureScenario) -> FigureRun:
     program = str(figure.program_path) if figure.program_path else None
     try:
         machine = read_machine(figure.machine_path)
-        job = read_job(machine, program=program, scenario=str(figure.path), may_be_empty=True)
+        job = read_entries(machine, program=program, scenario=str(figure.path), may_be_empty=True)
     except CncError as error:
         raise FigureError(figure.path, error) from None
     for name in figure.axes:

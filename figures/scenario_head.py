@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.run_entries import read_file
 
 ROOT = Path(__file__).parents[1]
 KEYS = ("title", "caption", "machine", "axes")

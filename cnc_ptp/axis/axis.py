@@ -19,9 +19,10 @@ from cnc_ptp.axis.faults import (
     JOG_AT_LIMIT,
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
-from cnc_ptp.axis.ptp import PtpGenerator, State
+from cnc_ptp.axis.ptp import PtpGenerator
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.errors import Value
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -99,11 +100,11 @@ class Axis:
 
     # setpoints
 
-    def setpoint(self, cycle: int) -> State:
+    def setpoint(self, cycle: int) -> MotionState:
         """Position, velocity, acceleration and jerk at `cycle`, as they stand before a command that acts there."""
         return self.superimposed(cycle, self.ptp.state(cycle))
 
-    def superimposed(self, cycle: int, base: State) -> State:
+    def superimposed(self, cycle: int, base: MotionState) -> MotionState:
         """The basic motion at `cycle` with all that is added."""
         if not self.superposed:
             return base
@@ -148,7 +149,7 @@ class Axis:
         bearable = min(most, sqrt(2.0 * jerk * left) * (1.0 + ROUNDING))
         return acceleration if abs(acceleration) <= bearable else copysign(bearable, acceleration)
 
-    def brake(self, cycle: int, setpoint: State) -> None:
+    def brake(self, cycle: int, setpoint: MotionState) -> None:
         """The own ramp begins at `setpoint`, without what is added; the acceleration of that ends at once."""
         position, velocity, acceleration, _ = setpoint
         if self.superposed:
@@ -259,7 +260,7 @@ class Axis:
             self.set_override(cycle, percent)
         self.ptp.advance(cycle)
 
-    def basic_motion(self, cycle: int, count: int) -> list[State]:
+    def basic_motion(self, cycle: int, count: int) -> list[MotionState]:
         """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them."""
         due = self.override_filter.due_cycle
         return self.ptp.states(cycle, count if due is None else max(1, min(count, due - cycle)))
@@ -306,7 +307,7 @@ class Axis:
             self.ptp.finish()
         self.take(transition)
 
-    def status_bits(self, cycle: int, setpoint: State, actual_position: float) -> int:
+    def status_bits(self, cycle: int, setpoint: MotionState, actual_position: float) -> int:
         return self.common_bits(cycle) | self.motion_bits(setpoint, actual_position)
 
     def common_bits(self, cycle: int) -> int:
@@ -326,7 +327,7 @@ class Axis:
             bits |= StatusBit.ERROR_DELAYED if cycle < self._propagated_at else 0
         return int(bits)
 
-    def motion_bits(self, setpoint: State, actual_position: float) -> int:
+    def motion_bits(self, setpoint: MotionState, actual_position: float) -> int:
         position, velocity, acceleration, _ = setpoint
         if velocity != 0.0:
             return CONSTANT_VELOCITY if acceleration == 0.0 else 0
@@ -339,7 +340,7 @@ class Axis:
     def refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
         raise self.checks.refusal(command, number, reason, **values)
 
-    def fault(self, cycle: int, error_id: int, reason: str, setpoint: State | None = None) -> None:
+    def fault(self, cycle: int, error_id: int, reason: str, setpoint: MotionState | None = None) -> None:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.
 
         The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).

@@ -11,21 +11,21 @@ from cnc_ptp.axis.coupling import Coupling, LinearCoupling
 from cnc_ptp.axis.external import NEGLIGIBLE_VELOCITY
 from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, OUT_OF_RANGE, PATH_NOT_ACCEPTED
 from cnc_ptp.axis.flying_saw import FlyingSaw
-from cnc_ptp.axis.ptp import State
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.path.path_motion import begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
 PATH_TOLERANCE = 1e-9
 """Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
 
 
-def in_range(state: State) -> bool:
+def in_range(state: MotionState) -> bool:
     """False for what no table can be made for, an infinity or a NaN: where factors of a cascade multiply."""
     p, v, a, _ = state
     return -LARGEST_STATE <= p <= LARGEST_STATE and abs(v) <= LARGEST_STATE and abs(a) <= LARGEST_STATE
@@ -40,7 +40,7 @@ class PathSource:
         self._to_go = [0.0]
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
 
-    def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
         """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
         channel = self._owning_channel(inputs)
         if channel is None:
@@ -73,7 +73,7 @@ class PathSource:
         if turns or (n + 1 < len(self._to_go) and begins_element(*self._to_go[n : n + 2])):
             axis.path_direction = 0.0
 
-    def put_down(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+    def put_down(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """Where the path of the channel has ended below a flying saw, the axis is an ordinary slave from now on."""
         axis = self._axis
         if self._owning_channel(inputs) is not None or not isinstance(axis.coupling, FlyingSaw):
@@ -83,13 +83,13 @@ class PathSource:
             axis.coupling.shift(position)
             axis.carried = None
 
-    def forbid(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+    def forbid(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """A channel may not move an axis that follows a master."""
         if self._owning_channel(inputs) is not None:
             reason = "the channel moves the path while the axis is a slave"
             self._axis.fault(first_cycle, PATH_NOT_ACCEPTED, reason)
 
-    def _owning_channel(self, inputs: Mapping[str, Block]) -> ChannelBlock | None:
+    def _owning_channel(self, inputs: Mapping[str, CycleBlock]) -> ChannelBlock | None:
         for block in inputs.values():
             if isinstance(block, ChannelBlock) and block.path_active and self._axis.name in block.axes:
                 return block
@@ -146,7 +146,7 @@ class MasterSource:
         self._gantry_distance: float | None = None
         self._blocks_in_error = 0
 
-    def setpoints(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
         """The setpoints of the coupling; none when the axis is not coupled or cannot follow."""
         axis = self._axis
         coupling = axis.coupling
@@ -201,7 +201,7 @@ class MasterSource:
         if block.set_velocity[0] == 0.0:
             coupling.change_source(before, now)
 
-    def _states(self, coupling: Coupling, block: AxisBlock) -> list[State]:
+    def _states(self, coupling: Coupling, block: AxisBlock) -> list[MotionState]:
         if block.couples_actual != self._actual:
             sources = block.set_position[0], block.actual_position[0]
             before, now = sources if block.couples_actual else sources[::-1]
@@ -239,7 +239,7 @@ class MasterSource:
     def watches_gantry(self) -> bool:
         return self._gantry is not None and self._axis.coupled
 
-    def watch_gantry(self, cycle: int, setpoint: State, actual_position: float) -> None:
+    def watch_gantry(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
         """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
         if self._gantry is None or self._axis.error_id or not self._axis.coupled:
             return

@@ -16,17 +16,17 @@ from cnc_ptp.axis.faults import FOLLOWING_ERROR
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.power_commands import PowerCommands
-from cnc_ptp.axis.ptp import State
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlCycle, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block, CycleTick, Severity
+from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 
 control_columns = attrgetter(*ControlCycle._fields)
@@ -130,7 +130,7 @@ class AxisUnit(Unit):
         job = self._axis.ptp.job
         return 0.0 if job is None else job.target - self._axis.ptp.state(cycle)[0]
 
-    def lag_share(self, block: Block) -> float:
+    def lag_share(self, block: CycleBlock) -> float:
         """See Unit."""
         if not isinstance(block, AxisBlock) or block.state[-1] in (S.DISABLED, S.ERROR_STOP):
             return 0.0
@@ -138,7 +138,7 @@ class AxisUnit(Unit):
 
     # one block
 
-    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> AxisBlock:
+    def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> AxisBlock:
         """Computes one block; follows its master, or the path of the channel among `inputs` that has the axis."""
         first_cycle, count = tick
         axis = self._axis
@@ -156,7 +156,7 @@ class AxisUnit(Unit):
         self._last_block = block
         return block
 
-    def _led(self, first_cycle: int, inputs: Mapping[str, Block]) -> list[State]:
+    def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
         """Setpoints of a master or of a channel, none where the own generator moves the axis."""
         axis = self._axis
         if axis.carried is not None:
@@ -169,7 +169,7 @@ class AxisUnit(Unit):
                 return setpoints
         return self._path.setpoints(first_cycle, inputs)
 
-    def _follow(self, first_cycle: int, setpoints: list[State], block: AxisBlock) -> None:
+    def _follow(self, first_cycle: int, setpoints: list[MotionState], block: AxisBlock) -> None:
         """Adds the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
         axis = self._axis
         done = 0
@@ -184,7 +184,7 @@ class AxisUnit(Unit):
             if axis.error_id != error_id and not axis.coupled:
                 break
 
-    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[State], block: AxisBlock) -> int:
+    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[MotionState], block: AxisBlock) -> int:
         """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
 
         Returns their number.
@@ -216,7 +216,7 @@ class AxisUnit(Unit):
     def _control_bits(self) -> int:
         return int(StatusBit.FRICTION_COMPENSATION) if self._loop.friction.on else 0
 
-    def _cycle(self, cycle: int, base: State, block: AxisBlock) -> None:
+    def _cycle(self, cycle: int, base: MotionState, block: AxisBlock) -> None:
         """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)

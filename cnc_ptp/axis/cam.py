@@ -14,7 +14,7 @@ from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.faults import BAD_CAM_TABLE, CAM_POSITION
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 SMALLEST_TABLE = 3
 SMALLEST_STEP = 1e-6
@@ -142,7 +142,7 @@ class CamCoupling(Coupling):
     def _x(self, master_position: float) -> float:
         return (master_position - self._master_offset) / self._master_scaling
 
-    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
         """Raises CncError 23053 in the first block when the slave does not stand where the slave offset has it."""
         if self._turn is None:
             self._begin(position, self._x(states[0][0]))
@@ -158,7 +158,7 @@ class CamCoupling(Coupling):
             raise CncError(CAM_POSITION, reason, place=float(place), position=position)
         self._turn = self.table.turn(x)
 
-    def _state(self, master: State) -> State:
+    def _state(self, master: MotionState) -> MotionState:
         x = self._x(master[0])
         turn = self.table.turn(x)
         if turn != self._turn:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 
 class CarriedMotion:
@@ -17,13 +17,13 @@ class CarriedMotion:
         """Nothing is added at `cycle`; `cycle_time` in s."""
         self._cycle_time = cycle_time
         self._first_cycle = cycle
-        self._states: Sequence[State] = [(0.0, 0.0, 0.0, 0.0)]
+        self._states: Sequence[MotionState] = [(0.0, 0.0, 0.0, 0.0)]
 
-    def take(self, first_cycle: int, states: Sequence[State]) -> None:
+    def take(self, first_cycle: int, states: Sequence[MotionState]) -> None:
         """The cycles of a block."""
         self._first_cycle, self._states = first_cycle, states
 
-    def state(self, cycle: int) -> State:
+    def state(self, cycle: int) -> MotionState:
         """What is added at `cycle`."""
         number = cycle - self._first_cycle
         if number < len(self._states):

@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import copysign, sqrt
 
 from cnc_ptp.motion import Profile
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-12
 """Part of a value that is rounding."""
@@ -92,7 +92,9 @@ class Compensation:
         """True while it adds a velocity to the basic motion."""
         return self._profile is not None and self._speed > 0.0
 
-    def start(self, cycle: int, base: State, *, direction: float, process_velocity: float, profile: Profile) -> None:
+    def start(
+        self, cycle: int, base: MotionState, *, direction: float, process_velocity: float, profile: Profile
+    ) -> None:
         """Begins at `cycle`, where the basic motion has the state `base` and goes in `direction` (+1, -1)."""
         sign = copysign(1.0, profile.rows[0][3])
         self._profile = Profile([(t, sign * p, sign * v, sign * a, 0.0) for t, p, v, a, _ in profile.rows])
@@ -135,7 +137,7 @@ class Compensation:
         self._profile = None
         self.offset = 0.0
 
-    def at(self, cycle: int, base: State) -> State:
+    def at(self, cycle: int, base: MotionState) -> MotionState:
         """Basic motion plus compensation at `cycle`."""
         if self._profile is not None and cycle > self._cycle:
             self._advance(cycle, base)
@@ -147,7 +149,7 @@ class Compensation:
         s = self._side
         return position, velocity + s * self._speed, acceleration + s * rate, jerk + s * change
 
-    def _rates(self, profile: Profile, base: State) -> tuple[float, float]:
+    def _rates(self, profile: Profile, base: MotionState) -> tuple[float, float]:
         """First and second derivative of the additional speed, the first one within the rates."""
         _, w, dw, _ = profile.state_at(self._time)
         h, dh, ddh = self._follow(*base[1:])
@@ -168,7 +170,7 @@ class Compensation:
             return 0.0, 0.0, 0.0
         return ratio, scale * acceleration, scale * jerk
 
-    def _advance(self, cycle: int, base: State) -> None:
+    def _advance(self, cycle: int, base: MotionState) -> None:
         """The cycles since the last call: on to the speed that the basic motion asks for, as far as the rates allow."""
         profile = self._profile
         assert profile is not None

@@ -19,7 +19,7 @@ from cnc_ptp.axis.ptp import Job
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Profile
 from cnc_ptp.motion.limits import LARGEST_LIMIT, SMALLEST_LIMIT
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
@@ -88,7 +88,7 @@ class CompensationCommands:
         if axis.ptp.braking(cycle):
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
 
-    def _basic_motion(self, cycle: int) -> tuple[State, Job]:
+    def _basic_motion(self, cycle: int) -> tuple[MotionState, Job]:
         """State and job of the basic motion; refused while it stops behind its target in order to return.
 
         The basic motion of a slave has no target of its own; it must move, so that there is a direction.

@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from math import copysign
 
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-9
 """Part of an acceleration limit: a velocity is rounded, its change in a cycle even more so."""
@@ -26,7 +26,7 @@ class Coupling(ABC):
         the two apart."""
 
     @abstractmethod
-    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
         """States of the slave for the cycles of these master states; `position`: where the slave is in the first."""
 
     @abstractmethod
@@ -49,7 +49,7 @@ class LinearCoupling(Coupling):
         """Counts from the next cycle that is computed."""
         self._new_factor = factor
 
-    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
         """p = f·pm + offset, v = f·vm, a = f·am, j = f·jm."""
         begin = states[0][0]
         if self.offset is None:
@@ -78,7 +78,7 @@ class CyclicCoupling(Coupling):
         super().__init__(master, 0.0)
         self.acc_bound = acc_bound
         self._cycle_time = cycle_time
-        self._slave: State | None = None
+        self._slave: MotionState | None = None
         self._reached: float | None = None
         """The factor that is held exactly, with its offset; None on the way to another."""
         self._offset = 0.0
@@ -87,7 +87,7 @@ class CyclicCoupling(Coupling):
         """Counts from the next cycle that is computed."""
         self.ratio = factor
 
-    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
         if self._slave is None:
             self._slave = (position, 0.0, 0.0, 0.0)
         slaves = []
@@ -96,7 +96,7 @@ class CyclicCoupling(Coupling):
             slaves.append(self._slave)
         return slaves
 
-    def _next(self, slave: State, master: State) -> State:
+    def _next(self, slave: MotionState, master: MotionState) -> MotionState:
         """The slave one cycle after `slave`."""
         f, bound, t = self.ratio, self.acc_bound, self._cycle_time
         p, v, a, j = master

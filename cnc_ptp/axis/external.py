@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cnc_ptp.axis.tables import standing
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import LARGEST_STATE, rounding
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 LONGEST_PERIOD = 0.02
 """Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
@@ -141,7 +141,7 @@ class ExternalSetpoints:
         if self._driving is not None and self._last_cycle is None:
             self._last_cycle = cycle
 
-    def brake(self, cycle: int, state: State) -> None:
+    def brake(self, cycle: int, state: MotionState) -> None:
         """Another motion ends at `cycle` with `state`: it comes to rest here, beside what is contributed at rest."""
         position, velocity = self.contribution(cycle)[0] + state[0], state[1]
         self._rest, self._rest_cycle = plan_to_velocity(position, velocity, 0.0, 0.0, self._limits), cycle
@@ -171,7 +171,7 @@ class ExternalSetpoints:
         rest = self._rest if self._driving is None else self._to_rest(self._driving, cycle)
         return rest.end[0]
 
-    def at(self, cycle: int, base: State) -> State:
+    def at(self, cycle: int, base: MotionState) -> MotionState:
         """Basic motion plus contribution at `cycle`; takes the setpoints that have come due."""
         self._advance(cycle)
         position, velocity, acceleration, jerk = base
@@ -179,13 +179,13 @@ class ExternalSetpoints:
         self._velocity = v
         return position + p, velocity + v, acceleration + a, jerk + j
 
-    def contribution(self, cycle: int) -> State:
+    def contribution(self, cycle: int) -> MotionState:
         """What the external setpoints add at `cycle`."""
         if self._driving is not None:
             return self._driven(self._driving, cycle)
         return self._rest.state_at((cycle - self._rest_cycle) * self._cycle_time)
 
-    def _driven(self, setpoint: Setpoint, cycle: int) -> State:
+    def _driven(self, setpoint: Setpoint, cycle: int) -> MotionState:
         """The setpoint (its position is that of the contribution) brought forward to `cycle` and by the dead time.
 
         It goes at most to where it comes to rest.

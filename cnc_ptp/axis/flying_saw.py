@@ -16,7 +16,7 @@ from cnc_ptp.axis.faults import SAW_TOO_LATE
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import rounding
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-12
 """s; what a run-up may be late or long, as it can be planned anew in the very moment of its begin.
@@ -53,7 +53,7 @@ class FlyingSaw(Coupling):
         self._waits = True
         self.synchronous = False
 
-    def follow(self, position: float, states: Sequence[State]) -> list[State]:
+    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
         """Raises CncError 23051 while the slave stands when there is no time or way left to synchronise."""
         if self._table is None:
             if states[0][1] == 0.0:
@@ -61,7 +61,7 @@ class FlyingSaw(Coupling):
             self._plan(position, states[0])
         return [self._next(position, state) for state in states]
 
-    def _next(self, position: float, master: State) -> State:
+    def _next(self, position: float, master: MotionState) -> MotionState:
         assert self._table is not None
         moment = (master[0] - self._begin) / self._speed
         if moment > self._wait:
@@ -72,7 +72,7 @@ class FlyingSaw(Coupling):
             self.synchronous = True
         return self._linear.follow(0.0, [master])[0] if self.synchronous else self._run_up(moment, master)
 
-    def _plan(self, position: float, master: State) -> float:
+    def _plan(self, position: float, master: MotionState) -> float:
         """Wait, ramp up to factor · v0, and on at that velocity so that the two positions are met together.
 
         Returns the moment 0.0 at which the table begins.
@@ -103,7 +103,7 @@ class FlyingSaw(Coupling):
         self._table = Profile([(0.0, position, 0.0, 0.0, 0.0), *rows])
         return 0.0
 
-    def _run_up(self, moment: float, master: State) -> State:
+    def _run_up(self, moment: float, master: MotionState) -> MotionState:
         assert self._table is not None
         p, v, a, j = self._table.state_at(moment)
         r, dr, ddr = (value / self._speed for value in master[1:])

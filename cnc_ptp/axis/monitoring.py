@@ -7,7 +7,7 @@ from math import copysign
 
 from cnc_ptp.axis.axis import ROUNDING, Axis, Report
 from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST, TARGET_MISSED
-from cnc_ptp.axis.ptp import State
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
@@ -22,10 +22,10 @@ class Monitoring:
         self._axis = axis
         self._report_warning = report_warning
         self._longest_silence = round(axis.parameters.external_timeout / cycle_time)
-        self._before: tuple[int, State] | None = None
+        self._before: tuple[int, MotionState] | None = None
         """The last cycle with a superposition, and its setpoint."""
 
-    def undisturbed(self, first_cycle: int, setpoints: Sequence[State]) -> bool:
+    def undisturbed(self, first_cycle: int, setpoints: Sequence[MotionState]) -> bool:
         """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
 
         The state of the first cycle has been advanced already.
@@ -46,7 +46,7 @@ class Monitoring:
             return True
         return not axis.target_window.watching
 
-    def watch(self, cycle: int, setpoint: State) -> State:
+    def watch(self, cycle: int, setpoint: MotionState) -> MotionState:
         """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
 
         Returns the setpoint to be used, which is another one where a fault prevents it.
@@ -85,7 +85,7 @@ class Monitoring:
         driven = axis.carried is not None or axis.external.mode is not None
         return not (driven and axis.ptp.withholds(added))
 
-    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: State) -> State:
+    def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: MotionState) -> MotionState:
         """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
 
         Without a superposition there, it begins at `setpoint`. The slave of a gantry pair goes on with its master.
@@ -99,7 +99,7 @@ class Monitoring:
         axis.fault(cycle, error_id, reason)
         return axis.ptp.state(cycle)
 
-    def _watch_superposition(self, cycle: int, setpoint: State) -> State:
+    def _watch_superposition(self, cycle: int, setpoint: MotionState) -> MotionState:
         axis, unit, most = self._axis, self._axis.unit, self._axis.parameters.max_velocity
         if axis.coupled and not axis.has_job and setpoint[1] == 0.0:
             axis.compensation.end()
@@ -122,7 +122,7 @@ class Monitoring:
         self._before = cycle, setpoint
         return setpoint
 
-    def _watch_soft_limits(self, cycle: int, setpoint: State) -> None:
+    def _watch_soft_limits(self, cycle: int, setpoint: MotionState) -> None:
         axis, (position, velocity, _, _) = self._axis, setpoint
         limit = axis.checks.soft_limit(velocity)
         outside = position > limit.position if velocity > 0.0 else position < limit.position
@@ -130,7 +130,7 @@ class Monitoring:
             reason = f"set position {position} {axis.unit} is beyond the {limit.text}"
             axis.fault(cycle, limit.number, reason, setpoint)
 
-    def watch_target(self, cycle: int, setpoint: State, actual_position: float) -> None:
+    def watch_target(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
         """Warns once of an axis that has not come into its target window in time."""
         axis, window = self._axis, self._axis.target_window
         if setpoint[1] != 0.0 or axis.ptp.job is not None:

@@ -18,11 +18,7 @@ from cnc_ptp.motion import (
     plan_to_velocity,
 )
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
-from cnc_ptp.motion.profile import Row
-
-State = tuple[float, float, float, float]
-"""Position mm, velocity mm/s, acceleration mm/s², jerk mm/s³ (deg for rotary axes)."""
-
+from cnc_ptp.motion.profile import MotionState, Segment
 
 STANDING = (0.0, 0.0, 0.0)
 """Velocity, acceleration and jerk of an axis at rest."""
@@ -130,11 +126,11 @@ class PtpGenerator:
 
     # setpoints
 
-    def state(self, cycle: int) -> State:
+    def state(self, cycle: int) -> MotionState:
         """Setpoint at `cycle`: position, velocity, acceleration, jerk."""
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
 
-    def states(self, first_cycle: int, count: int) -> list[State]:
+    def states(self, first_cycle: int, count: int) -> list[MotionState]:
         """Setpoints of `count` cycles, fewer (but one at least) when something comes due among them."""
         if self._due is not None:
             count = max(1, min(count, self._due - first_cycle))
@@ -371,7 +367,7 @@ class PtpGenerator:
             return self._job_from_rest(leg[0][1], target, limits)
         return self._job_of(target, limits, leg)
 
-    def _job_of(self, target: float, limits: Limits, leg: Sequence[Row]) -> Job:
+    def _job_of(self, target: float, limits: Limits, leg: Sequence[Segment]) -> Job:
         return Job(target, limits, min(limits.velocity, peak_velocity(leg)))
 
     def _level(self, job: Job) -> Limits:

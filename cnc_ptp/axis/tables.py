@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from cnc_ptp.motion import Profile
-from cnc_ptp.motion.profile import Row
+from cnc_ptp.motion.profile import Segment
 
 
 def standing(position: float) -> Profile:
@@ -19,7 +19,7 @@ def reaches(profile: Profile, velocity: float) -> bool:
     return any(abs(level - velocity) <= 1e-9 * velocity for level in _levels(profile.rows))
 
 
-def last_leg(profile: Profile) -> Sequence[Row]:
+def last_leg(profile: Profile) -> Sequence[Segment]:
     """The rows from the last standstill within the table on: the way back where it stops and returns, else all."""
     rows = profile.rows
     for index in range(len(rows) - 2, 0, -1):
@@ -28,12 +28,12 @@ def last_leg(profile: Profile) -> Sequence[Row]:
     return rows
 
 
-def peak_velocity(rows: Sequence[Row]) -> float:
+def peak_velocity(rows: Sequence[Segment]) -> float:
     """Largest |v| (mm/s) of these rows."""
     return max(max(abs(row[2]) for row in rows), *_levels(rows), 0.0)
 
 
-def _levels(rows: Sequence[Row]) -> Iterator[float]:
+def _levels(rows: Sequence[Segment]) -> Iterator[float]:
     """|v| wherever the acceleration is zero: at the begin of a row, or within it, where v - a²/(2j)."""
     for (t, _, v, a, j), following in pairwise((*rows, rows[-1])):
         if abs(a) <= 1e-9 * abs(v) + 1e-12:

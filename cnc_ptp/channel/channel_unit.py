@@ -22,7 +22,7 @@ from cnc_ptp.nc.program import ModalState, Pairs, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
 
@@ -86,7 +86,7 @@ class ChannelUnit(Unit):
         self._just_started = False
         self._unfinished = False
         """The program ended between the last cycle of the block before and the first of the next one."""
-        self._feedback: Mapping[str, Block] = {}
+        self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
         self._element_begins = False
@@ -191,7 +191,7 @@ class ChannelUnit(Unit):
 
     # one block
 
-    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> ChannelBlock:
+    def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> ChannelBlock:
         """Computes one block; `inputs` holds the blocks before of the channel's axes and spindles.
 
         The first row is the state that the block before has led to, so that commands act from exactly there; one row
@@ -338,7 +338,7 @@ class ChannelUnit(Unit):
     def _apply_override(self) -> None:
         self._motion.set_factor(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
 
-    def _read_releases(self, cycle: int, inputs: Mapping[str, Block]) -> None:
+    def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """An axis on the path that may not go on in its direction holds the path; a warning once an element.
 
         An element that brakes for its end runs on; the next one is held if it goes in that direction, too.
@@ -351,7 +351,7 @@ class ChannelUnit(Unit):
         if self._axes.withheld != before:
             self._apply_override()
 
-    def _read_feedback(self, first_cycle: int, inputs: Mapping[str, Block]) -> None:
+    def _read_feedback(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """Takes over what axes and spindles reported for the block before."""
         self._feedback = inputs
         self._read_releases(first_cycle, inputs)
@@ -385,7 +385,7 @@ class ChannelUnit(Unit):
         held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
         return held and self._override_percent == 0.0 and not self._feed_hold
 
-    def _check_member(self, first_cycle: int, node: str, block: Block) -> None:
+    def _check_member(self, first_cycle: int, node: str, block: CycleBlock) -> None:
         """Axes and spindles must be without error, and axes on the path that the block before gave them."""
         if not isinstance(block, (AxisBlock, SpindleBlock)):
             return

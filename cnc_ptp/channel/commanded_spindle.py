@@ -21,10 +21,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, orders_wait, stands, what_it_does
+from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, current_activity, orders_wait, stands
 from cnc_ptp.nc.canonical import SpindleFunction
 from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
-from cnc_ptp.protocol.blocks import Block, SpindleBlock
+from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
 BEFORE_THE_RUN = -1
@@ -105,7 +105,7 @@ class CommandedSpindle:
         return self.unit is not None and self.unit.gear == stage
 
     @property
-    def told_to_plc(self) -> bool:
+    def reported_to_plc(self) -> bool:
         """The PLC gets every function of the spindle, whatever its synchronisation type says."""
         return self.unit is None or self.unit.plc_controlled
 
@@ -207,7 +207,7 @@ class CommandedSpindle:
             self._turned &= expectation.condition is Condition.SPEED
         self._expected_next = []
 
-    def read(self, cycle: int, block: Block | None) -> str:
+    def read(self, cycle: int, block: CycleBlock | None) -> str:
         """What the spindle has reported before `cycle`; a text when others have ended a coupling of the channel."""
         self.block = block if isinstance(block, SpindleBlock) else None
         if self.block is None:
@@ -239,5 +239,5 @@ class CommandedSpindle:
             self._turned |= block.source == self._channel or not waits
         elif watched and (self._turned or not waits):
             self.expect_nothing()
-            return f"{self.expectation.missed()}, {what_it_does(block)}"
+            return f"{self.expectation.missed()}, {current_activity(block)}"
         return ""

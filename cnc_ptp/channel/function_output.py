@@ -138,7 +138,7 @@ class FunctionOutput:
         for spindle in spindles:
             outgoing.commands += self.spindles.stop(spindle, homes=homes)
             outgoing.expected.append(Expectation(spindle.node))
-            if spindle.told_to_plc and not spindle.follows:
+            if spindle.reported_to_plc and not spindle.follows:
                 outgoing.requests.append(self._request(source, "M", spindle.title, 5, waits=False))
         return outgoing
 
@@ -203,7 +203,7 @@ class FunctionOutput:
             outgoing.notes += [(SPEED_WITHOUT_EFFECT, note)] if note else []
             return
         outgoing.expected.append(expectation)
-        if (spindle.told_to_plc or synchronisation & Synchronisation.PLC_INFO) and not spindle.follows:
+        if (spindle.reported_to_plc or synchronisation & Synchronisation.PLC_INFO) and not spindle.follows:
             self._ask(self._of_spindle(function, source), synchronisation, expectation, outgoing)
         else:
             outgoing.add_wait(synchronisation, expectation)

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.path.path_motion import AxisStates, PathMotion
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block
+from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 
 NOT_AT_END = "axis {} was moved away from the end of the path before"
 
@@ -41,19 +41,19 @@ class PathAxes:
         """The last setpoints of a block, one for each axis."""
         self.on_path, self._given = on_path, setpoints
 
-    def read(self, inputs: Mapping[str, Block], *, just_started: bool) -> Iterator[str]:
+    def read(self, inputs: Mapping[str, CycleBlock], *, just_started: bool) -> Iterator[str]:
         """What the axes have reported for the block before; reasons for a fault of a program that has just started."""
         read = self._read_on_path if self.on_path else self._read_at_rest
         yield from read(inputs, just_started)
 
-    def _read_on_path(self, inputs: Mapping[str, Block], just_started: bool) -> Iterator[str]:
+    def _read_on_path(self, inputs: Mapping[str, CycleBlock], just_started: bool) -> Iterator[str]:
         """Finds the axes that are not where the path has put them."""
         setpoints = zip(self.nodes, self._given, strict=True)
         self.beside = [node for node, given in setpoints if is_beside(inputs.get(node), given[0])]
         if self.beside and just_started:
             yield NOT_AT_END.format(self.beside[0])
 
-    def _read_at_rest(self, inputs: Mapping[str, Block], just_started: bool) -> Iterator[str]:
+    def _read_at_rest(self, inputs: Mapping[str, CycleBlock], just_started: bool) -> Iterator[str]:
         """Position and state of axes that the channel did not move; a start that did not know them yet is a fault."""
         self.beside = []
         for index, node in enumerate(self.nodes):
@@ -66,20 +66,20 @@ class PathAxes:
             self.states[node] = state
             self._motion.place(index, position)
 
-    def read_releases(self, inputs: Mapping[str, Block], *, can_be_held: bool) -> list[str]:
+    def read_releases(self, inputs: Mapping[str, CycleBlock], *, can_be_held: bool) -> list[str]:
         """Finds the axes on the path that may not go on in their direction; those of them that could before."""
         before, nodes = self.withheld, self.nodes if can_be_held and self.on_path else ()
         self.withheld = [node for node in nodes if lacks_release(inputs.get(node))]
         return [node for node in self.withheld if node not in before]
 
 
-def is_beside(block: Block | None, position: float) -> bool:
+def is_beside(block: CycleBlock | None, position: float) -> bool:
     """True for an axis that follows its path, but not at `position`."""
     if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
         return False
     return block.set_position[-1] != position
 
 
-def lacks_release(block: Block | None) -> bool:
+def lacks_release(block: CycleBlock | None) -> bool:
     """True for an axis that waits for its feed release."""
     return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.FEED_WITHHELD)

@@ -30,7 +30,7 @@ from cnc_ptp.parameters import (
     catalogue,
 )
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
-from cnc_ptp.protocol.blocks import Block, SpindleBlock
+from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 SOFT_LIMIT_POSITIVE = 120002
@@ -100,14 +100,14 @@ class ProgramCheck:
         """Start positions of the channel's axes, mm."""
         return tuple(axis.start_position for axis in self._axes)
 
-    def initial_state(self, feedback: Mapping[str, Block], links: Mapping[int, Pairs]) -> ModalState:
+    def initial_state(self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs]) -> ModalState:
         """The modal state in which programs begin: gears as the spindles report them, coupling groups as defined."""
         state = ModalState()
         state.spindle.gears = self.gears(feedback)
         state.spindle.links = dict(links)
         return state
 
-    def gears(self, feedback: Mapping[str, Block]) -> dict[str, int]:
+    def gears(self, feedback: Mapping[str, CycleBlock]) -> dict[str, int]:
         """Gear stages of the spindles that are not in the one of their start-up, by name."""
         reported = {}
         for spindle in self._spindles.spindles:

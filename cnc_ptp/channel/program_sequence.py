@@ -22,7 +22,7 @@ from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 from cnc_ptp.path.path_motion import PathMotion
-from cnc_ptp.protocol.blocks import Block, HandshakeRequest
+from cnc_ptp.protocol.blocks import CycleBlock, HandshakeRequest
 
 ENDS = ("stop", "decouple")
 """Commands that go out although the program was aborted."""
@@ -78,7 +78,7 @@ class ProgramSequence:
         """Functions of the block go out with the measuring event."""
         self.open_requests: dict[int, HandshakeRequest] = {}
         """Handshake requests by number that the PLC has not acknowledged."""
-        self._feedback: Mapping[str, Block] = {}
+        self._feedback: Mapping[str, CycleBlock] = {}
         self.notes: list[tuple[int, str]] = []
         """What the channel is to warn of: number and text."""
 
@@ -166,7 +166,7 @@ class ProgramSequence:
         self._functions.spindles.send(first_cycle)
         return outgoing
 
-    def read(self, cycle: int, feedback: Mapping[str, Block]) -> None:
+    def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
         """Blocks that the spindles have reported for the cycles before `cycle`."""
         self._feedback = feedback
         spindles = self._functions.spindles

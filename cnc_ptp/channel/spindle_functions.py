@@ -15,7 +15,7 @@ from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.spindle_reports import Condition, Expectation, turns
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
 from cnc_ptp.parameters import ChannelParameters, SpindleParameters, Synchronisation
-from cnc_ptp.protocol.blocks import Block, Command
+from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.commands import COMMANDS
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
@@ -51,7 +51,7 @@ class SpindleFunctions:
         for spindle in self:
             spindle.send(first_cycle)
 
-    def read(self, cycle: int, feedback: Mapping[str, Block]) -> list[str]:
+    def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> list[str]:
         """Blocks for the cycles before `cycle`; a text for each coupling of the channel that others have ended."""
         texts = {spindle.name: spindle.read(cycle, feedback.get(spindle.node)) for spindle in self}
         return [texts[name] for name in sorted(texts) if texts[name]]
@@ -196,7 +196,7 @@ class SpindleFunctions:
 
 def expected(spindle: CommandedSpindle, function: SpindleFunction) -> Expectation:
     """What the spindle reports when it has carried out the function; for PLC spindles the PLC says so."""
-    if spindle.told_to_plc or spindle.unit is None:
+    if spindle.reported_to_plc or spindle.unit is None:
         return Expectation(spindle.node)
     if function.m == 5:
         return Expectation(spindle.node, Condition.STANDSTILL)

@@ -116,7 +116,7 @@ def turns(block: SpindleBlock) -> bool:
     return block.state[-1] == S.CONTINUOUS_MOTION
 
 
-def what_it_does(block: SpindleBlock) -> str:
+def current_activity(block: SpindleBlock) -> str:
     """What the spindle does instead of what was commanded."""
     state = block.state[-1]
     if block.gear_change_active[-1]:

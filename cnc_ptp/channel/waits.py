@@ -13,12 +13,12 @@ from cnc_ptp.channel.spindle_reports import (
     NOTHING,
     Condition,
     Expectation,
+    current_activity,
     must_wait,
-    what_it_does,
 )
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import Synchronisation
-from cnc_ptp.protocol.blocks import Block, Command, HandshakeRequest, SpindleBlock
+from cnc_ptp.protocol.blocks import Command, CycleBlock, HandshakeRequest, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
 
 NOT_COUPLED = 22019
@@ -74,7 +74,7 @@ class Wait:
     until_sent: bool = False
     """Axes take the function over at that cycle; nobody has to report anything."""
 
-    def fulfilled(self, cycle: int, spindles: Mapping[str, Block], open_requests: Container[int]) -> bool:
+    def fulfilled(self, cycle: int, spindles: Mapping[str, CycleBlock], open_requests: Container[int]) -> bool:
         """Raises CncError: 22019 for a coupling that did not come about, 22021 for a spindle that does something else.
 
         A spindle that does something else is found out while the PLC has not acknowledged, too.
@@ -101,7 +101,7 @@ class Wait:
             return expected.reached(block)
         if must_wait(block):
             return False
-        raise CncError(NOT_CARRIED_OUT, f"{expected.missed()}, {what_it_does(block)}; the path waited for it")
+        raise CncError(NOT_CARRIED_OUT, f"{expected.missed()}, {current_activity(block)}; the path waited for it")
 
     def _coupled(self, block: SpindleBlock) -> bool:
         slave, master = self.expected.spindle, self.expected.master
@@ -133,7 +133,7 @@ class Wait:
             return f"the acknowledgement of request {self.request_id}"
         return self.expected.awaited()
 
-    def held(self, cycle: int, spindles: Mapping[str, Block]) -> str:
+    def held(self, cycle: int, spindles: Mapping[str, CycleBlock]) -> str:
         """What does not come because override 0 holds the spindle, if so."""
         block = spindles.get(self.expected.spindle)
         waits = self._sent_before(cycle) and self.expected.condition is not Condition.MASTER

@@ -35,8 +35,8 @@ def complete_command(context: click.Context, parameter: click.Parameter, incompl
     kind = unit_kinds_of(context).get(unit)
     if kind is None:
         return []
-    told = {command: " ".join(arguments_of(kind, unit, command)) for command in services_of(kind)}
-    return matching(told, incomplete)
+    commands = {command: " ".join(arguments_of(kind, unit, command)) for command in services_of(kind)}
+    return matching(commands, incomplete)
 
 
 def complete_word(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:

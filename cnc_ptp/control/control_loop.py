@@ -19,11 +19,10 @@ from cnc_ptp.control.friction_compensation import FrictionCompensation
 from cnc_ptp.control.lag_monitor import LagMonitor
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
-State = tuple[float, float, float, float]
-"""Position, velocity, acceleration, jerk of a setpoint."""
-Row = tuple[float, float, float, float, float, float, float, float, float, float]
+LoopRow = tuple[float, float, float, float, float, float, float, float, float, float]
 """A ControlCycle without its names, which take their time."""
 Columns = Sequence[list[float]]
 """The values of ControlCycle over many cycles."""
@@ -83,7 +82,7 @@ class ControlLoop:
             torque_per_acceleration=scaling.torque_per_acceleration,
             cycle_time=cycle_time,
         )
-        self._history: deque[State] = deque(maxlen=HISTORY)
+        self._history: deque[MotionState] = deque(maxlen=HISTORY)
         self.offset = 0.0
         """Between the counting of the encoder and the coordinates of the axis."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
@@ -123,17 +122,17 @@ class ControlLoop:
         if self.feedforward.at_rest(self._history):
             self.feedforward.settle()
 
-    def monitored(self, setpoint: State) -> tuple[float, float]:
+    def monitored(self, setpoint: MotionState) -> tuple[float, float]:
         """Following error and set velocity that the position controller has at `setpoint`, behind the delay line."""
         behind, history = self.delay_cycles, self._history
         position, velocity, _, _ = history[behind - 1] if behind and history else setpoint
         return position - self.position, velocity
 
-    def too_far(self, setpoint: State) -> bool:
+    def too_far(self, setpoint: MotionState) -> bool:
         """True when the following error of this cycle is above what P-AXIS-00172 permits; changes nothing."""
         return self._virtual is None and self.monitor.exceeded(*self.monitored(setpoint))
 
-    def why_too_far(self, setpoint: State, unit: str) -> str:
+    def why_too_far(self, setpoint: MotionState, unit: str) -> str:
         """Following error, limit and its parameter, for messages."""
         following_error, velocity = self.monitored(setpoint)
         limit = f"{round(self.monitor.limit(velocity), 4)} {unit} ({self.monitor.source(velocity)})"
@@ -151,11 +150,11 @@ class ControlLoop:
         limit = self.monitor.limit(velocities[-1 - behind] * unit)
         return lag / limit if limit else float(lag > 0.0)
 
-    def step(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
+    def step(self, setpoint: MotionState, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
         """Closes the loop for one cycle; open, the drive is to have `open_velocity` and nothing is remembered."""
         return ControlCycle(*self._cycle(setpoint, closed, open_velocity))
 
-    def follow(self, setpoints: Sequence[State], closed: bool, *, watched: bool) -> Columns:
+    def follow(self, setpoints: Sequence[MotionState], closed: bool, *, watched: bool) -> Columns:
         """`step` for many setpoints, value by value; if `watched`, up to one whose following error is too large."""
         if closed and self._plain and not self.feedforward.active:
             return self._plain_cycles(setpoints, watched)
@@ -166,7 +165,7 @@ class ControlLoop:
             rows.append(self._cycle(setpoint, closed))
         return [*map(list, zip(*rows, strict=True))] if rows else [[] for _ in ControlCycle._fields]
 
-    def _plain_cycles(self, setpoints: Sequence[State], watched: bool) -> Columns:
+    def _plain_cycles(self, setpoints: Sequence[MotionState], watched: bool) -> Columns:
         """Position control with nothing beside it: v = Kv · following error."""
         drive, monitor, offset, kv = self.drive, self.monitor, self.offset, self.kv
         step, monitored = drive.step, monitor.on
@@ -193,14 +192,14 @@ class ControlLoop:
         none = [0.0] * n
         return positions, velocities, errors, commands, none, none, none, none, torques, none
 
-    def _remember(self, setpoint: State) -> None:
+    def _remember(self, setpoint: MotionState) -> None:
         """Before the first setpoint the axis stood there."""
         if self._history:
             self._history.appendleft(setpoint)
         else:
             self._history.extend([setpoint] * HISTORY)
 
-    def _cycle(self, setpoint: State, closed: bool, open_velocity: float = 0.0) -> Row:
+    def _cycle(self, setpoint: MotionState, closed: bool, open_velocity: float = 0.0) -> LoopRow:
         drive = self.drive
         if self._virtual is not None:
             self._virtual.follow(setpoint[0] - self.offset, setpoint[1])
@@ -211,7 +210,7 @@ class ControlLoop:
         self._open(open_velocity)
         return position, velocity, setpoint[0] - position, open_velocity, 0.0, 0.0, 0.0, 0.0, torque, 0.0
 
-    def _closed_cycle(self, setpoint: State, position: float, velocity: float, torque: float) -> Row:
+    def _closed_cycle(self, setpoint: MotionState, position: float, velocity: float, torque: float) -> LoopRow:
         self._remember(setpoint)
         history = self._history
         set_position, set_velocity, _, _ = history[self.delay_cycles]

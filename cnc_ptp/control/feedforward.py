@@ -12,10 +12,9 @@ from itertools import islice
 from math import copysign, exp, floor, sqrt
 from typing import NamedTuple
 
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
 
-State = tuple[float, float, float, float]
-"""Position, velocity, acceleration, jerk of a setpoint."""
 ROUNDING = 1e-9
 """Part of a factor that is missing: it is reached."""
 EXCESS = 0.03
@@ -84,7 +83,7 @@ class Feedforward:
         self._velocity_of_torque = 1.0 / (torque_per_acceleration * kv) if torque_per_acceleration else 0.0
         self._prefilter: deque[tuple[float, float, float]] = deque(maxlen=parameters.prefilter_cycles)
         self._means = parameters.prefilter_cycles > 1
-        self._coupling = Coupling(limits, cycle_time=cycle_time, kv=kv)
+        self._coupling = SoftCoupling(limits, cycle_time=cycle_time, kv=kv)
         self._always_active = parameters.always_active
         self.velocity = self.additive_velocity = self.additive_torque = 0.0
         self.select(parameters.always_active, 100.0)
@@ -118,7 +117,7 @@ class Feedforward:
         """The axis' largest velocity where the selection waits in vain for room up to it; told once."""
         return self._coupling.take_wait()
 
-    def at_rest(self, history: deque[State]) -> bool:
+    def at_rest(self, history: deque[MotionState]) -> bool:
         """No setpoint that it has still to look at moves; `history` ends with the cycle before, newest at its left."""
         seen = islice(history, self._depth)
         return all(v == 0.0 and a == 0.0 for _, v, a, _ in seen) and not any(map(any, self._prefilter))
@@ -129,7 +128,7 @@ class Feedforward:
         self._prefilter.clear()
         self._coupling.forget()
 
-    def update(self, history: deque[State], feedback: float) -> None:
+    def update(self, history: deque[MotionState], feedback: float) -> None:
         """The values of this cycle; `history` has the newest setpoint at its left end.
 
         `feedback` is what the position controller gives in this cycle, mm/s (deg/s).
@@ -215,7 +214,7 @@ class MeanValue:
         self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
         self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
 
-    def velocity(self, history: deque[State]) -> float:
+    def velocity(self, history: deque[MotionState]) -> float:
         _, v, a, j = history[self._index]
         p, q, r = self._second
         mean = p * v + q * a + r * j
@@ -225,7 +224,7 @@ class MeanValue:
             mean += p * v + q * a + r * j
         return mean
 
-    def acceleration(self, history: deque[State]) -> float:
+    def acceleration(self, history: deque[MotionState]) -> float:
         _, _, a, j = history[self._index]
         mean = self._second[0] * a + self._second[1] * j
         if self._split:
@@ -233,7 +232,7 @@ class MeanValue:
             mean += self._first[0] * a + self._first[1] * j
         return mean
 
-    def jerk(self, history: deque[State]) -> float:
+    def jerk(self, history: deque[MotionState]) -> float:
         mean = self._second[0] * history[self._index][3]
         return mean + self._first[0] * history[self._index + 1][3] if self._split else mean
 
@@ -249,7 +248,7 @@ class MomentaryVelocity:
         self.oldest = whole + 1 if fraction else whole
         self._time = (1.0 - fraction) * cycle_time if fraction else 0.0
 
-    def velocity(self, history: deque[State]) -> float:
+    def velocity(self, history: deque[MotionState]) -> float:
         _, v, a, j = history[self.oldest]
         t = self._time
         return v + t * (a + 0.5 * t * j)
@@ -263,7 +262,7 @@ class CouplingLimits(NamedTuple):
     jerk: float
 
 
-class Coupling:
+class SoftCoupling:
     """Factor of a feedforward that is coupled in and out softly.
 
     A change of the factor pushes the velocity command: what it changes it by beside the motion itself. The push changes
@@ -282,8 +281,8 @@ class Coupling:
         "_push",
         "_quantum",
         "_reserve",
-        "_told",
         "_waited",
+        "_warned",
         "factor",
         "target",
     )
@@ -294,7 +293,7 @@ class Coupling:
         self._reserve = kv / limits.jerk
         self._push = 0.0
         self._last_command: float | None = None
-        self._waited, self._told = 0, False
+        self._waited, self._warned = 0, False
         self.factor = self.target = 0.0
 
     @property
@@ -304,13 +303,13 @@ class Coupling:
     def settle(self) -> None:
         """The factor is what was selected."""
         self.factor, self._push = self.target, 0.0
-        self._waited, self._told = 0, False
+        self._waited, self._warned = 0, False
 
     def take_wait(self) -> float | None:
         """See Feedforward.take_wait; the next one is told after the selection has come into force."""
-        if self._told or self._waited * self._cycle_time < WAITED:
+        if self._warned or self._waited * self._cycle_time < WAITED:
             return None
-        self._told = True
+        self._warned = True
         return self._limits.velocity
 
     def _note_room(self, velocity_room: float, acceleration: float) -> None:
@@ -326,7 +325,7 @@ class Coupling:
         """The velocity command of this cycle with everything, mm/s (deg/s)."""
         self._last_command = command
 
-    def step(self, feedback: float, velocity: float, torque_velocity: float, setpoint: State) -> None:
+    def step(self, feedback: float, velocity: float, torque_velocity: float, setpoint: MotionState) -> None:
         """One cycle nearer to the target.
 
         `feedback` of the position controller; `velocity` of the feedforward and its torque as a velocity, both at
@@ -360,7 +359,7 @@ class Coupling:
         push = copysign(double_way / (0.5 + sqrt(0.25 + double_way / quantum)), missing)
         return max(last - quantum, min(last + quantum, push))
 
-    def _room(self, by_velocity: float, by_torque: float, drift: float, setpoint: State) -> float:
+    def _room(self, by_velocity: float, by_torque: float, drift: float, setpoint: MotionState) -> float:
         """The largest push, mm/s² (deg/s²); without it, the velocity command changes by `drift`.
 
         A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to

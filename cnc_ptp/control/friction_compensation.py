@@ -9,9 +9,9 @@ from bisect import bisect_right
 from collections import deque
 from itertools import pairwise
 
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import FrictionParameters
 
-State = tuple[float, float, float, float]
 COUPLING_TIME = 0.1
 """Seconds in which the current comes or goes when it is switched in motion."""
 
@@ -93,7 +93,7 @@ class FrictionCompensation:
         for index in range(len(self._delayed)):
             self._delayed[index] = 0.0
 
-    def update(self, history: deque[State]) -> None:
+    def update(self, history: deque[MotionState]) -> None:
         """The current of this cycle; `history` has the newest setpoint at its left end."""
         position, velocity, _, _ = history[self._behind]
         value = 0.0
@@ -116,7 +116,7 @@ class FrictionCompensation:
         target = float(self.on)
         self._factor = min(target, self._factor + self._step) if target else max(target, self._factor - self._step)
 
-    def _note_direction(self, position: float, velocity: float, history: deque[State]) -> None:
+    def _note_direction(self, position: float, velocity: float, history: deque[MotionState]) -> None:
         """Notes where the axis has turned back: farther out than both its positions around that instant it was not.
 
         The current changes its sign there, so it may come or go.
@@ -129,7 +129,7 @@ class FrictionCompensation:
                 self._reversed_at = min(position, before) if velocity > 0.0 else max(position, before)
             self._direction = direction
 
-    def _weight(self, position: float, velocity: float, history: deque[State]) -> float:
+    def _weight(self, position: float, velocity: float, history: deque[MotionState]) -> float:
         weight = 1.0
         if self._reversed_at is not None:
             way = abs(position - self._reversed_at)
@@ -140,7 +140,7 @@ class FrictionCompensation:
         cycles = self._cycles_to_reversal(velocity, history)
         return min(weight, cycles / self._lookahead) if cycles else weight
 
-    def _cycles_to_reversal(self, velocity: float, history: deque[State]) -> int:
+    def _cycles_to_reversal(self, velocity: float, history: deque[MotionState]) -> int:
         """Cycles up to the first one that does not go on in the direction of `velocity`; 0: no reversal in sight."""
         end = 0
         for cycles in range(1, self._lookahead + 1):

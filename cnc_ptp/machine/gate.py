@@ -6,7 +6,7 @@ from collections import deque
 
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import Inputs
-from cnc_ptp.protocol.blocks import Block, CycleTick
+from cnc_ptp.protocol.blocks import CycleBlock, CycleTick
 
 
 class BlockGate:
@@ -20,14 +20,14 @@ class BlockGate:
     def __init__(self, inputs: Inputs) -> None:
         self._upstream = list(inputs.upstream)
         self._feedback = list(inputs.feedback)
-        self._blocks: dict[str, dict[int, Block]] = {name: {} for name in (*inputs.upstream, *inputs.feedback)}
+        self._blocks: dict[str, dict[int, CycleBlock]] = {name: {} for name in (*inputs.upstream, *inputs.feedback)}
         self._ticks: deque[CycleTick] = deque()
         self._next_cycle = 0
         self._closed = False
         self._last_tick_came = False
-        self._open: tuple[CycleTick, dict[str, Block]] | None = None
+        self._open: tuple[CycleTick, dict[str, CycleBlock]] | None = None
         self._master: str | None = None
-        self._master_blocks: dict[str, dict[int, Block]] = {}
+        self._master_blocks: dict[str, dict[int, CycleBlock]] = {}
         self.duplicates = 0
         """Ticks and blocks that came a second time and were not used again."""
 
@@ -47,7 +47,7 @@ class BlockGate:
             self._ticks.append(tick)
         return True
 
-    def add_block(self, source: str, block: Block) -> None:
+    def add_block(self, source: str, block: CycleBlock) -> None:
         """Takes a block of an upstream or feedback unit; blocks of dropped sources are ignored."""
         waiting = self._blocks.get(source)
         if waiting is None:
@@ -62,7 +62,7 @@ class BlockGate:
         """The axis whose blocks are needed from the open tick on; None: of no one."""
         self._master = master
 
-    def add_master_block(self, master: str, block: Block) -> None:
+    def add_master_block(self, master: str, block: CycleBlock) -> None:
         """Takes a block of an axis that is, was or will be the master; one from before the next tick is of no use."""
         if block.first_cycle >= self._needed_of_master():
             self._master_blocks.setdefault(master, {})[block.first_cycle] = block
@@ -70,7 +70,7 @@ class BlockGate:
     def _needed_of_master(self) -> int:
         return self._next_cycle if self._open is None else self._open[0].first_cycle
 
-    def _of_master(self) -> dict[int, Block]:
+    def _of_master(self) -> dict[int, CycleBlock]:
         return {} if self._master is None else self._master_blocks.get(self._master, {})
 
     def missing(self) -> list[str]:
@@ -103,7 +103,7 @@ class BlockGate:
         """True between `begin` and `complete` of a tick."""
         return self._open is not None
 
-    def begin(self) -> tuple[CycleTick, dict[str, Block]] | None:
+    def begin(self) -> tuple[CycleTick, dict[str, CycleBlock]] | None:
         """Opens the next tick: its inputs in the order of the wiring; None while something is missing."""
         if self.closed or self._open is not None or self.missing():
             return None
@@ -115,7 +115,7 @@ class BlockGate:
         self._open = tick, inputs
         return self._open
 
-    def complete(self) -> tuple[CycleTick, dict[str, Block]] | None:
+    def complete(self) -> tuple[CycleTick, dict[str, CycleBlock]] | None:
         """Closes the open tick, with the block of the master among the inputs; None while that is missing."""
         if self._open is None or self.missing():
             return None

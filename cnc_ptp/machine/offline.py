@@ -8,7 +8,7 @@ from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import PLC, Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import at_rest
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.protocol.unit import Unit
 
 STUCK_TIME = 10.0
@@ -20,7 +20,7 @@ class Output:
 
     __slots__ = ("block", "events", "name", "records")
 
-    def __init__(self, unit: Unit, block: Block) -> None:
+    def __init__(self, unit: Unit, block: CycleBlock) -> None:
         self.name = unit.name
         self.block = block
         self.events: list[Event] = unit.take_events()
@@ -39,7 +39,7 @@ class OfflineMachine:
         watchdog_cycles = machine.watchdog_ms * 1000 // machine.cycle_time_us
         self._wiring: Mapping[str, Inputs] = wiring(machine)
         self._runners = {name: UnitRunner(unit, watchdog_cycles=watchdog_cycles) for name, unit in units.items()}
-        self._blocks: dict[str, Block] = {}
+        self._blocks: dict[str, CycleBlock] = {}
         self._first_cycle = 0
         self._stuck_limit = round(STUCK_TIME * 1e6 / machine.cycle_time_us)
         self._stuck_cycles = 0
@@ -63,7 +63,7 @@ class OfflineMachine:
         """One block of every unit. A coupled axis comes after its master, whatever the order of the machine is."""
         tick = CycleTick(self._first_cycle, self._count)
         before, self._blocks = self._blocks, {}
-        waiting: dict[str, Mapping[str, Block]] = {}
+        waiting: dict[str, Mapping[str, CycleBlock]] = {}
         for name, runner in self._runners.items():
             needs = self._wiring[name]
             inputs = {unit: self._blocks[unit] for unit in needs.upstream if unit in self._blocks}
@@ -79,7 +79,7 @@ class OfflineMachine:
         self._first_cycle += self._count
         return {name: Output(runner.unit, self._blocks[name]) for name, runner in self._runners.items()}
 
-    def _compute_slave(self, tick: CycleTick, name: str, waiting: Mapping[str, Mapping[str, Block]]) -> None:
+    def _compute_slave(self, tick: CycleTick, name: str, waiting: Mapping[str, Mapping[str, CycleBlock]]) -> None:
         """After its master. Couplings never run in a circle: the PLC says to each what is above its master."""
         master = self._runners[name].master
         if name in self._blocks or master is None:

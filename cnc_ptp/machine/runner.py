@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, CycleTick, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import Unit
 
@@ -29,7 +29,7 @@ class UnitRunner:
         """A command from a service or a watchdog; acts at the first cycle of the next block."""
         return self.unit.command(command, self.next_cycle)
 
-    def run(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+    def run(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
         """Applies the commands that `inputs` carry for this unit, then computes the block."""
         self.apply(tick, inputs)
         return self.compute(tick, inputs)
@@ -39,14 +39,14 @@ class UnitRunner:
         """The axis or spindle whose block of the same tick `compute` needs besides; known after the commands."""
         return None if self.unit.master in self.unit.lost else self.unit.master
 
-    def apply(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
+    def apply(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> None:
         """Applies the commands that `inputs` carry for this unit."""
         self.next_cycle = tick.first_cycle
         for command in commands_for(self.unit.name, inputs):
             self.unit.command(command, tick.first_cycle)
         self._watch_life_sign(tick, inputs)
 
-    def compute(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+    def compute(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
         """Computes the block; all commands for it have been given.
 
         Lost sources stay lost; a unit without a clock is alone.
@@ -59,7 +59,7 @@ class UnitRunner:
         self._note_state(block)
         return block
 
-    def _note_state(self, block: Block) -> None:
+    def _note_state(self, block: CycleBlock) -> None:
         """An event when the unit ends the block in another state than the block before."""
         if isinstance(block, PlcBlock) or block.state[-1] == self._state:
             return
@@ -72,7 +72,7 @@ class UnitRunner:
         line = block.line[index] if isinstance(block, ChannelBlock) else 0
         self.unit.event(block.first_cycle + index, Severity.INFO, 0, text, line)
 
-    def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, Block]) -> None:
+    def _watch_life_sign(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> None:
         plc = inputs.get(PLC)
         if not isinstance(plc, PlcBlock):
             return
@@ -83,7 +83,7 @@ class UnitRunner:
             self.unit.command(Command(self.unit.name, "upstream_lost", {"source": PLC}), tick.first_cycle)
 
 
-def commands_for(name: str, inputs: Mapping[str, Block]) -> Iterator[Command]:
+def commands_for(name: str, inputs: Mapping[str, CycleBlock]) -> Iterator[Command]:
     """The commands for unit `name` that travel in the blocks of this tick, in the order of sender and sending."""
     for block in inputs.values():
         if isinstance(block, (PlcBlock, ChannelBlock)):

@@ -17,13 +17,13 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Row = tuple[float, float, float, float, float]
+Segment = tuple[float, float, float, float, float]
 """Segment start time, position, velocity, acceleration, jerk."""
 
 Piece = tuple[float, float, float]
 """Segment duration, acceleration at its start, jerk: a segment before position and velocity are known."""
 
-State = tuple[float, float, float, float]
+MotionState = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk."""
 
 
@@ -38,13 +38,13 @@ class Profile:
 
     __slots__ = ("_columns", "duration", "end", "rows", "starts")
 
-    rows: tuple[Row, ...]
+    rows: tuple[Segment, ...]
     starts: tuple[float, ...]
     duration: float
     end: tuple[float, float, float]
     _columns: NDArray[np.float64] | None
 
-    def __init__(self, rows: Iterable[Row]) -> None:
+    def __init__(self, rows: Iterable[Segment]) -> None:
         keep = object.__setattr__
         table = tuple(rows)
         last = table[-1]
@@ -54,7 +54,7 @@ class Profile:
         keep(self, "end", last[1:4])
         keep(self, "_columns", None)
 
-    def state_at(self, t: float) -> State:
+    def state_at(self, t: float) -> MotionState:
         """(p, v, a, j) at t seconds after the start; before the start as at 0, after the end on at the end velocity."""
         if t < 0.0:
             t = 0.0
@@ -96,12 +96,12 @@ class Profile:
         return f"Profile({len(self.rows) - 1} segments, {self.duration!r} s, end {self.end!r})"
 
 
-def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[list[Row], float, float, float]:
+def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[list[Segment], float, float, float]:
     """String pieces together from time t, position p and velocity v: the rows, and t, p, v after the last piece.
 
     Pieces without duration leave no row.
     """
-    rows: list[Row] = []
+    rows: list[Segment] = []
     for d, a, j in pieces:
         if d > 0.0:
             rows.append((t, p, v, a, j))
@@ -111,19 +111,19 @@ def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[li
     return rows, t, p, v
 
 
-def integrate_back(t: float, pieces: Sequence[Piece]) -> tuple[list[Row], float]:
+def integrate_back(t: float, pieces: Sequence[Piece]) -> tuple[list[Segment], float]:
     """String pieces together from time t so that they end at rest at position 0: the rows, and t after the last piece.
 
     Pieces without duration leave no row.
     """
-    pieces_back: list[tuple[float, Row]] = []
+    pieces_back: list[tuple[float, Segment]] = []
     p = v = 0.0
     for d, a, j in reversed(pieces):
         if d > 0.0:
             v -= d * (a + d * (0.5 * j))
             p -= d * (v + d * (0.5 * a + d * (j / 6.0)))
             pieces_back.append((d, (0.0, p, v, a, j)))
-    rows: list[Row] = []
+    rows: list[Segment] = []
     for d, (_, p, v, a, j) in reversed(pieces_back):
         rows.append((t, p, v, a, j))
         t += d

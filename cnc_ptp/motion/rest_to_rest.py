@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cbrt, sqrt
 
 from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limit, check_limits, check_state
-from cnc_ptp.motion.profile import Profile, Row
+from cnc_ptp.motion.profile import Profile, Segment
 
 
 def reachable_velocity(distance: float, acceleration: float, jerk: float) -> float:
@@ -73,7 +73,7 @@ def rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
     s = 1.0 if target > start else -1.0
     sv, sj = s * velocity, s * jerk
     a, b = s * up_top, s * down_top
-    rows: list[Row] = [(0.0, start, 0.0, 0.0, sj)]
+    rows: list[Segment] = [(0.0, start, 0.0, 0.0, sj)]
     t = up
     v = 0.5 * a * up
     p = start + sj * up * up * up / 6.0

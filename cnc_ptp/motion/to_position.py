@@ -18,7 +18,7 @@ from __future__ import annotations
 from math import sqrt
 
 from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
-from cnc_ptp.motion.profile import Piece, Profile, Row, integrate, integrate_back
+from cnc_ptp.motion.profile import Piece, Profile, Segment, integrate, integrate_back
 from cnc_ptp.motion.quartic import largest_root
 from cnc_ptp.motion.ramp import brake, brake_term, ramp, stop_way
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
@@ -84,7 +84,7 @@ def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail:
     """
     first, t, _, _ = integrate(0.0, 0.0, v, head)
     last, t = integrate_back(t, tail)
-    rows: list[Row]
+    rows: list[Segment]
     if s > 0.0:
         rows = [(t0, p + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in first]
         rows += [(t0, target + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in last]

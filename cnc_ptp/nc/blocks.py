@@ -10,7 +10,7 @@ from cnc_ptp.nc import compensation, faults, feedforward
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.hash_commands import hash_block
 from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, normalise, tokens
-from cnc_ptp.nc.program import Block, GCode, MCode, SpindleWords
+from cnc_ptp.nc.program import GCode, MCode, NcBlock, SpindleWords
 from cnc_ptp.nc.spindle_words import spindle_bracket
 from cnc_ptp.nc.vocabulary import (
     AXIS_LETTERS,
@@ -29,7 +29,7 @@ _G_BY_TEXT = {
 }
 
 
-def plain_block(file: str, line: int, text: str) -> Block | None:
+def plain_block(file: str, line: int, text: str) -> NcBlock | None:
     """Fast way for a line of nothing but known letters with numbers and G codes; None if it needs a careful look."""
     parts = PLAIN_WORDS.split(text.upper())
     if len(parts) == 1 or "".join(parts[::3]) or not text.isascii():
@@ -55,10 +55,10 @@ def plain_block(file: str, line: int, text: str) -> Block | None:
         else:
             return None
     source = Source(file, line, int(number_text) if number_text else 0, text)
-    return Block(source, codes, words, (), (), None, "", "", 0, functions)
+    return NcBlock(source, codes, words, (), (), None, "", "", 0, functions)
 
 
-def careful_block(source: Source) -> Block | None:
+def careful_block(source: Source) -> NcBlock | None:
     """Any line: comments, M functions, names, brackets, calls; raises with the column. None without words."""
     line = normalise(source)
     skip, begin = _skip_level(line, source)
@@ -200,12 +200,12 @@ class _BlockWords:
             raise faults.CALL_AND_END.at(self.source, token.column, word=ending.name)
         self.call = token.name
 
-    def block(self, skip: int) -> Block:
+    def block(self, skip: int) -> NcBlock:
         """The finished block."""
         functions = bool(self.m or self.spindles or FUNCTION_WORDS & self.words.keys())
         functions = functions or any(code.spindle for code in self.codes)
         flow = next((code.flow for code in self.m if code.flow), "")
-        return Block(
+        return NcBlock(
             self.source,
             tuple(self.codes),
             self.words,

@@ -3,12 +3,12 @@
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleCommand, SpindleFeedforward, SpindleFunction
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel, ModalState, Spindle
+from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Spindle
 from cnc_ptp.nc.spindles import names
 
 
 def bracketed_controls(
-    channel: Channel, state: ModalState, block: Block, before: tuple[Function, ...]
+    channel: Channel, state: ModalState, block: NcBlock, before: tuple[Function, ...]
 ) -> tuple[SpindleFeedforward | CompensationSwitch, ...]:
     """The control functions in brackets, in their order; `before`: the block's other functions.
 
@@ -31,7 +31,7 @@ def bracketed_controls(
     return tuple(controls)
 
 
-def _require_unit(block: Block, control: SpindleFeedforward, spindle: Spindle) -> None:
+def _require_unit(block: NcBlock, control: SpindleFeedforward, spindle: Spindle) -> None:
     """Raises 21202 for a spindle that the PLC moves: it has no position controller here (P-CHAN-00069)."""
     if spindle.plc_control:
         word = "G136" if control.on is None else "G135" if control.on else "G137"
@@ -40,7 +40,7 @@ def _require_unit(block: Block, control: SpindleFeedforward, spindle: Spindle) -
 
 
 def _check(
-    block: Block, name: str, known: tuple[str, ...], used: set[str], unknown: faults.Fault, twice: faults.Fault
+    block: NcBlock, name: str, known: tuple[str, ...], used: set[str], unknown: faults.Fault, twice: faults.Fault
 ) -> None:
     """Raises for a name that is not `known` or `used` already; notes it."""
     column = column_of(block.source, name)

@@ -10,7 +10,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
 from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedforward, number
 from cnc_ptp.nc.lexer import Token, column_of
-from cnc_ptp.nc.program import Block, Channel, GCode, ModalState
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
 ON, WEIGHTS, OFF = 135, 136, 137
 SELECTION = "feedforward"
@@ -20,7 +20,7 @@ _WORD = re.compile(r"\s*G\s*=?\s*0*(13[567])(?!\d)(?:\s*=\s*([^\sA-Z]*))?", re.A
 _NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
 
 
-def block_function(channel: Channel, state: ModalState, block: Block, code: GCode) -> tuple[Function, ...]:
+def block_function(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
     """G135, G136 and G137 of a block as one function for the channel's axes, made where the first of them stands.
 
     With G136 the axis words are weights, so no path function can stand in the block (21092). Raises 21090, 21091 for
@@ -35,7 +35,7 @@ def block_function(channel: Channel, state: ModalState, block: Block, code: GCod
     return (AxisFeedforward(None if selected is None else selected == ON, weights),)
 
 
-def _weights(channel: Channel, state: ModalState, block: Block, code: GCode) -> tuple[tuple[str, float], ...]:
+def _weights(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[tuple[str, float], ...]:
     path = next((other for other in block.codes if other.motion is not None), None)
     if path is not None:
         raise faults.WEIGHTS_AND_MOTION.at(block.source, column_of(block.source, path.name), g=path.name)

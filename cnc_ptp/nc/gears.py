@@ -3,7 +3,7 @@
 from cnc_ptp.nc import spindle_faults
 from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Spindle
+from cnc_ptp.nc.program import NcBlock, Spindle
 
 FIRST_M = 40
 GEAR_M = range(FIRST_M, FIRST_M + 6)
@@ -31,7 +31,9 @@ def search(spindle: Spindle, speed_rpm: float) -> int:
     return next((stage for stage in order if holds(spindle, stage, speed_rpm)), 0)
 
 
-def stage_for(spindle: Spindle, active: int, programmed: int, speed_rpm: float | None, block: Block, name: str) -> int:
+def stage_for(
+    spindle: Spindle, active: int, programmed: int, speed_rpm: float | None, block: NcBlock, name: str
+) -> int:
     """The stage for a speed: the programmed one, else the active one while it fits, else (automatic) the one found.
 
     `programmed` is 0 without M40 to M45, `speed_rpm` None without a speed; `name` is what the program calls it.
@@ -63,7 +65,7 @@ def stage_for(spindle: Spindle, active: int, programmed: int, speed_rpm: float |
     return found
 
 
-def _require_fit(spindle: Spindle, stage: int, speed_rpm: float | None, block: Block, name: str) -> None:
+def _require_fit(spindle: Spindle, stage: int, speed_rpm: float | None, block: NcBlock, name: str) -> None:
     low, high = speed_range(spindle, stage)
     column = column_of(block.source, f"M{m_of(stage)}")
     if high == 0.0:

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
 from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Source
-from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState
+from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
 
-Run = Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]
+Run = Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]
 
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*", re.ASCII)
 _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCII)
@@ -21,7 +21,7 @@ _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT says how much may be computed for the use of the jerk; here it is always used in full."""
 
 
-def hash_block(line: str, source: Source, begin: int, skip: int) -> Block | None:
+def hash_block(line: str, source: Source, begin: int, skip: int) -> NcBlock | None:
     """The block of a normalised line with a command; None if no known command stands in it (the tokens say why)."""
     found = _COMMAND.search(line, begin)
     if found is None:
@@ -40,7 +40,7 @@ def hash_block(line: str, source: Source, begin: int, skip: int) -> Block | None
         raise spindle_faults.COMMAND_NOT_ALONE.at(source, rest.start(2) + 1, command=shown, word=rest[2].strip())
     arguments = None if rest[1] is None else split_arguments(rest[1])
     column = found.start() + 1
-    return Block(source, (), {}, skip=skip, command=HashCommand(name, arguments, column, COMMANDS[name]))
+    return NcBlock(source, (), {}, skip=skip, command=HashCommand(name, arguments, column, COMMANDS[name]))
 
 
 def split_arguments(text: str) -> tuple[str, ...]:
@@ -48,7 +48,7 @@ def split_arguments(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(","))
 
 
-def main_spindle(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def main_spindle(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#MAIN SPINDLE [name or logical axis number]; without one, that of P-CHAN-00051 is the main spindle again."""
     if not channel.table.spindles:
         raise faults.NO_SPINDLE.at(block.source, command.column, word="#MAIN SPINDLE")
@@ -68,7 +68,7 @@ def main_spindle(channel: Channel, state: ModalState, block: Block, command: Has
     return ()
 
 
-def _spindle_key(channel: Channel, state: ModalState, block: Block, command: HashCommand, argument: str) -> str:
+def _spindle_key(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand, argument: str) -> str:
     """A spindle by its own name, the main one also by the name of the main spindle, or by number."""
     spindles = channel.table.spindles
     if argument.isdecimal():
@@ -87,7 +87,7 @@ def _spindle_key(channel: Channel, state: ModalState, block: Block, command: Has
 
 
 def explicit_synchronisation(
-    channel: Channel, state: ModalState, block: Block, command: HashCommand
+    channel: Channel, state: ModalState, block: NcBlock, command: HashCommand
 ) -> tuple[Function, ...]:
     """#EXPL SYN."""
     if command.arguments is not None:
@@ -95,7 +95,7 @@ def explicit_synchronisation(
     return (ExplicitSynchronisation(),)
 
 
-def slope(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def slope(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#SLOPE [TYPE=STEP], [TYPE=TRAPEZ]: for the motions of the blocks after it."""
     words = _SLOPE.fullmatch(",".join(command.arguments or ()))
     available = " or ".join(f"[TYPE={name}]" for name in (STEP, TRAPEZ))
@@ -108,7 +108,7 @@ def slope(channel: Channel, state: ModalState, block: Block, command: HashComman
     return ()
 
 
-def default_slope(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def default_slope(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#SLOPE DEFAULT: that of P-CHAN-00071 again."""
     if command.arguments is not None:
         raise arguments_fault(block, command, "without arguments")
@@ -116,7 +116,7 @@ def default_slope(channel: Channel, state: ModalState, block: Block, command: Ha
     return ()
 
 
-def arguments_fault(block: Block, command: HashCommand, syntax: str) -> faults.ProgramError:
+def arguments_fault(block: NcBlock, command: HashCommand, syntax: str) -> faults.ProgramError:
     """The error for a command that is written otherwise."""
     return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
 

@@ -10,7 +10,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Block, Channel, ModalState, Program, SpindleTable
+from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Program, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import G_CODES
@@ -66,9 +66,9 @@ def interpret(
             yield canonical
 
 
-def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[Block]:
+def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[NcBlock]:
     """The blocks in the order of execution: calls entered, skipped blocks left out, up to the program end."""
-    callers: list[Iterator[Block]] = []
+    callers: list[Iterator[NcBlock]] = []
     blocks = iter(program.main)
     while True:
         for block in blocks:
@@ -94,13 +94,13 @@ def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[Bl
             blocks = callers.pop()
 
 
-def _too_deep(block: Block, call_depth: int) -> ProgramError:
+def _too_deep(block: NcBlock, call_depth: int) -> ProgramError:
     column = column_of(block.source, block.call)
     return faults.CALL_DEPTH.at(block.source, column, name=block.call, depth=call_depth + 1, limit=call_depth)
 
 
 def _resolve(
-    channel: Channel, state: ModalState, block: Block, check_target: CheckTarget | None
+    channel: Channel, state: ModalState, block: NcBlock, check_target: CheckTarget | None
 ) -> CanonicalBlock | None:
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.error is not None:

@@ -10,7 +10,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel, GCode, ModalState
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
 
 MM_PER_MIN = 60.0
@@ -30,7 +30,7 @@ PLANES = {
 }
 
 
-def target_of(channel: Channel, state: ModalState, block: Block, code: GCode) -> list[float] | None:
+def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> list[float] | None:
     """Target of all axes (G90 absolute, G91 relative), None if the block names no axis; takes F into the state."""
     target: list[float] | None = None
     axis_index = channel.axis_index
@@ -50,20 +50,20 @@ def target_of(channel: Channel, state: ModalState, block: Block, code: GCode) ->
     return target
 
 
-def _unused(channel: Channel, block: Block, code: GCode, word: str) -> faults.ProgramError:
+def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
     column = column_of(block.source, word)
     if word in "IJKR":
         return faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
     return faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
 
 
-def rapid(channel: Channel, state: ModalState, block: Block, code: GCode) -> LinearMove | None:
+def rapid(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove | None:
     """G00: straight to the target at rapid speed."""
     target = target_of(channel, state, block, code)
     return None if target is None else LinearMove(tuple(target), True, 0.0)
 
 
-def straight(channel: Channel, state: ModalState, block: Block, code: GCode) -> LinearMove | None:
+def straight(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove | None:
     """G01: straight to the target at the feed."""
     target = target_of(channel, state, block, code)
     if target is None:
@@ -73,11 +73,11 @@ def straight(channel: Channel, state: ModalState, block: Block, code: GCode) -> 
     return LinearMove(tuple(target), False, state.feed)
 
 
-def _no_feed(block: Block, code: GCode) -> faults.ProgramError:
+def _no_feed(block: NcBlock, code: GCode) -> faults.ProgramError:
     return faults.FEED_MISSING.at(block.source, column_of(block.source, code.name), g=code.name)
 
 
-def circular(channel: Channel, state: ModalState, block: Block, code: GCode) -> CircularMove | None:
+def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> CircularMove | None:
     """G02, G03: arc in the active plane by centre (I, J, K) or radius (R, kept until the next R).
 
     Target equal to the start: full circle. The axes outside the plane move linearly alongside.
@@ -100,7 +100,7 @@ def circular(channel: Channel, state: ModalState, block: Block, code: GCode) -> 
 class _Arc:
     """One arc while it is being resolved: start and target in the plane, both as points."""
 
-    def __init__(self, channel: Channel, state: ModalState, block: Block, code: GCode, target: list[float]) -> None:
+    def __init__(self, channel: Channel, state: ModalState, block: NcBlock, code: GCode, target: list[float]) -> None:
         self.channel, self.state, self.block, self.code, self.target = channel, state, block, code, target
         self.plane = PLANES[state.plane]
         self.indices = self._indices()
@@ -189,7 +189,7 @@ class _Arc:
         return CircularMove(tuple(self.target), centre, self.indices, radius, sweep, self.state.feed)
 
 
-def dwell(channel: Channel, state: ModalState, block: Block, code: GCode) -> Dwell:
+def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Dwell:
     """G04, alone in its block: seconds as a bare number, by the first main axis or F; revolutions by S."""
     times = {word: value for word, value in block.words.items() if word in ("F", "S", *channel.axes[:1])}
     others = [word for word in block.words if word not in times]
@@ -209,7 +209,7 @@ def dwell(channel: Channel, state: ModalState, block: Block, code: GCode) -> Dwe
     return Dwell(seconds)
 
 
-def _seconds(channel: Channel, state: ModalState, block: Block, times: dict[str, float]) -> float:
+def _seconds(channel: Channel, state: ModalState, block: NcBlock, times: dict[str, float]) -> float:
     word, value = next(iter(times.items()))
     if word != "S":
         return value

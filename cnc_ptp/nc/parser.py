@@ -12,7 +12,7 @@ from cnc_ptp.nc.blocks import careful_block, plain_block
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.lexer import column_of, normalise
-from cnc_ptp.nc.program import Block, Program
+from cnc_ptp.nc.program import NcBlock, Program
 
 _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
 
@@ -39,7 +39,7 @@ class _Section:
 
     def __init__(self, kind: str, name: str, source: Source) -> None:
         self.kind, self.name, self.source = kind, name, source
-        self.blocks: list[Block] = []
+        self.blocks: list[NcBlock] = []
 
     def end_error(self) -> ProgramError | None:
         """Error if no block ends this program (skippable blocks do not count)."""
@@ -78,7 +78,7 @@ class _Reader:
                     block = careful_block(source)
             except ProgramError as error:
                 self.errors.append(error)
-                block = Block(source, (), {}, error=error)
+                block = NcBlock(source, (), {}, error=error)
         if block is not None:
             if self.current is None:
                 self.current = self._section("main program", "", block.source)

@@ -21,11 +21,11 @@ class GCode(NamedTuple):
     number: int
     group: str
     select: "Callable[[ModalState], None] | None" = None
-    motion: "Callable[[Channel, ModalState, Block, GCode], Motion | None] | None" = None
+    motion: "Callable[[Channel, ModalState, NcBlock, GCode], Motion | None] | None" = None
     modal: bool = True
     words: frozenset[str] = frozenset()
     own_words: bool = False
-    function: "Callable[[Channel, ModalState, Block, GCode], tuple[Function, ...]] | None" = None
+    function: "Callable[[Channel, ModalState, NcBlock, GCode], tuple[Function, ...]] | None" = None
     takes_axes: bool = False
     spindle: bool = False
 
@@ -44,7 +44,7 @@ class MCode(NamedTuple):
     number: int
     group: str
     flow: str
-    handler: "Callable[[Channel, ModalState, Block, MCode], Function] | None"
+    handler: "Callable[[Channel, ModalState, NcBlock, MCode], Function] | None"
 
     @property
     def name(self) -> str:
@@ -121,7 +121,7 @@ class SpindleTable(NamedTuple):
     link_groups: int = 4
 
 
-class Block(NamedTuple):
+class NcBlock(NamedTuple):
     """One program line in words, not yet interpreted.
 
     `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `call` the
@@ -151,7 +151,7 @@ class HashCommand(NamedTuple):
     name: str
     arguments: tuple[str, ...] | None
     column: int
-    run: "Callable[[Channel, ModalState, Block, HashCommand], tuple[Function, ...]]"
+    run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
 class Program(NamedTuple):
@@ -159,8 +159,8 @@ class Program(NamedTuple):
 
     file: str
     name: str
-    main: tuple[Block, ...]
-    subroutines: dict[str, tuple[Block, ...]]
+    main: tuple[NcBlock, ...]
+    subroutines: dict[str, tuple[NcBlock, ...]]
 
 
 class Channel(NamedTuple):

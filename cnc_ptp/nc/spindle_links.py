@@ -12,7 +12,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
-from cnc_ptp.nc.program import Block, Channel, HashCommand, ModalState, Pair, Pairs, Spindle
+from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock, Pair, Pairs, Spindle
 from cnc_ptp.nc.spindles import current_main, name_of, names
 from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted
 
@@ -23,7 +23,7 @@ _NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
 class _Command:
     """One #AX LINK command while it is carried out."""
 
-    def __init__(self, channel: Channel, state: ModalState, block: Block, command: HashCommand) -> None:
+    def __init__(self, channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> None:
         self.channel, self.state, self.block, self.command = channel, state, block, command
 
     def fault(self, fault: Fault, **values: Value) -> ProgramError:
@@ -137,7 +137,7 @@ class _Command:
             raise self.fault(spindle_faults.MASTER_FOLLOWS, spindle=self.called(master), group=group)
 
 
-def define(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def define(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#SET AX LINK [group, slave=master, num, den, ...]: a group with its pairs; an active group stays as it is."""
     link = _Command(channel, state, block, command)
     arguments = command.arguments or ()
@@ -154,7 +154,7 @@ def define(channel: Channel, state: ModalState, block: Block, command: HashComma
     return ()
 
 
-def enable(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def enable(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#ENABLE AX LINK [group]: from now on the slaves get what their masters get; without a number group 0."""
     link = _Command(channel, state, block, command)
     group = _optional_group(link, 0)
@@ -168,7 +168,7 @@ def enable(channel: Channel, state: ModalState, block: Block, command: HashComma
     return tuple(SpindleLink(pair.slave, pair.master, True, pair.num, pair.den) for pair in pairs)
 
 
-def disable(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def disable(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#DISABLE AX LINK [group]: ends a coupling; without a number the one that was enabled last."""
     link = _Command(channel, state, block, command)
     active = state.spindle.active
@@ -179,7 +179,7 @@ def disable(channel: Channel, state: ModalState, block: Block, command: HashComm
     return _end(state, (group,))
 
 
-def disable_all(channel: Channel, state: ModalState, block: Block, command: HashCommand) -> tuple[Function, ...]:
+def disable_all(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#AX LINK OFF ALL: ends all couplings."""
     if command.arguments is not None:
         raise _Command(channel, state, block, command).syntax("")
@@ -191,7 +191,7 @@ def end_of_links(state: ModalState) -> tuple[Function, ...]:
     return _end(state, state.spindle.active)
 
 
-def check_main(channel: Channel, state: ModalState, block: Block, command: HashCommand, key: str) -> None:
+def check_main(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand, key: str) -> None:
     """A spindle that follows another one cannot become the main spindle. Raises ProgramError 21347."""
     slaves = [pair.slave for group in state.spindle.active for pair in state.spindle.links[group]]
     if key in slaves:

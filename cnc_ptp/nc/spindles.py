@@ -13,7 +13,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
-from cnc_ptp.nc.program import Block, Channel, GCode, ModalState, Pair, Spindle, SpindleTable, SpindleWords
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
 from cnc_ptp.parameters.units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
@@ -30,7 +30,7 @@ def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
     return SpindleTable(tuple(Spindle(name, name) for name in spindles), spindles[0] if spindles else "S")
 
 
-def require_spindle(channel: Channel, block: Block, word: str) -> None:
+def require_spindle(channel: Channel, block: NcBlock, word: str) -> None:
     """Raises ProgramError 21548 in a channel without spindles: `word` needs the main spindle."""
     if not channel.table.spindles:
         raise faults.NO_SPINDLE.at(block.source, column_of(block.source, word), word=word)
@@ -56,7 +56,7 @@ def name_of(channel: Channel, state: ModalState, key: str) -> str:
     return next(name for name, spindle in names(channel, state).items() if spindle.key == key)
 
 
-def homing(channel: Channel, state: ModalState, block: Block, code: GCode) -> None:
+def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """G74 moves no axis; which spindles it homes, `spindle_functions` says."""
     for word in block.words:
         if word not in FUNCTION_WORDS:
@@ -67,7 +67,7 @@ def homing(channel: Channel, state: ModalState, block: Block, code: GCode) -> No
         raise spindle_faults.HOMING_WITHOUT_SPINDLE.at(block.source, column, main=main)
 
 
-def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list[Function]:
+def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> list[Function]:
     """The functions of all spindles of a block, those of the main spindle first."""
     functions: list[Function] = []
     used: set[str] = set()
@@ -87,7 +87,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: Block) -> list
     return functions
 
 
-def _words(channel: Channel, state: ModalState, block: Block) -> Iterator[tuple[SpindleWords, str]]:
+def _words(channel: Channel, state: ModalState, block: NcBlock) -> Iterator[tuple[SpindleWords, str]]:
     """The words of each spindle with the word that errors point at; DIN words together as those of the main spindle."""
     main_name = channel.table.main_name
     own = [words for words in block.spindles if words.din and words.name == main_name]
@@ -107,7 +107,7 @@ def _words(channel: Channel, state: ModalState, block: Block) -> Iterator[tuple[
             yield others, others.name
 
 
-def _with_values(block: Block, words: SpindleWords, own: list[SpindleWords]) -> SpindleWords:
+def _with_values(block: NcBlock, words: SpindleWords, own: list[SpindleWords]) -> SpindleWords:
     """Speed and position of the main spindle: S word, `SPINDLE=1000`, `S.POS=90`."""
     speeds = [block.words["S"]] if "S" in block.words and not words.homing else []
     speeds += [other.speed_rpm for other in own if other.speed_rpm is not None]
@@ -122,7 +122,7 @@ def _with_values(block: Block, words: SpindleWords, own: list[SpindleWords]) -> 
     return words._replace(speed_rpm=speed, position_deg=position)
 
 
-def _named(channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str) -> Spindle:
+def _named(channel: Channel, state: ModalState, block: NcBlock, words: SpindleWords, place: str) -> Spindle:
     known = names(channel, state)
     spindle = known.get(words.name)
     if spindle is None:
@@ -136,14 +136,14 @@ def _named(channel: Channel, state: ModalState, block: Block, words: SpindleWord
     return spindle
 
 
-def _require_no_position(block: Block, words: SpindleWords) -> None:
+def _require_no_position(block: NcBlock, words: SpindleWords) -> None:
     if words.position_deg is not None:
         column = column_of(block.source, f"{words.name}.POS")
         raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
 
 
 def _check_coupling(
-    channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, spindle: Spindle
+    channel: Channel, state: ModalState, block: NcBlock, words: SpindleWords, place: str, spindle: Spindle
 ) -> None:
     for group in state.spindle.active:
         for slave, master, _, _ in state.spindle.links[group]:
@@ -184,7 +184,7 @@ def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> Spindle
     return function._replace(spindle=pair.slave, m=m, **values)
 
 
-def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, function: Function) -> None:
+def _check_speed(channel: Channel, state: ModalState, block: NcBlock, place: str, function: Function) -> None:
     """Raises ProgramError 22010 for a speed that the gear of the spindle does not permit (P-AXIS-00212)."""
     if not isinstance(function, SpindleFunction) or function.speed_rpm is None:
         return
@@ -199,7 +199,7 @@ def _check_speed(channel: Channel, state: ModalState, block: Block, place: str, 
 
 
 def _check_position(
-    channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, function: Function
+    channel: Channel, state: ModalState, block: NcBlock, words: SpindleWords, place: str, function: Function
 ) -> None:
     """Raises ProgramError 21083 for a position beyond the range of the lists, at its word where the block has one."""
     if not isinstance(function, SpindleFunction) or abs(function.position_deg or 0.0) <= LARGEST_POSITION:
@@ -231,7 +231,7 @@ class _SpindleBlock:
     """The words of one spindle in one block while they become functions."""
 
     def __init__(
-        self, channel: Channel, state: ModalState, block: Block, words: SpindleWords, place: str, spindle: Spindle
+        self, channel: Channel, state: ModalState, block: NcBlock, words: SpindleWords, place: str, spindle: Spindle
     ) -> None:
         self.channel, self.state, self.block, self.words, self.place = channel, state, block, words, place
         self.spindle, self.key = spindle, spindle.key

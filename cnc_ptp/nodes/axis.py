@@ -12,7 +12,7 @@ from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 
 MOVING = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.STOPPING)
 NOT_DONE = StatusBit.HAS_BEEN_STOPPED | StatusBit.ERROR
@@ -45,12 +45,12 @@ class AxisNode(UnitNode):
     def _start_move(self, goal: Any) -> list[Command]:
         return [Command(self.unit.name, "move_absolute", self.arguments("move_absolute", goal))]
 
-    def _move_feedback(self, block: Block, feedback: Any) -> None:
+    def _move_feedback(self, block: CycleBlock, feedback: Any) -> None:
         if isinstance(block, AxisBlock) and isinstance(self.unit, AxisUnit):
             feedback.set_position, feedback.state = block.set_position[-1], block.state[-1]
             feedback.remaining_distance = self.unit.remaining_distance(block.first_cycle + block.count)
 
-    def _move_result(self, block: Block, result: Any) -> bool | None:
+    def _move_result(self, block: CycleBlock, result: Any) -> bool | None:
         """The move has ended when the axis has neither job nor motion; in full unless it was stopped or has an error.
 
         Where it ends may be changed on the way: by a new target, a compensation, external setpoints.
@@ -65,7 +65,7 @@ class AxisNode(UnitNode):
     def run_ended(self) -> None:
         self._move_job.end()
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         if isinstance(block, AxisBlock):
             self._move_job.after_block(block)
 

@@ -65,7 +65,7 @@ class ClockNode(Node):
         self._started_at: float | None = None
         self._start_ns = 0
         self._ended_at: float | None = None
-        self._said = 0.0
+        self._heartbeat_at = 0.0
         self._publisher = self.create_publisher(msg.CycleTick, TICK, BLOCKS)
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, REPORT, self._on_report, BLOCKS)
@@ -94,8 +94,8 @@ class ClockNode(Node):
             self._drop_silent_nodes()
             if not self._open:
                 self._tick(0)
-            elif time.monotonic() - self._said > self._watchdog / 4.0:
-                self._say()
+            elif time.monotonic() - self._heartbeat_at > self._watchdog / 4.0:
+                self._publish_heartbeat()
         else:
             while self._ended_at is None and time.monotonic() >= self._due_at():
                 self._tick(int(self._due_at() * 1e9))
@@ -139,11 +139,11 @@ class ClockNode(Node):
         tick = msg.CycleTick(first_cycle=self._first_cycle, count=count, scheduled_monotonic_ns=scheduled_ns)
         tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
         self._publisher.publish(tick)
-        self._said = time.monotonic()
+        self._heartbeat_at = time.monotonic()
 
-    def _say(self) -> None:
+    def _publish_heartbeat(self) -> None:
         self._heartbeat_publisher.publish(msg.BlockReport(source=CLOCK, first_cycle=self._first_cycle))
-        self._said = time.monotonic()
+        self._heartbeat_at = time.monotonic()
 
     def _on_report(self, message: msg.BlockReport) -> None:
         if message.first_cycle < 0:

@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import PLC, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode
@@ -21,7 +21,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, Job, observers_of, only_run
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOrder, observers_of, only_run
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 
@@ -29,7 +29,7 @@ UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 
 
 def run_composed(
-    machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None], watched: bool = False
+    machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
     """Runs the job in this process; `show` is called about 20 times a second; `watched`: somebody looks at units.
 
@@ -40,7 +40,7 @@ def run_composed(
 
 
 def _run(
-    machine: MachineParameters, job: Job, show: Callable[[RunMonitor], None], watched: bool = False
+    machine: MachineParameters, job: RunOrder, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
     monitor = RunMonitor(machine)
     if watched or job.stay:
@@ -76,7 +76,7 @@ def _run(
     failures: list[str] = []
     try:
         process.spin(
-            nodes, done=lambda: done() or stopped(end, nodes, told=note_ending), wait=clock.wait_time, after=after
+            nodes, done=lambda: done() or stopped(end, nodes, note=note_ending), wait=clock.wait_time, after=after
         )
     except CncError as error:
         failures.append(f"{error}; the run ends")
@@ -84,23 +84,23 @@ def _run(
     return monitor, failures
 
 
-def stopped(end: EndRequest, nodes: list[Node], *, told: Callable[[], None]) -> bool:
+def stopped(end: EndRequest, nodes: list[Node], *, note: Callable[[], None]) -> bool:
     """After an interrupt, which is `told` once: everything is stopped on its ramps, at most for STOP_TIMEOUT."""
     if not end.given:
         return False
     if end.deadline == 0.0:
-        told()
+        note()
         for node in nodes:
             if isinstance(node, PlcBridgeNode):
                 node.stop_all()
     return end.over(STOP_TIMEOUT)
 
 
-def unit_nodes(machine: MachineParameters, job: Job, **options: Any) -> list[UnitNode]:
+def unit_nodes(machine: MachineParameters, job: RunOrder, **options: Any) -> list[UnitNode]:
     nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
-            entries = read_job(machine, program=job.program, scenario=job.scenario)
+            entries = read_entries(machine, program=job.program, scenario=job.scenario)
             idle_ends = job.duration is None and not job.stay
             nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **options))
         else:

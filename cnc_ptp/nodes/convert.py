@@ -11,10 +11,10 @@ from builtin_interfaces.msg import Time
 from cnc_ptp import msg
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
-    Block,
     ChannelBlock,
     Command,
     CommandRecord,
+    CycleBlock,
     CycleTick,
     Event,
     EventValue,
@@ -43,7 +43,7 @@ def _plan(message_type: Any) -> list[tuple[str, str]]:
 _PLANS = {block: _plan(message) for block, message in BLOCK_MESSAGES.items()}
 
 
-def block_to_message(block: Block, stamp: Time) -> Any:
+def block_to_message(block: CycleBlock, stamp: Time) -> Any:
     """The message of a block; `stamp` is that of its first cycle."""
     message = BLOCK_MESSAGES[type(block)]()
     message.header.stamp = stamp

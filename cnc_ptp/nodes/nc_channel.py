@@ -10,14 +10,14 @@ import click
 from cnc_ptp import action, msg
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import arguments, convert
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Block, ChannelBlock, Command, CommandRecord, PlcBlock
+from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock
 
 
 class ChannelNode(UnitNode):
@@ -75,14 +75,14 @@ class ChannelNode(UnitNode):
     def run_ended(self) -> None:
         self._program_job.end()
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         if isinstance(block, ChannelBlock):
             self._program_job.after_block(block)
             for request in block.requests:
                 self._handshake_publisher.publish(convert.request_to_message(request, self.stamp(request.cycle)))
 
 
-def program_feedback(block: Block, feedback: Any) -> None:
+def program_feedback(block: CycleBlock, feedback: Any) -> None:
     if isinstance(block, ChannelBlock):
         feedback.line, feedback.block_number = block.line[-1], block.block_number[-1]
         feedback.path_velocity, feedback.distance_to_go = block.path_velocity[-1], block.distance_to_go[-1]
@@ -90,7 +90,7 @@ def program_feedback(block: Block, feedback: Any) -> None:
         feedback.state = block.state[-1]
 
 
-def program_result(block: Block, result: Any) -> bool | None:
+def program_result(block: CycleBlock, result: Any) -> bool | None:
     """The program has ended when the channel is done; in full when all its blocks are through without an error."""
     if not isinstance(block, ChannelBlock) or not block.done:
         return None

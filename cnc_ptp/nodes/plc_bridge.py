@@ -13,7 +13,7 @@ import click
 
 from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
-from cnc_ptp.machine.job import read_job
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import PLC, build_unit
 from cnc_ptp.nodes import arguments, process
@@ -27,7 +27,7 @@ from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import Block, Command, Severity
+from cnc_ptp.protocol.blocks import Command, CycleBlock, Severity
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118
@@ -197,7 +197,7 @@ class PlcBridgeNode(UnitNode):
         self._answers.end()
         super().destroy_node()
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         """Joint states of the cycle before the block: the last one that axes and spindles have reported."""
         if not self._state_period or block.first_cycle < max(self._joints_due, 1):
             return
@@ -254,7 +254,7 @@ def command(
         parameters = read_machine(machine)
         node = PlcBridgeNode(
             parameters,
-            scenario=read_job(parameters, program=program, scenario=scenario),
+            scenario=read_entries(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
             recorders=recorders,
             state_rate=state_rate,

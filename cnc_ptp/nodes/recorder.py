@@ -19,7 +19,7 @@ from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_file
+from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import arguments, convert, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher

@@ -11,7 +11,7 @@ from cnc_ptp.nodes import arguments
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Block, Command, SpindleBlock
+from cnc_ptp.protocol.blocks import Command, CycleBlock, SpindleBlock
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
 
@@ -61,7 +61,7 @@ class SpindleNode(UnitNode):
         self._numbers[command] = self.spindle.next_order
         return [Command(self.spindle.name, command, arguments)]
 
-    def _result(self, command: str, block: Block, result: Any) -> bool | None:
+    def _result(self, command: str, block: CycleBlock, result: Any) -> bool | None:
         """In full when the job has come to its end; not when something else has taken its place, or it was refused."""
         number = self._numbers[command]
         done = self.spindle.outcome(number)
@@ -79,18 +79,18 @@ class SpindleNode(UnitNode):
         for job in self._jobs:
             job.end()
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         for job in self._jobs:
             job.after_block(block)
 
 
-def positioning_feedback(block: Block, feedback: Any) -> None:
+def positioning_feedback(block: CycleBlock, feedback: Any) -> None:
     if isinstance(block, SpindleBlock):
         feedback.remaining_deg = block.distance_to_go_deg[-1]
         feedback.actual_speed_rpm = block.actual_speed_rpm[-1]
 
 
-def homing_feedback(block: Block, feedback: Any) -> None:
+def homing_feedback(block: CycleBlock, feedback: Any) -> None:
     if isinstance(block, SpindleBlock):
         feedback.state = block.state[-1]
 

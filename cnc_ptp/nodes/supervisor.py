@@ -44,7 +44,7 @@ MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc":
 
 
 @dataclass(frozen=True)
-class Job:
+class RunOrder:
     """What is to be run, as paths for the node processes."""
 
     machine: str
@@ -63,7 +63,7 @@ class Supervisor:
     """Starts, watches and ends the processes of one run."""
 
     def __init__(
-        self, machine: MachineParameters, job: Job, *, show: Callable[[RunMonitor], None], watched: bool = False
+        self, machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
     ) -> None:
         """`show` is called about 20 times a second with the monitor; `watched`: somebody looks at units there."""
         self._machine = machine
@@ -214,7 +214,9 @@ class Supervisor:
             self.failures.append(str(error))
 
 
-def command_lines(machine: MachineParameters, job: Job, observers: Iterable[str]) -> Iterator[tuple[str, list[str]]]:
+def command_lines(
+    machine: MachineParameters, job: RunOrder, observers: Iterable[str]
+) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     units = ["--recorders", "1"] if job.record else []
     units += ["--state-rate", str(job.state_rate)] if job.state_rate is not None else []
@@ -235,7 +237,7 @@ def command_lines(machine: MachineParameters, job: Job, observers: Iterable[str]
 
 
 @contextmanager
-def only_run(job: Job) -> Iterator[None]:
+def only_run(job: RunOrder) -> Iterator[None]:
     """ROS with its domain for this run alone; only then is the recording touched.
 
     Raises CncError 26107, 26108 (process) and 26113 (recorder).
@@ -250,7 +252,7 @@ def only_run(job: Job) -> Iterator[None]:
         rclpy.try_shutdown()
 
 
-def observers_of(job: Job) -> list[str]:
+def observers_of(job: RunOrder) -> list[str]:
     """Nodes besides the units that the clock waits for."""
     return [MONITOR, *([RECORDER] if job.record else [])]
 

@@ -7,7 +7,7 @@ from math import inf
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.path.geometry import Element
 from cnc_ptp.path.planner import JERK_LIMITED, Planner
 
@@ -66,7 +66,7 @@ class PathInterpolator:
         self._cycle_time = 0.0
 
     @property
-    def state(self) -> State:
+    def state(self) -> MotionState:
         """(s, v, a, j) of the last cycle that was given out, mm and s."""
         return self._profile.state_at(self._now())
 

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 from cnc_ptp.protocol.commands import COUPLINGS
 
 STARTS = frozenset({"move_absolute", "move_relative", "move_modulo", "jog", "external_enable"})
@@ -31,7 +31,7 @@ class AxisGroups:
         self._errors: dict[str, int | None] = {}
         """Axes in error -> cycle at which the others are told, None when they have been."""
 
-    def report(self, first_cycle: int, inputs: Mapping[str, Block]) -> Iterator[Command]:
+    def report(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Iterator[Command]:
         """Takes the blocks before `first_cycle`; gives the commands that follow from them."""
         self._blocks = {name: block for name, block in inputs.items() if isinstance(block, AxisBlock)}
         self._masters = {name: block.master for name, block in self._blocks.items() if block.master}

@@ -17,9 +17,9 @@ from cnc_ptp.plc.spindle_groups import spindle_answers
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
-    Block,
     ChannelBlock,
     Command,
+    CycleBlock,
     CycleTick,
     HandshakeRequest,
     PlcBlock,
@@ -77,7 +77,7 @@ class PlcUnit(Unit):
         self._idle_cycles = 0
         self._lost: set[str] = set()
         self._failed = False
-        self.reported: Mapping[str, Block] = {}
+        self.reported: Mapping[str, CycleBlock] = {}
         """The units' blocks before the one computed last."""
 
     def is_coupled(self, axis: str) -> bool:
@@ -139,7 +139,7 @@ class PlcUnit(Unit):
             elif unit not in self._lost and has_external_setpoints(block):
                 self._outgoing.append(Command(unit, "external_disable", {}))
 
-    def _let_go(self, unit: str, block: Block) -> bool:
+    def _let_go(self, unit: str, block: CycleBlock) -> bool:
         """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
         if not (isinstance(block, AxisBlock) and block.master):
             return False
@@ -166,7 +166,7 @@ class PlcUnit(Unit):
 
     # one block
 
-    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> PlcBlock:
+    def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> PlcBlock:
         """Computes one block from the units' blocks before."""
         first_cycle, count = tick
         self.reported = inputs
@@ -204,7 +204,7 @@ class PlcUnit(Unit):
             else:
                 self._outgoing.append(command)
 
-    def _answer_requests(self, cycle: int, inputs: Mapping[str, Block]) -> None:
+    def _answer_requests(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         for name, block in inputs.items():
             if isinstance(block, ChannelBlock):
                 self._pending |= {request.id: request for request in block.requests if request.acknowledge_needed}
@@ -214,7 +214,7 @@ class PlcUnit(Unit):
             for request_id in list(self._pending):
                 self.do_acknowledge(cycle, id=request_id)
 
-    def _run_done(self, count: int, inputs: Mapping[str, Block]) -> bool:
+    def _run_done(self, count: int, inputs: Mapping[str, CycleBlock]) -> bool:
         """Everything has stood for the settling time; spindles that still turn are stopped first."""
         expected = set(self._kinds) - self._lost
         idle = not (self._scenario or self._outgoing or self.setpoints) and expected <= inputs.keys()
@@ -231,7 +231,7 @@ class PlcUnit(Unit):
         return not turning
 
 
-def at_rest(block: Block) -> bool:
+def at_rest(block: CycleBlock) -> bool:
     """True when a unit has nothing to do by itself; a spindle at constant speed counts as at rest here."""
     if isinstance(block, ChannelBlock):
         return block.done
@@ -249,17 +249,17 @@ def at_rest(block: Block) -> bool:
     return True
 
 
-def needs_stop(block: Block) -> bool:
+def needs_stop(block: CycleBlock) -> bool:
     """False for what stops without a command: axes on the path of a channel, channels in error."""
     if isinstance(block, ChannelBlock):
         return not block.error_id[-1]
     return not (isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION)
 
 
-def has_external_setpoints(block: Block | None) -> bool:
+def has_external_setpoints(block: CycleBlock | None) -> bool:
     return isinstance(block, AxisBlock) and bool(block.status_bits[-1] & StatusBit.EXT_SETPOINT)
 
 
-def error_of(block: Block) -> int:
+def error_of(block: CycleBlock) -> int:
     """The error number that a unit has at the end of its block, 0 if none."""
     return 0 if isinstance(block, PlcBlock) else block.error_id[-1]

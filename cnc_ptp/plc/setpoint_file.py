@@ -12,16 +12,16 @@ from cnc_ptp.plc.csv_table import table_lines
 BAD_SETPOINT_FILE = 25102
 COLUMNS = Setpoint._fields
 
-Row = list[float]
+SetpointRow = list[float]
 """One setpoint, in the order of COLUMNS."""
 
 
-def parse_setpoints(text: str, file: str) -> list[Row]:
+def parse_setpoints(text: str, file: str) -> list[SetpointRow]:
     """The rows of a file; mm, mm/s, mm/s² (deg). The columns stand in the first line, in any order; others are ignored.
 
     Raises CncError 25102 with file, line and value.
     """
-    rows: list[Row] = []
+    rows: list[SetpointRow] = []
     for number, values in table_lines(text, COLUMNS, partial(_fault, file)):
         try:
             row = _row(values)
@@ -36,7 +36,7 @@ def parse_setpoints(text: str, file: str) -> list[Row]:
     return rows
 
 
-def _row(values: Sequence[str]) -> Row:
+def _row(values: Sequence[str]) -> SetpointRow:
     """Raises ValueError for what is no setpoint."""
     cycle, position, velocity, acceleration, direction = values
     row = [int(cycle), float(position), float(velocity), float(acceleration), int(direction)]
@@ -48,7 +48,7 @@ def _fault(file: str, line: int, reason: str) -> CncError:
     return CncError(BAD_SETPOINT_FILE, reason, "nothing was started", where=f"setpoint file {file}:{line}", line=line)
 
 
-def placed(rows: Sequence[Row], cycle: int) -> list[Row]:
+def placed(rows: Sequence[SetpointRow], cycle: int) -> list[SetpointRow]:
     """The rows of a file whose command acts at `cycle`: where they begin before it, they count from it on."""
     shift = cycle if rows and rows[0][0] < cycle else 0
     return [[row[0] + shift, *row[1:]] for row in rows]

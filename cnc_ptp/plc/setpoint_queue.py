@@ -8,16 +8,16 @@ from itertools import count
 
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.axis.faults import BAD_SETPOINT
-from cnc_ptp.plc.setpoint_file import Row
+from cnc_ptp.plc.setpoint_file import SetpointRow
 from cnc_ptp.protocol.axis_states import StatusBit
-from cnc_ptp.protocol.blocks import AxisBlock, Block, Command
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 
 HORIZON = 60.0
 """Seconds that a setpoint of a topic may lie ahead."""
 
 Warn = Callable[[int, int, str], None]
 """Takes a warning: cycle, number, text."""
-Waiting = list[tuple[float, int, Row]]
+Waiting = list[tuple[float, int, SetpointRow]]
 """A heap: cycle, order of arrival, row."""
 
 
@@ -32,7 +32,7 @@ class SetpointQueue:
         self._warn = warn
         self._horizon = round(HORIZON / cycle_time)
         self._waiting: dict[str, Waiting] = {}
-        self._arrived: dict[str, list[Row]] = {}
+        self._arrived: dict[str, list[SetpointRow]] = {}
         self._enabled: set[str] = set()
         self._newest_sent: dict[str, float] = {}
         self._numbers = count()
@@ -40,12 +40,12 @@ class SetpointQueue:
     def __bool__(self) -> bool:
         return any(self._waiting.values()) or any(self._arrived.values())
 
-    def add(self, axis: str, rows: Iterable[Row]) -> None:
+    def add(self, axis: str, rows: Iterable[SetpointRow]) -> None:
         """Rows of a scenario, with their cycles."""
         for row in rows:
             heappush(self._waiting.setdefault(axis, []), (row[0], next(self._numbers), row))
 
-    def arrive(self, axis: str, row: Row) -> None:
+    def arrive(self, axis: str, row: SetpointRow) -> None:
         """A row of a topic; cycle 0 means the next block: those that come within one block are spread over the next."""
         self._arrived.setdefault(axis, []).append(row)
 
@@ -54,7 +54,7 @@ class SetpointQueue:
         self._arrived.clear()
         self._newest_sent.clear()
 
-    def watch(self, inputs: Mapping[str, Block]) -> None:
+    def watch(self, inputs: Mapping[str, CycleBlock]) -> None:
         """Drops what waits for an axis whose external setpoints have ended."""
         blocks = {name: block for name, block in inputs.items() if isinstance(block, AxisBlock)}
         enabled = {name for name, block in blocks.items() if block.status_bits[-1] & StatusBit.EXT_SETPOINT}
@@ -72,7 +72,7 @@ class SetpointQueue:
             self._place(axis, arrived, first_cycle, count)
         self._arrived.clear()
         for axis, waiting in self._waiting.items():
-            rows: list[Row] = []
+            rows: list[SetpointRow] = []
             while waiting and waiting[0][0] < first_cycle + count:
                 row = heappop(waiting)[2]
                 if row[0] <= self._newest_sent.get(axis, -1):
@@ -85,7 +85,7 @@ class SetpointQueue:
                 self._newest_sent[axis] = rows[-1][0]
                 yield Command(axis, SETPOINTS, {"setpoints": rows})
 
-    def _place(self, axis: str, arrived: list[Row], first_cycle: int, count: int) -> None:
+    def _place(self, axis: str, arrived: list[SetpointRow], first_cycle: int, count: int) -> None:
         """An end of the motion takes back what was sent for later; a row too far ahead is dropped."""
         unplaced = [row for row in arrived if not row[0]][-count:]
         spread = {id(row): first_cycle + n * count // len(unplaced) for n, row in enumerate(unplaced)}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from cnc_ptp.protocol.blocks import Block, Command, SpindleBlock
+from cnc_ptp.protocol.blocks import Command, CycleBlock, SpindleBlock
 
 
-def spindle_answers(inputs: Mapping[str, Block], *, changes_gears: bool) -> Iterator[Command]:
+def spindle_answers(inputs: Mapping[str, CycleBlock], *, changes_gears: bool) -> Iterator[Command]:
     """Answers to what the spindles have reported; `changes_gears`: gear changes are acknowledged at once."""
     spindles = {name: block for name, block in inputs.items() if isinstance(block, SpindleBlock)}
     if changes_gears:

@@ -29,7 +29,7 @@ from cnc_ptp.recording.command_words import brief, shortened
 from cnc_ptp.recording.decimate import line_points
 from cnc_ptp.recording.fields import quantity
 from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.rows import SET, Line, Row
+from cnc_ptp.recording.rows import SET, Line, PlotRow
 
 POINTS = 3000
 MOST_LABEL_ROWS = 4
@@ -47,7 +47,7 @@ class Heading:
     caption: str
 
 
-def draw_rows(recorded: Recorded, rows: Sequence[Row], heading: Heading, span: Sequence[float]) -> Figure:
+def draw_rows(recorded: Recorded, rows: Sequence[PlotRow], heading: Heading, span: Sequence[float]) -> Figure:
     """The rows one above the other; `span`: begin and end in s."""
     labels = command_labels(recorded, span)
     above = label_height(labels)
@@ -66,12 +66,12 @@ def draw_rows(recorded: Recorded, rows: Sequence[Row], heading: Heading, span: S
     return sheet.drawing
 
 
-def panel_of(row: Row) -> Panel:
+def panel_of(row: PlotRow) -> Panel:
     """Height and colours of the quantity, as the figures have them."""
     return BY_QUANTITY.get(quantity(row.lines[0].field)[0], OTHER)
 
 
-def draw_row(plot: Axes, row: Row, panel: Panel, cycle_time: float, *, room_above: float) -> None:
+def draw_row(plot: Axes, row: PlotRow, panel: Panel, cycle_time: float, *, room_above: float) -> None:
     """Curves, header and scales of one panel."""
     lines = [(line, *line_points(line.rows["cycle"], line.rows[line.field], POINTS)) for line in row.lines]
     drawn = list(curves(row, panel, ((line, values * line.factor) for line, _, values in lines)))
@@ -89,7 +89,7 @@ def draw_row(plot: Axes, row: Row, panel: Panel, cycle_time: float, *, room_abov
     write_values(plot, whole, at_end=panel.at_end)
 
 
-def curves(row: Row, panel: Panel, lines: Iterable[tuple[Line, Column]]) -> Iterator[Curve]:
+def curves(row: PlotRow, panel: Panel, lines: Iterable[tuple[Line, Column]]) -> Iterator[Curve]:
     """The colours of the quantity; where several units share a row, a colour a unit."""
     units: dict[int, int] = {}
     for line in row.lines:

@@ -16,7 +16,7 @@ from cnc_ptp.plots.report_figures import path_figures, rows_figure, time_columns
 from cnc_ptp.protocol.blocks import CommandRecord, Event, Severity
 from cnc_ptp.recording.command_words import argument_words, json_object
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import Row, standing, time_rows
+from cnc_ptp.recording.rows import PlotRow, standing, time_rows
 from cnc_ptp.recording.statistics import in_machine_order, last_diagnostics, summary, torque_units
 
 MOST_ROWS = 1000
@@ -111,7 +111,7 @@ def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str
     return "\n".join(part for part in parts if part)
 
 
-def plots_page(recorded: Recorded, rows: list[Row], *, title: str) -> str:
+def plots_page(recorded: Recorded, rows: list[PlotRow], *, title: str) -> str:
     """A page of some plots alone."""
     plots = _section("Over time", time_plots(recorded, rows), HINT)
     body = [page_head(title, [recorded.path.name]), "<main>", _incomplete(recorded), plots, "</main></body></html>\n"]
@@ -180,7 +180,7 @@ def _times(recorded: Recorded, units: dict[str, str]) -> str:
     return _section("Over time", plots, " ".join(notes))
 
 
-def time_plots(recorded: Recorded, rows: list[Row]) -> str:
+def time_plots(recorded: Recorded, rows: list[PlotRow]) -> str:
     """The plots with every cycle of their lines, and the script that zooms them."""
     columns = json.dumps(time_columns(recorded, rows), separators=(",", ":"))
     return (

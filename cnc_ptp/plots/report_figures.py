@@ -22,7 +22,7 @@ from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points, path_points
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import OTHER, SET, Row, standing
+from cnc_ptp.recording.rows import OTHER, SET, PlotRow, standing
 from cnc_ptp.recording.statistics import axis_units
 
 SET_COLOUR, ACTUAL_COLOUR = "#5b93d6", "#d9480f"
@@ -55,7 +55,7 @@ STATE_COLOURS = {
 SEVERITY_COLOURS = {Severity.INFO: "#5b6b7f", Severity.WARNING: "#e0a100", Severity.ERROR: "#c62828"}
 
 
-def rows_figure(recorded: Recorded, rows: Sequence[Row]) -> go.Figure:
+def rows_figure(recorded: Recorded, rows: Sequence[PlotRow]) -> go.Figure:
     """States, events and commands, and below them the rows; zooming one of them zooms all.
 
     The lines are thinned out; report.js takes their place by those of `time_columns` as the page is zoomed.
@@ -103,7 +103,7 @@ def time_range(recorded: Recorded) -> list[float]:
     return [first * cycle_time, max((recorded.last_cycle + 1) * cycle_time, first * cycle_time + 1e-3)]
 
 
-def time_columns(recorded: Recorded, rows: Iterable[Row]) -> dict[str, Any]:
+def time_columns(recorded: Recorded, rows: Iterable[PlotRow]) -> dict[str, Any]:
     """Every cycle of every line of the figure, for report.js: cycles of each unit once, values of each line."""
     cycles: dict[int, int] = {}
     packed_cycles: list[dict[str, Any]] = []
@@ -117,7 +117,7 @@ def time_columns(recorded: Recorded, rows: Iterable[Row]) -> dict[str, Any]:
     return {"cycle_time": recorded.cycle_time_ns * 1e-9, "cycles": packed_cycles, "lines": values}
 
 
-def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int, serial: int) -> None:
+def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int, serial: int) -> None:
     """The lines of a row; `meta` says which of all lines of the figure it is."""
     shown = {trace.name for trace in figure.data}
     for index, line in enumerate(row.lines):
@@ -141,7 +141,7 @@ def _add_lines(figure: go.Figure, recorded: Recorded, row: Row, number: int, ser
         )
 
 
-def colour_of(row: Row, index: int) -> str:
+def colour_of(row: PlotRow, index: int) -> str:
     """Set and actual values have theirs; other lines of a row one each."""
     line = row.lines[index]
     if line.role != OTHER:

@@ -244,4 +244,4 @@ class SpindleBlock:
     commands: list[Command] = field(default_factory=list)
 
 
-Block = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock
+CycleBlock = PlcBlock | ChannelBlock | AxisBlock | SpindleBlock

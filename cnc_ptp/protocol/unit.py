@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, EventValue, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity
 from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names
 
 Handler = Callable[..., str | None]
@@ -38,7 +38,7 @@ class Unit(ABC):
         """Sources that a watchdog has given up; their blocks count no more, even if they should come."""
 
     @abstractmethod
-    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> Block:
+    def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
         """Computes the cycles of `tick`.
 
         `inputs`: by unit name, blocks of the same cycles from upstream units and of the cycles before from units that
@@ -92,7 +92,7 @@ class Unit(ABC):
         """What the unit needs to go on that time alone does not bring; empty while it goes on or has nothing to do."""
         return ""
 
-    def lag_share(self, block: Block) -> float:
+    def lag_share(self, block: CycleBlock) -> float:
         """Following error at the end of a block just computed as a part of its limit; 0 while nothing limits it."""
         return 0.0
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, USUAL, Line, Row, axis_label, standing, time_rows
+from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, USUAL, Line, PlotRow, axis_label, standing, time_rows
 from cnc_ptp.recording.selection import NOT_RECORDED, nearest
 from cnc_ptp.recording.units import unit_of, without_role, without_unit
 
 BY_PREFIX = {"set_": SET, "actual_": ACTUAL}
 
 
-def usual_rows(recorded: Recorded, units: Mapping[str, str]) -> list[Row]:
+def usual_rows(recorded: Recorded, units: Mapping[str, str]) -> list[PlotRow]:
     """Of each axis that moves position, velocity, acceleration and following error, of each spindle the speed."""
     spindles = recorded.of_type(SPINDLE_STATE)
     return [
@@ -27,13 +27,13 @@ def usual_rows(recorded: Recorded, units: Mapping[str, str]) -> list[Row]:
 
 def chosen_rows(
     recorded: Recorded, words: Sequence[str], units: Mapping[str, str], torques: Mapping[str, str]
-) -> list[Row]:
+) -> list[PlotRow]:
     """A row for each quantity, with the fields of all units that were named. Raises CncError 26011."""
     rows = _rows_by_quantity(recorded, words, units, torques)
     return [_of_one_unit(row) for row in rows]
 
 
-def _of_one_unit(row: Row) -> Row:
+def _of_one_unit(row: PlotRow) -> PlotRow:
     """Where all lines are of one unit, its name stands before the quantity and not at each line."""
     units = {line.name.rpartition(" ")[0] if line.role else line.name for line in row.lines}
     if len(units) > 1:
@@ -44,13 +44,13 @@ def _of_one_unit(row: Row) -> Row:
 
 def _rows_by_quantity(
     recorded: Recorded, words: Sequence[str], units: Mapping[str, str], torques: Mapping[str, str]
-) -> list[Row]:
-    rows: dict[tuple[str, str], Row] = {}
+) -> list[PlotRow]:
+    rows: dict[tuple[str, str], PlotRow] = {}
     for word in words:
         for unit, field in _fields(recorded, word):
             title, role = quantity(field)
             measure = unit_of(field, units.get(unit, "mm"), torques.get(unit, "Nm or N"))
-            row = rows.setdefault((title, measure), Row("", title.replace("_", " "), measure, legend=True))
+            row = rows.setdefault((title, measure), PlotRow("", title.replace("_", " "), measure, legend=True))
             name = " ".join(filter(None, [axis_label(unit), role]))
             row.lines.append(Line(name, recorded.states[f"/{unit}/state"], field, role))
     return list(rows.values())

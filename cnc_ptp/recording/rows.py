@@ -34,7 +34,7 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class PlotRow:
     """One plot: of which unit (empty: of several), what, in which unit of measurement."""
 
     unit: str
@@ -70,7 +70,7 @@ def standing(recorded: Recorded) -> list[str]:
     return [name for name, rows in units.items() if not moves(rows)]
 
 
-def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[Row]:
+def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[PlotRow]:
     """All rows that show something: nothing of axes and spindles that never move, nothing that is 0 throughout."""
     channels = recorded.of_type(CHANNEL_STATE)
     still = standing(recorded)
@@ -78,7 +78,7 @@ def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mappin
     spindles = {name: rows for name, rows in recorded.of_type(SPINDLE_STATE).items() if name not in still}
     for name, rows in channels.items():
         feed = [Line("set", rows, "programmed_feed", SET, 60.0), Line("actual", rows, "path_velocity", ACTUAL, 60.0)]
-        yield Row(name, "feed", "mm/min", feed)
+        yield PlotRow(name, "feed", "mm/min", feed)
     yield from _shared_row("override", "override_percent", {**channels, **axes, **spindles})
     fed_forward = {name: rows for name, rows in {**axes, **spindles}.items() if _is_fed_forward(rows)}
     for row in _shared_row("feedforward weight", "feedforward_percent", fed_forward):
@@ -94,12 +94,12 @@ def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mappin
 
 def _row(
     name: str, title: str, lines: list[Line], distance: str = "", torque: str = "", *, legend: bool = False
-) -> Row:
+) -> PlotRow:
     """In the unit of measurement of its fields; `distance`: mm or deg, `torque`: Nm or N."""
-    return Row(name, title, unit_of(lines[0].field, distance, torque), lines, legend)
+    return PlotRow(name, title, unit_of(lines[0].field, distance, torque), lines, legend)
 
 
-def _shared_row(title: str, field: str, units: Mapping[str, Records]) -> Iterator[Row]:
+def _shared_row(title: str, field: str, units: Mapping[str, Records]) -> Iterator[PlotRow]:
     """One row with a line of each unit, if there are any."""
     if units:
         yield _row("", title, [Line(name, rows, field) for name, rows in units.items()], legend=True)
@@ -111,7 +111,7 @@ def _is_fed_forward(rows: Records) -> bool:
     return not outputs or any(np.any(rows[name]) for name in outputs)
 
 
-def _spindle_rows(name: str, rows: Records) -> Iterator[Row]:
+def _spindle_rows(name: str, rows: Records) -> Iterator[PlotRow]:
     yield _row(name, "speed", _set_and_actual(rows, "set_speed_rpm", "actual_speed_rpm"))
     angle = _set_and_actual(rows, "set_position_deg", "actual_position_deg")
     if np.any(rows["target_position_deg"] != rows["set_position_deg"]):
@@ -121,7 +121,7 @@ def _spindle_rows(name: str, rows: Records) -> Iterator[Row]:
     yield from _used(_row(name, "following error", [Line("following error", rows, "following_error_deg")]))
 
 
-def _axis_rows(name: str, rows: Records, distance: str) -> Iterator[Row]:
+def _axis_rows(name: str, rows: Records, distance: str) -> Iterator[PlotRow]:
     label = axis_label(name)
     yield _row(label, "position", _set_and_actual(rows, "set_position", "actual_position"), distance)
     yield _row(label, "velocity", _set_and_actual(rows, "set_velocity", "actual_velocity"), distance)
@@ -130,7 +130,7 @@ def _axis_rows(name: str, rows: Records, distance: str) -> Iterator[Row]:
     yield _row(label, "following error", [Line("following error", rows, "following_error")], distance)
 
 
-def _control_rows(name: str, rows: Records, distance: str, torque_unit: str) -> Iterator[Row]:
+def _control_rows(name: str, rows: Records, distance: str, torque_unit: str) -> Iterator[PlotRow]:
     """What goes to the drive besides the command of the position controller."""
     label = axis_label(name)
     feedforward = [
@@ -148,10 +148,10 @@ def _set_and_actual(rows: Records, set_field: str, actual_field: str) -> list[Li
     return [Line("set", rows, set_field, SET), Line("actual", rows, actual_field, ACTUAL)]
 
 
-def _used(row: Row) -> Iterator[Row]:
+def _used(row: PlotRow) -> Iterator[PlotRow]:
     """The row with the lines that the recording has and that are not 0 throughout, if there are any."""
     lines = [
         line for line in row.lines if line.field in (line.rows.dtype.names or ()) and np.any(line.rows[line.field])
     ]
     if lines:
-        yield Row(row.unit, row.title, row.measure, lines, row.legend)
+        yield PlotRow(row.unit, row.title, row.measure, lines, row.legend)

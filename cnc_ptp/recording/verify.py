@@ -15,13 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Block, PlcBlock
+from cnc_ptp.protocol.blocks import CycleBlock, PlcBlock
 from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import Stamps, topic_of
 
-Replay = Callable[[Recorded], Iterable[tuple[str, Block]]]
+Replay = Callable[[Recorded], Iterable[tuple[str, CycleBlock]]]
 BATCH_BLOCKS = 500
 FIRST_DIFFERENCES = 20
 

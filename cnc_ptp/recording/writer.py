@@ -19,9 +19,9 @@ import numpy as np
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
-    Block,
     ChannelBlock,
     CommandRecord,
+    CycleBlock,
     CycleTick,
     Event,
     PlcBlock,
@@ -213,7 +213,7 @@ class Recording:
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
         self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
 
-    def block(self, name: str, block: Block) -> None:
+    def block(self, name: str, block: CycleBlock) -> None:
         """Whatever unit it comes from: the block, and its per-cycle states if it has any."""
         if isinstance(block, AxisBlock):
             self.axis_block(name, block)

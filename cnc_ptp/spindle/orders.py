@@ -107,9 +107,9 @@ class Orders:
 
     def begin(self, source: str) -> None:
         """The spindle works for `source` from now on; a rotation to go on after a gear change keeps its commander."""
-        job = self._spindle.work.job
+        procedure = self._spindle.work.procedure
         self.source = source
-        if job is None or not job.resume:
+        if procedure is None or not procedure.resume:
             self.commander, self.obeys_master = source, False
         self._spindle.unsettled = True
 
@@ -148,7 +148,7 @@ class Orders:
     def watch(self) -> None:
         """Ends the work for a source when it is done."""
         spindle = self._spindle
-        if not self.source or spindle.work.job is not None:
+        if not self.source or spindle.work.procedure is not None:
             return
         turns_as_told = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached
         if turns_as_told or spindle.state in (S.STANDSTILL, S.DISABLED):

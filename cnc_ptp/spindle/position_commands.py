@@ -17,8 +17,8 @@ from cnc_ptp.spindle.faults import (
     SENSORLESS,
     SPEED_LIMITED,
 )
-from cnc_ptp.spindle.job import Job, Step
-from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.procedure import Procedure, Step
+from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
 from cnc_ptp.spindle.spindle import Spindle
 
@@ -30,9 +30,9 @@ NEEDS_REFERENCE = (
 class PositionCommands:
     """`orient`, `home`, `select_gear` and `gear_changed`."""
 
-    def __init__(self, spindle: Spindle, jobs: Jobs) -> None:
+    def __init__(self, spindle: Spindle, procedures: Procedures) -> None:
         self._spindle = spindle
-        self._jobs = jobs
+        self._procedures = procedures
 
     def do_orient(
         self, cycle: int, *, position_deg: float, speed_rpm: float | None = None, direction: str = ""
@@ -55,8 +55,10 @@ class PositionCommands:
         check_direction(spindle, "orient", cycle, direction)
         self._require_reference("orient", cycle)
         speed = spindle.gear.positioning_speed if speed_rpm is None else speed_rpm * DEG_S_PER_RPM
-        job = Job("orient", deque([Step.POSITION]), goal=float(position_deg), speed=speed, direction=direction)
-        self._jobs.start(cycle, job)
+        procedure = Procedure(
+            "orient", deque([Step.POSITION]), goal=float(position_deg), speed=speed, direction=direction
+        )
+        self._procedures.start(cycle, procedure)
         return self._slower(cycle, speed)
 
     def _slower(self, cycle: int, speed: float) -> str | None:
@@ -90,7 +92,7 @@ class PositionCommands:
         if not spindle.parameters.automatic_homing and spindle.state != S.STANDSTILL:
             reason = "the drive homes the spindle from standstill only (P-AXIS-00015 0x100); stop it first"
             spindle.refuse("home", HOMING_FROM_MOTION, reason)
-        self._jobs.start(cycle, Job("home", deque([Step.SEARCH, Step.HALT])))
+        self._procedures.start(cycle, Procedure("home", deque([Step.SEARCH, Step.HALT])))
 
     def do_select_gear(self, cycle: int, *, stage: int, resume: bool = True) -> str | None:
         """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear and says `gear_changed`.
@@ -107,25 +109,25 @@ class PositionCommands:
         if stage == spindle.gear.stage:
             return f"spindle {spindle.name}: gear {stage} is selected already"
         rotation = spindle.programmed_speed if resume and spindle.state == S.CONTINUOUS_MOTION else 0.0
-        job = Job("select_gear", deque([Step.HALT, Step.SHIFT]), stage=stage, resume=rotation)
+        procedure = Procedure("select_gear", deque([Step.HALT, Step.SHIFT]), stage=stage, resume=rotation)
         if spindle.parameters.has_position:
             self._require_reference("select_gear", cycle)
-            job.steps[0] = Step.POSITION
-            job.goal, job.speed = spindle.gear.change_position, spindle.gear.positioning_speed
-        self._jobs.start(cycle, job)
-        return self._slower(cycle, job.speed)
+            procedure.steps[0] = Step.POSITION
+            procedure.goal, procedure.speed = spindle.gear.change_position, spindle.gear.positioning_speed
+        self._procedures.start(cycle, procedure)
+        return self._slower(cycle, procedure.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
         """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""
         spindle = self._spindle
         if not spindle.work.gear_request:
             spindle.refuse("gear_changed", NO_GEAR_CHANGE, "no gear change waits for its acknowledgement")
-        job = self._jobs.gear_changed(cycle)
-        if not job.resume:
+        procedure = self._procedures.gear_changed(cycle)
+        if not procedure.resume:
             return None
-        if abs(job.resume) > spindle.gear.max_speed:
-            rpm, limit = abs(job.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
+        if abs(procedure.resume) > spindle.gear.max_speed:
+            rpm, limit = abs(procedure.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
             above = f"speed {rpm:g} rpm of before is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
             return spindle.warn(cycle, SPEED_LIMITED, f"{above} (P-AXIS-00212); the spindle stays at rest")
-        spindle.rotate(cycle, job.resume)
+        spindle.rotate(cycle, procedure.resume)
         return None

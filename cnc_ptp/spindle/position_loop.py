@@ -13,10 +13,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from cnc_ptp.control.control_loop import ControlLoop, State
+from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drive_format import shown_velocity
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 
 ROUNDING = 1e-12
@@ -33,7 +34,7 @@ class SimulatedActuals:
         self.position, self.speed = position, speed
         self._kv, self._feedforward = kv, feedforward
 
-    def step(self, setpoint: State, cycle_time: float) -> float:
+    def step(self, setpoint: MotionState, cycle_time: float) -> float:
         """The command of this cycle, which the ideal drive follows until the next one."""
         self.speed = self._kv * (setpoint[0] - self.position) + self._feedforward * setpoint[1]
         self.position += self.speed * cycle_time
@@ -208,7 +209,7 @@ class PositionLoop:
         """True while the following error is monitored; `on` is False without power."""
         return self.control.monitor.on and on and self.closed
 
-    def cycles(self, setpoints: Sequence[State], *, on: bool, watched: bool) -> Cycles:
+    def cycles(self, setpoints: Sequence[MotionState], *, on: bool, watched: bool) -> Cycles:
         """Many cycles through which the loop stays as it is; if `watched`, up to a following error too large.
 
         The same as actual_position, actual_speed and command, cycle by cycle.
@@ -229,7 +230,7 @@ class PositionLoop:
             percents.append(self.feedforward_percent)
         return cycles
 
-    def _closed_cycles(self, setpoints: Sequence[State], watched: bool) -> Cycles:
+    def _closed_cycles(self, setpoints: Sequence[MotionState], watched: bool) -> Cycles:
         actuals, actual_speeds, errors, commands, feedforward, additive, _, _, _, percents = self.control.follow(
             setpoints, True, watched=watched
         )
@@ -243,7 +244,7 @@ class PositionLoop:
     def _note_feedforward(self, feedforward_speed: float, set_speed: float) -> None:
         self._feedforward = feedforward_speed / set_speed if set_speed else 0.0
 
-    def command(self, setpoint: State, *, on: bool) -> None:
+    def command(self, setpoint: MotionState, *, on: bool) -> None:
         """Moves the drive for one cycle. `on` is False without power.
 
         In the open loop a controlled spindle turns as fast as the digits say that go out (spindle 2.2.4).

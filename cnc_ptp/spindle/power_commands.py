@@ -49,7 +49,7 @@ class PowerCommands:
         """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle, whatever it does."""
         spindle = self._spindle
         if spindle.state == S.DISABLED:
-            spindle.end_job()
+            spindle.end_procedure()
             return
         if spindle.state != S.ERROR_STOP:
             spindle.stop(cycle)

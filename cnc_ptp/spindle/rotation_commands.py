@@ -16,8 +16,8 @@ from cnc_ptp.spindle.faults import (
     SPEED_LIMITED,
     SPEED_TOO_HIGH,
 )
-from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
-from cnc_ptp.spindle.jobs import Jobs
+from cnc_ptp.spindle.procedure import DIRECTIONS, Procedure, Step
+from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.spindle import Spindle
 from cnc_ptp.spindle.tool_limits import ToolLimits
 
@@ -32,9 +32,9 @@ LIMIT_RANGES = {
 class RotationCommands:
     """`start`, `set_speed`, `stop`, override, limits of the tool, and what happens at the program's end."""
 
-    def __init__(self, spindle: Spindle, jobs: Jobs) -> None:
+    def __init__(self, spindle: Spindle, procedures: Procedures) -> None:
         self._spindle = spindle
-        self._jobs = jobs
+        self._procedures = procedures
         self.stops_at_program_end = False
 
     def do_start(self, cycle: int, *, direction: str, speed_rpm: float) -> str | None:
@@ -81,7 +81,7 @@ class RotationCommands:
             return
         turns = spindle.state == S.CONTINUOUS_MOTION and spindle.motion(cycle)[1] != 0.0
         if turns and homes and spindle.reference_lost and spindle.parameters.automatic_homing:
-            self._jobs.start(cycle, Job("stop", deque([Step.SEARCH, Step.HALT])))
+            self._procedures.start(cycle, Procedure("stop", deque([Step.SEARCH, Step.HALT])))
         else:
             spindle.stop(cycle)
 
@@ -108,7 +108,7 @@ class RotationCommands:
         spindle = self._spindle
         if spindle.state == S.CONTINUOUS_MOTION:
             spindle.apply_speed(cycle)
-        elif spindle.state == S.DISCRETE_MOTION and not self._jobs.replan(cycle):
+        elif spindle.state == S.DISCRETE_MOTION and not self._procedures.replan(cycle):
             return f"spindle {spindle.name}: {what} does not change the positioning in work (brake phase)"
         return None
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from math import copysign, inf
 from typing import NoReturn
 
-from cnc_ptp.control.control_loop import State
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError, Value, warning_text
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -16,8 +16,8 @@ from cnc_ptp.protocol.transitions import Transition
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
-from cnc_ptp.spindle.job import Work
 from cnc_ptp.spindle.position_loop import PositionLoop
+from cnc_ptp.spindle.procedure import Work
 from cnc_ptp.spindle.speed_ramp import plan_speed
 from cnc_ptp.spindle.speed_table import Motion, SpeedTable
 from cnc_ptp.spindle.tool_limits import SpindleLimits, ToolLimits
@@ -98,7 +98,7 @@ class Spindle:
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
 
-    def motions(self, first_cycle: int, count: int) -> list[State]:
+    def motions(self, first_cycle: int, count: int) -> list[MotionState]:
         """`motion` of many cycles, as setpoints of the control loop (no jerk is fed forward)."""
         cycle_time, shift, first = self.cycle_time, self._shift, first_cycle - self._origin
         times = [cycle * cycle_time for cycle in range(first, first + count)]
@@ -162,7 +162,7 @@ class Spindle:
     def rotate(self, cycle: int, speed: float) -> None:
         """Endless rotation at a signed speed, under override and limits."""
         self.take_tool(cycle)
-        self.end_job()
+        self.end_procedure()
         self.mode = SpindleMode.CW if copysign(1.0, speed) > 0.0 else SpindleMode.CCW
         self.take(T.ROTATE)
         self.programmed_speed = speed
@@ -186,14 +186,14 @@ class Spindle:
         self.take(T.STOP)
 
     def _brake(self, cycle: int) -> None:
-        self.end_job()
+        self.end_procedure()
         self.mode = SpindleMode.STOP
         self.programmed_speed = self.wanted_speed = 0.0
         self._await_speed()
         self._open_loop(cycle)
         self.ramp_to(cycle, 0.0)
 
-    def end_job(self) -> None:
+    def end_procedure(self) -> None:
         self.work.cancel()
         self.exact_stop.forget()
         self.target = None
@@ -271,12 +271,12 @@ class Spindle:
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
-        had_job = self.work.job is not None or not self.speed_was_reached
+        had_procedure = self.work.procedure is not None or not self.speed_was_reached
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
         self._brake(cycle)
         self.error_id = error_id
-        self.job_error = had_job
+        self.job_error = had_procedure
         self.take(T.FAULT)
         self.when_faulted()
         text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"

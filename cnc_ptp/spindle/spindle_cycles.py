@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from math import inf
 
-from cnc_ptp.control.control_loop import State
+from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
-from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import Orders
+from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.rotation_commands import RotationCommands
 from cnc_ptp.spindle.spindle import Spindle
 
@@ -35,9 +35,9 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
 class SpindleCycles:
     """Computes the cycles of one spindle; blocks in which nothing can happen take a shorter way."""
 
-    def __init__(self, spindle: Spindle, jobs: Jobs, orders: Orders, rotation: RotationCommands) -> None:
+    def __init__(self, spindle: Spindle, procedures: Procedures, orders: Orders, rotation: RotationCommands) -> None:
         self._spindle = spindle
-        self._jobs = jobs
+        self._procedures = procedures
         self._orders = orders
         self._rotation = rotation
         self._patience = spindle.parameters.speed_time / spindle.cycle_time
@@ -65,8 +65,8 @@ class SpindleCycles:
         spindle.watch_loop(cycle, spindle.motion(cycle)[1])
         position, speed, acceleration = spindle.motion(cycle)
         actual_speed = loop.actual_speed(speed)
-        if spindle.work.job is not None:
-            self._jobs.advance(cycle, actual_speed)
+        if spindle.work.procedure is not None:
+            self._procedures.advance(cycle, actual_speed)
             position, speed, acceleration = spindle.motion(cycle)
         elif speed == 0.0 and spindle.state == S.STOPPING:
             spindle.take(T.FINISH)
@@ -75,7 +75,7 @@ class SpindleCycles:
         self._watch_following_error(cycle, setpoint)
         reached = self._speed_reached(actual_speed)
         self._watch_speed(cycle, reached)
-        self._jobs.hold(cycle, actual, actual_speed)
+        self._procedures.hold(cycle, actual, actual_speed)
         target = position if spindle.target is None else spindle.target
         loop.command(setpoint, on=spindle.state != S.DISABLED)
         self._orders.watch()
@@ -103,7 +103,7 @@ class SpindleCycles:
         block.state.append(spindle.state)
         block.error_id.append(spindle.error_id)
 
-    def _watch_following_error(self, cycle: int, setpoint: State) -> None:
+    def _watch_following_error(self, cycle: int, setpoint: MotionState) -> None:
         spindle, control = self._spindle, self._spindle.loop.control
         if self._watched() and control.too_far(setpoint):
             spindle.fault(cycle, FOLLOWING_ERROR, control.why_too_far(setpoint, "deg"))
@@ -175,7 +175,7 @@ class SpindleCycles:
         spindle = self._spindle
         spindle.unsettled = not (
             spindle.state in SETTLED
-            and spindle.work.job is None
+            and spindle.work.procedure is None
             and spindle.finished(cycle)
             and not self._awaits_speed
             and (spindle.exact_stop.reached or not spindle.holds_position)
@@ -191,7 +191,7 @@ class SpindleCycles:
         spindle = self._spindle
         if not spindle.unsettled:
             return True
-        if spindle.work.job is not None or self._orders.waiting:
+        if spindle.work.procedure is not None or self._orders.waiting:
             return False
         if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
             return False

@@ -13,15 +13,15 @@ from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Refusal, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
-from cnc_ptp.spindle.jobs import Jobs
 from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
+from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.rotation_commands import RotationCommands
 from cnc_ptp.spindle.spindle import Spindle
 from cnc_ptp.spindle.spindle_cycles import SpindleCycles
@@ -56,20 +56,20 @@ class SpindleUnit(Unit):
             report_error=partial(self._report, Severity.ERROR),
             report_warning=partial(self._report, Severity.WARNING),
         )
-        jobs = Jobs(self.spindle)
+        procedures = Procedures(self.spindle)
         self._orders = Orders(self.spindle)
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
-        self._rotation = RotationCommands(self.spindle, jobs)
+        self._rotation = RotationCommands(self.spindle, procedures)
         self._power = PowerCommands(self.spindle)
         self._groups = (
             self,
             self._rotation,
-            PositionCommands(self.spindle, jobs),
+            PositionCommands(self.spindle, procedures),
             self._power,
             self._coupling,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
-        self._cycles = SpindleCycles(self.spindle, jobs, self._orders, self._rotation)
+        self._cycles = SpindleCycles(self.spindle, procedures, self._orders, self._rotation)
         self.next_order = 1
         """Number of the next motion command."""
         self._turned_down: tuple[int, CncError | None] = 0, None
@@ -157,13 +157,13 @@ class SpindleUnit(Unit):
             self._tell_lost_homings(cycle, "stop")
             if order.source != self._orders.source:
                 self._tell_overtaken(cycle, "stop")
-        before, turned = work.job, self.spindle.state == S.CONTINUOUS_MOTION
+        before, turned = work.procedure, self.spindle.state == S.CONTINUOUS_MOTION
         message = self._group_handler(order.command)(cycle, **order.arguments)
-        if work.job is not None and work.job is not before:
-            work.job.number = order.number
+        if work.procedure is not None and work.procedure is not before:
+            work.procedure.number = order.number
         if order.command == "stop":
             self._orders.clear()
-        if self._has_effect(order.command, new_job=work.job is not before, turned=turned):
+        if self._has_effect(order.command, new_procedure=work.procedure is not before, turned=turned):
             self._orders.begin(order.source)
         if order.command in PASSED_ON:
             source = {"source": order.source} if order.source else {}
@@ -181,8 +181,8 @@ class SpindleUnit(Unit):
 
     def _tell_lost_homings(self, cycle: int, by: str) -> None:
         """A homing whose zero pulse has not come, and those that wait, do not take place: nobody waits for them."""
-        spindle, job = self.spindle, self.spindle.work.job
-        numbers = [job.number] if job is not None and job.homes else []
+        spindle, procedure = self.spindle, self.spindle.work.procedure
+        numbers = [procedure.number] if procedure is not None and procedure.homes else []
         numbers += [order.number for order in self._orders.waiting if order.command == "home"]
         reference = "the reference point of before counts" if spindle.referenced else "there is no reference point"
         for number in numbers:
@@ -190,10 +190,10 @@ class SpindleUnit(Unit):
             self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
 
     @staticmethod
-    def _has_effect(command: str, *, new_job: bool, turned: bool) -> bool:
+    def _has_effect(command: str, *, new_procedure: bool, turned: bool) -> bool:
         """False for the gear in use and a speed at rest: they take the spindle away from nobody."""
         if command == "select_gear":
-            return new_job
+            return new_procedure
         return command != "set_speed" or turned
 
     def _take_turns(self, cycle: int) -> None:
@@ -212,8 +212,8 @@ class SpindleUnit(Unit):
 
     def outcome(self, number: int) -> bool | None:
         """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
-        job = self.spindle.work.job
-        in_work = job is not None and job.number == number
+        procedure = self.spindle.work.procedure
+        in_work = procedure is not None and procedure.number == number
         if in_work or any(order.number == number for order in self._orders.waiting):
             return None
         return self.spindle.work.last_done == number
@@ -251,7 +251,7 @@ class SpindleUnit(Unit):
         if can_follow(self.spindle):
             self.spindle.fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
-    def lag_share(self, block: Block) -> float:
+    def lag_share(self, block: CycleBlock) -> float:
         """See Unit."""
         loop = self.spindle.loop
         if not isinstance(block, SpindleBlock) or not loop.watches(on=self.spindle.powered) or block.error_id[-1]:
@@ -261,7 +261,7 @@ class SpindleUnit(Unit):
 
     # one block
 
-    def step(self, tick: CycleTick, inputs: Mapping[str, Block]) -> SpindleBlock:
+    def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> SpindleBlock:
         """Computes one block; a slave carries out first what its master does from this block on."""
         first_cycle, count = tick
         master = inputs.get(self._coupling.master)

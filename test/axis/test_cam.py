@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from cnc_ptp.axis.cam import CamCoupling, CamTable
 from cnc_ptp.errors import CncError
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 T = 0.001
@@ -161,7 +161,7 @@ def coupling(points: list[list[float]], *, cyclic: bool = True, **changes: float
     return CamCoupling("x", CamTable(points, cyclic=cyclic), **arguments)  # type: ignore[arg-type]
 
 
-def sweep(begin: float, velocity: float, seconds: float, acceleration: float = 0.0) -> list[State]:
+def sweep(begin: float, velocity: float, seconds: float, acceleration: float = 0.0) -> list[MotionState]:
     t = np.arange(round(seconds / T)) * T
     columns = (
         begin + velocity * t + 0.5 * acceleration * t * t,
@@ -172,7 +172,7 @@ def sweep(begin: float, velocity: float, seconds: float, acceleration: float = 0
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
-def follow(cam: CamCoupling, states: list[State], position: float = 0.0) -> np.ndarray:
+def follow(cam: CamCoupling, states: list[MotionState], position: float = 0.0) -> np.ndarray:
     return np.array(cam.follow(position, states))
 
 

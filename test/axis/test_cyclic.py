@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cnc_ptp.axis.coupling import CyclicCoupling
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 T = 0.001
@@ -18,7 +18,7 @@ A = 5000.0
 BLOCK = 10
 
 
-def master(accelerations: Sequence[float], start: float = 100.0) -> list[State]:
+def master(accelerations: Sequence[float], start: float = 100.0) -> list[MotionState]:
     """A master that holds each acceleration for a block, integrated exactly; a state a cycle, at the end one more."""
     p, v, states = start, 0.0, []
     for a in np.repeat(accelerations, BLOCK).tolist():
@@ -27,10 +27,10 @@ def master(accelerations: Sequence[float], start: float = 100.0) -> list[State]:
     return [*states, (p, v, 0.0, 0.0)]
 
 
-def slave(states: Sequence[State], factors: Sequence[float], bound: float, start: float = -7.0) -> np.ndarray:
+def slave(states: Sequence[MotionState], factors: Sequence[float], bound: float, start: float = -7.0) -> np.ndarray:
     """Columns p, v, a of a slave that gets a factor a block."""
     coupling = CyclicCoupling("x", bound, cycle_time=T)
-    rows: list[State] = []
+    rows: list[MotionState] = []
     for block, factor in enumerate(factors):
         coupling.set_factor(factor)
         part = states[block * BLOCK : (block + 1) * BLOCK]

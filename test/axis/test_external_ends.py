@@ -11,7 +11,7 @@ from superposition_support import (
     EXTERNAL,
     IN_TARGET,
     J,
-    Row,
+    SetpointRow,
     column,
     external_axis,
     feed,
@@ -24,7 +24,7 @@ from superposition_support import (
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 
-def constant(velocity: float, *, first_cycle: int, count: int, start: float = 0.0) -> list[Row]:
+def constant(velocity: float, *, first_cycle: int, count: int, start: float = 0.0) -> list[SetpointRow]:
     """Setpoints at a constant velocity from `start` on."""
     direction = 1 if velocity > 0.0 else -1
     return [[first_cycle + k, start + velocity * k * 0.001, velocity, 0.0, direction] for k in range(count)]

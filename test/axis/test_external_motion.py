@@ -11,7 +11,7 @@ from superposition_support import (
     HAS_JOB,
     A,
     J,
-    Row,
+    SetpointRow,
     column,
     external_axis,
     feed,
@@ -194,7 +194,7 @@ def test_compensation_and_external_setpoints_together() -> None:
 def test_direction_0_gates() -> None:
     """Before the first -1 or +1 nothing counts; a setpoint with 0 is taken over for its cycle, then nothing does."""
     bench = external_axis(count=1)
-    rows: list[Row] = [[k, 3.0, 0.0, 0.0, 0] for k in range(10, 20)]  # ignored
+    rows: list[SetpointRow] = [[k, 3.0, 0.0, 0.0, 0] for k in range(10, 20)]  # ignored
     rows += [[20, 0.0, 0.0, 0.0, 1], [21, 1.0, 0.0, 0.0, 1], [22, 2.0, 0.0, 0.0, 0]]
     rows += [[k, 5.0, 0.0, 0.0, 0] for k in range(23, 30)]  # ignored
     rows += [[30, 2.5, 0.0, 0.0, -1], [31, 1.5, 0.0, 0.0, -1], [32, 1.0, 0.0, 0.0, 0], [33, 9.0, 0.0, 0.0, 0]]

@@ -12,7 +12,7 @@ from superposition_support import (
     EXTERNAL,
     A,
     J,
-    Row,
+    SetpointRow,
     column,
     external_axis,
     feed,
@@ -34,7 +34,7 @@ def refusal(bench: UnitBench, command: str, **arguments: Any) -> str:
     return f"{number.removeprefix('P-ERR-')} {reason}"
 
 
-def constant(velocity: float, *, first_cycle: int, count: int, start: float = 0.0) -> list[Row]:
+def constant(velocity: float, *, first_cycle: int, count: int, start: float = 0.0) -> list[SetpointRow]:
     """Setpoints at a constant velocity from `start` on."""
     direction = 1 if velocity > 0.0 else -1
     return [[first_cycle + k, start + velocity * k * 0.001, velocity, 0.0, direction] for k in range(count)]

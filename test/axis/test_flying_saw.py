@@ -11,7 +11,7 @@ from machine_support import assert_smooth
 from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
-from cnc_ptp.motion.profile import State
+from cnc_ptp.motion.profile import MotionState
 
 QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 T = 0.001
@@ -19,11 +19,11 @@ LIMITS = Limits(velocity=2000.0, acceleration=5000.0, deceleration=5000.0, jerk=
 BLOCK = 10
 
 
-def moving(velocity: float, seconds: float = 3.0, begin: float = 0.0) -> list[State]:
+def moving(velocity: float, seconds: float = 3.0, begin: float = 0.0) -> list[MotionState]:
     return [(begin + velocity * k * T, velocity, 0.0, 0.0) for k in range(round(seconds / T))]
 
 
-def varying(accelerations: list[tuple[float, float]], velocity: float) -> list[State]:
+def varying(accelerations: list[tuple[float, float]], velocity: float) -> list[MotionState]:
     """A master that holds accelerations (seconds, mm/s²) one after the other, integrated exactly."""
     p, v, states = 0.0, velocity, []
     for seconds, a in accelerations:
@@ -39,9 +39,9 @@ def saw(factor: float, master_position: float, slave_position: float) -> FlyingS
     return FlyingSaw("x", factor, **positions, limits=LIMITS, unit="mm")
 
 
-def follow(coupling: FlyingSaw, states: list[State], position: float = 0.0) -> np.ndarray:
+def follow(coupling: FlyingSaw, states: list[MotionState], position: float = 0.0) -> np.ndarray:
     """Columns p, v, a, j, block by block as the axis asks."""
-    rows: list[State] = []
+    rows: list[MotionState] = []
     for first in range(0, len(states), BLOCK):
         rows += coupling.follow(rows[-1][0] if rows else position, states[first : first + BLOCK])
     return np.array(rows)
@@ -141,7 +141,7 @@ def test_synchronous_slave_stays_so_when_the_master_comes_back() -> None:
     assert rows[2000:, 0] == pytest.approx(place[2000:] - 2000.0, abs=1e-9)
 
 
-def refused(factor: float, master_position: float, slave_position: float, states: list[State]) -> str:
+def refused(factor: float, master_position: float, slave_position: float, states: list[MotionState]) -> str:
     with pytest.raises(CncError) as caught:
         follow(saw(factor, master_position, slave_position), states)
     assert caught.value.number == 23051

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from machine_support import CYCLE_TIME, UnitBench
-from superposition_support import A, J, Row, column, generator, moving_axis
+from superposition_support import A, J, SetpointRow, column, generator, moving_axis
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
@@ -38,13 +38,13 @@ compensations = st.fixed_dictionaries(
 )
 
 
-def external_rows(begin: int, sign: float, velocity: float, a: float, every: int = 1) -> list[Row]:
+def external_rows(begin: int, sign: float, velocity: float, a: float, every: int = 1) -> list[SetpointRow]:
     """Up to the velocity, 300 ms on, and back to rest."""
     way = sign * velocity * (velocity / a + 0.3)
     return generator(way, first_cycle=begin, velocity=velocity, a=a, every=every)
 
 
-def end(bench: UnitBench, how: str, rows: list[Row]) -> None:
+def end(bench: UnitBench, how: str, rows: list[SetpointRow]) -> None:
     if how == "direction 0":
         row = next(row for row in rows if row[0] >= bench.cycle)
         bench.accepted("external_setpoints", setpoints=[[*row[:4], 0]])

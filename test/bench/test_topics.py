@@ -9,8 +9,8 @@ from bench import control, graph, interpreter, motion, offline, recording, spind
 from bench.figures import Effort
 from bench.graph_run import SUPERVISOR, GraphRun, Watch, node_name, run_graph
 from bench.jobs import MACHINE, long_program
-from cnc_ptp.machine.job import check_program
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import check_program
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 

@@ -13,7 +13,7 @@ from cnc_ptp.plots.recording_picture import OTHER, Heading, draw_rows, panel_of
 from cnc_ptp.protocol.blocks import Event
 from cnc_ptp.recording.fields import chosen_rows, quantity, usual_rows
 from cnc_ptp.recording.reader import read_recording
-from cnc_ptp.recording.rows import Line, Row
+from cnc_ptp.recording.rows import Line, PlotRow
 from cnc_ptp.recording.selection import selected
 
 SCENARIO = """
@@ -217,7 +217,7 @@ def test_values_and_labels_of_the_picture(recording):
 )
 def test_pictures_have_the_panels_of_the_figures(field, panel):
     """Whatever the row is called."""
-    assert panel_of(Row("", "as the report calls it", "", [Line("", np.empty(0), field)])) == panel
+    assert panel_of(PlotRow("", "as the report calls it", "", [Line("", np.empty(0), field)])) == panel
 
 
 def test_labels_of_a_part_begin_at_its_begin():

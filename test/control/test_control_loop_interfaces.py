@@ -17,7 +17,7 @@ from loop_support import (
     OFF,
     PLANT,
     VEL,
-    State,
+    MotionState,
     T,
     column,
     control,
@@ -257,7 +257,7 @@ def test_an_open_position_drive_is_told_where_it_is() -> None:
 def test_a_start_in_motion_fills_the_delay_line_with_the_first_setpoint() -> None:
     """Closed on a moving setpoint: the position controller begins at that setpoint and not somewhere in the past."""
     loop = looped(for_interface("velocity", of_feedforward=feedforward(VEL, lead_cycles=4)))
-    states: list[State] = [(0.05 * n, 50.0, 0.0, 0.0) for n in range(10)]
+    states: list[MotionState] = [(0.05 * n, 50.0, 0.0, 0.0) for n in range(10)]
     cycles = run(loop, states)
     assert [cycle.command_velocity for cycle in cycles[:5]] == [0.0] * 5
     assert cycles[5].command_velocity == pytest.approx(KV * 0.05)

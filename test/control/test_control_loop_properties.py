@@ -20,7 +20,7 @@ from loop_support import (
     PLANT,
     V_MAX,
     VEL,
-    State,
+    MotionState,
     T,
     control,
     feedforward,
@@ -41,7 +41,7 @@ STATES = st.lists(
 
 
 @st.composite
-def motions(draw: st.DrawFn) -> list[State]:
+def motions(draw: st.DrawFn) -> list[MotionState]:
     """Setpoints without any connection, up to 1e6 times what an axis can do, standstill among them."""
     rows = draw(STATES)
     return [(x * size, v * V_MAX * size, a * A_MAX * size, j * J_MAX * size) for x, v, a, j, size in rows]

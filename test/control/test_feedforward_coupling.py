@@ -20,7 +20,7 @@ from loop_support import (
     TA,
     V_MAX,
     VEL,
-    State,
+    MotionState,
     T,
     control,
     feedforward,
@@ -40,7 +40,7 @@ Switch = Callable[[int, ControlLoop], None]
 class Record:
     """A run in which the feedforward is switched: what command and axis did, cycle by cycle."""
 
-    def __init__(self, loop: ControlLoop, states: Sequence[State], switch: Switch, time_constant: float) -> None:
+    def __init__(self, loop: ControlLoop, states: Sequence[MotionState], switch: Switch, time_constant: float) -> None:
         """`time_constant` of the drive; it makes a velocity of the additive torque."""
         velocity, command, share, lag = [0.0], [0.0], [], []
         for cycle, state in enumerate(states):
@@ -76,7 +76,7 @@ def at(plan: dict[int, tuple[bool, float]]) -> Switch:
     return switch
 
 
-def at_velocity(v: float, cycles: int = 1500) -> list[State]:
+def at_velocity(v: float, cycles: int = 1500) -> list[MotionState]:
     """Up to `v` within 160 ms, then on and on."""
     jerk = v / 0.0064
     return motion([(80, jerk), (80, -jerk), (cycles, 0.0)])
@@ -135,7 +135,7 @@ def test_weights_change_softly_too() -> None:
     assert np.abs(np.diff(record.share, 2))[250:].max() / T**2 <= 1.13 * J_MAX
 
 
-def random_motion(draw: random.Random) -> list[State]:
+def random_motion(draw: random.Random) -> list[MotionState]:
     """Three trapezia with accelerations up to the axis' limit, some without any rest between them."""
     phases = []
     for _ in range(3):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loop_support import NO_FRICTION, Phase, State, T, column, control, make_loop, motion, run, trapezoid
+from loop_support import NO_FRICTION, MotionState, Phase, T, column, control, make_loop, motion, run, trapezoid
 from numpy.typing import NDArray
 
 from cnc_ptp.control.friction_compensation import FrictionTable
@@ -22,12 +22,12 @@ def friction(**changes: float) -> FrictionParameters:
     return replace(FRICTION, **changes)  # type: ignore[arg-type]
 
 
-def currents(states: list[State], of: FrictionParameters = FRICTION) -> NDArray[np.float64]:
+def currents(states: list[MotionState], of: FrictionParameters = FRICTION) -> NDArray[np.float64]:
     """The compensation current of every cycle."""
     return column(run(make_loop(control(friction=of)), states), "friction_current")
 
 
-def from_table(states: list[State]) -> NDArray[np.float64]:
+def from_table(states: list[MotionState]) -> NDArray[np.float64]:
     """Unweighted, with sign; 0 at standstill."""
     v = np.array([state[1] for state in states])
     return np.interp(np.abs(v), VELOCITIES, CURRENTS) * np.sign(v)
@@ -105,7 +105,7 @@ def test_the_scaling_factor_is_in_tenths_of_a_percent(factor: int) -> None:
 # ---------------------------------------------------------------- reversal
 
 
-def reversal(a: float, cycles: int = 60, offset: float = 0.3) -> list[State]:
+def reversal(a: float, cycles: int = 60, offset: float = 0.3) -> list[MotionState]:
     """Turns back with constant acceleration, `offset` of a cycle after a setpoint."""
     states = []
     for n in range(-cycles, cycles):
@@ -267,7 +267,9 @@ def test_the_current_goes_to_the_drive_as_torque(scale: float) -> None:
 # ---------------------------------------------------------------- switched
 
 
-def switched(states: list[State], plan: dict[int, bool], of: FrictionParameters = FRICTION) -> NDArray[np.float64]:
+def switched(
+    states: list[MotionState], plan: dict[int, bool], of: FrictionParameters = FRICTION
+) -> NDArray[np.float64]:
     loop = make_loop(control(friction=of))
     values = []
     for cycle, state in enumerate(states):

@@ -11,7 +11,7 @@ import pytest
 from loop_support import (
     KV,
     NO_FRICTION,
-    State,
+    MotionState,
     T,
     control,
     feedforward,
@@ -196,7 +196,7 @@ def test_the_lag_of_the_delay_line_alone_never_faults() -> None:
     of = replace(FIXED, moving_limit=0.5)
     friction = replace(NO_FRICTION, permitted=True, reversal_lookahead=4)
     loop = make_loop(control(monitoring=of, friction=friction, of_feedforward=feedforward(0x3, always_active=True)))
-    way: list[State] = motion(trapezoid(25_000.0, 100, 40, 200, rest=100))
+    way: list[MotionState] = motion(trapezoid(25_000.0, 100, 40, 200, rest=100))
     for state in way:
         assert not loop.too_far(state)
         cycle = loop.step(state, True)

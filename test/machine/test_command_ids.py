@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_unit, build_units
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CycleTick, PlcBlock
@@ -38,7 +38,9 @@ def test_commands_of_channel_and_plc_are_found_again_by_number(tmp_path):
     program = tmp_path / "m3.nc"
     program.write_text("%ids\nN10 G135 M3 S1000\nN20 G1 X2 F6000\nN30 M5\nN40 M30\n")
     machine = read_machine(MILL)
-    run = OfflineMachine(machine, build_units(machine, scenario=read_job(machine, program=str(program), scenario=None)))
+    run = OfflineMachine(
+        machine, build_units(machine, scenario=read_entries(machine, program=str(program), scenario=None))
+    )
     sent = {PlcBlock: [], ChannelBlock: []}
     records = []
     for _ in range(300):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.wiring import Inputs
-from cnc_ptp.protocol.blocks import Block, ChannelBlock, CycleTick, PlcBlock
+from cnc_ptp.protocol.blocks import ChannelBlock, CycleBlock, CycleTick, PlcBlock
 
 INPUTS = Inputs(upstream=("plc",), feedback=("x", "y"))
 
@@ -16,7 +16,7 @@ def block(first_cycle: int, count: int = 10) -> PlcBlock:
     return PlcBlock(first_cycle, count)
 
 
-def take(gate: BlockGate) -> tuple[CycleTick, dict[str, Block]] | None:
+def take(gate: BlockGate) -> tuple[CycleTick, dict[str, CycleBlock]] | None:
     """The next computation, of a unit without a master."""
     return gate.complete() if gate.begin() is not None else None
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import pytest
 
 from cnc_ptp.motion import Limits, Profile
-from cnc_ptp.motion.profile import Row
+from cnc_ptp.motion.profile import Segment
 
 Reached = tuple[float, float, float]
 
@@ -39,7 +39,7 @@ def random_start(draw: random.Random, limits: Limits) -> tuple[float, float, flo
     return p, v, max(-most, min(most, a))
 
 
-def follow(row: Row, d: float) -> Reached:
+def follow(row: Segment, d: float) -> Reached:
     """State d seconds after a row, by the Taylor series of its jerk."""
     _, p, v, a, j = row
     return p + v * d + a * d * d / 2 + j * d**3 / 6, v + a * d + j * d * d / 2, a + j * d

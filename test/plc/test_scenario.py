@@ -9,7 +9,7 @@ from machine_support import AXIS_COMMANDS, MILL, PTP, ROOT, MachineBench
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_file, read_job
+from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.plc.plc_unit import PlcUnit
@@ -277,7 +277,7 @@ def test_a_job_is_the_program_at_0_and_the_scenario(tmp_path: Path) -> None:
     (tmp_path / "s.yaml").write_text(
         "- {at: 2, to: channel, do: load, program: q.nc}\n- {at: 0, to: x, do: set_override, percent: 5}"
     )
-    entries = read_job(MILL, program=str(tmp_path / "p.nc"), scenario=str(tmp_path / "s.yaml"))
+    entries = read_entries(MILL, program=str(tmp_path / "p.nc"), scenario=str(tmp_path / "s.yaml"))
     assert [(e.at, e.command.target, e.command.command) for e in entries] == [
         (0.0, "channel", "load"),
         (0.0, "channel", "start"),
@@ -286,7 +286,7 @@ def test_a_job_is_the_program_at_0_and_the_scenario(tmp_path: Path) -> None:
     ]
     assert entries[0].command.arguments == {"program": str(tmp_path / "p.nc"), "text": "%P\nG01 X5 F3000\nM30"}
     assert entries[3].command.arguments == {"program": str(tmp_path / "q.nc"), "text": "%Q\nM30"}
-    assert read_job(MILL, program=None, scenario=None) == []
+    assert read_entries(MILL, program=None, scenario=None) == []
 
 
 def test_faults_of_a_job(tmp_path: Path) -> None:
@@ -304,10 +304,10 @@ def test_faults_of_a_job(tmp_path: Path) -> None:
         (bad, PTP, "P-ERR-26112 the machine has no channel to run {}; nothing was started"),
     ):  # fmt: skip
         with pytest.raises(CncError) as caught:
-            read_job(machine, program=str(path), scenario=None)
+            read_entries(machine, program=str(path), scenario=None)
         assert str(caught.value) == text.format(path)
     with pytest.raises(CncError) as caught:
-        read_job(MILL, program=None, scenario=str(tmp_path / "no.yaml"))
+        read_entries(MILL, program=None, scenario=str(tmp_path / "no.yaml"))
     assert str(caught.value) == (
         f"P-ERR-26110 scenario {tmp_path / 'no.yaml'} cannot be read: No such file or directory; nothing was started"
     )
@@ -355,5 +355,5 @@ def test_a_scenario_without_entries_is_told_before_the_run(text: str, tmp_path: 
     program.write_text("%P\nM30")
     for with_program in (None, str(program)):
         with pytest.raises(ScenarioError) as caught:
-            read_job(MILL, program=with_program, scenario=str(path))
+            read_entries(MILL, program=with_program, scenario=str(path))
         assert str(caught.value) == f"P-ERR-25101 scenario {path} has no entries; nothing was started"

@@ -14,8 +14,8 @@ from superposition_support import generator
 
 from cnc_ptp import cli
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry, ScenarioError, parse_scenario
@@ -140,7 +140,7 @@ def write(folder: Path, scenario: str, **files: str) -> str:
 
 def scenario_fault(path: str) -> str:
     with pytest.raises(ScenarioError) as caught:
-        read_job(PTP, program=None, scenario=path)
+        read_entries(PTP, program=None, scenario=path)
     assert caught.value.number == 25101
     return str(caught.value)
 
@@ -154,7 +154,7 @@ MOVE = "- {at: 0.05, to: x, do: external_enable, mode: absolute}\n- {at: 0.25, t
 
 def test_the_path_is_relative_to_the_scenario(tmp_path: Path) -> None:
     rows = generator(300.0, first_cycle=0)
-    entries = read_job(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
+    entries = read_entries(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
     assert entries[1].command.arguments == {"setpoints": rows}
 
 
@@ -276,7 +276,7 @@ def test_stop_all_drops_the_rows() -> None:
 def test_a_run_waits_for_the_rows_and_ends_with_external_setpoints_enabled(tmp_path: Path) -> None:
     """Rows wait for 3 s in which everything stands; the run ends 0.2 s after the last motion, still enabled."""
     rows = generator(300.0, first_cycle=3000)
-    entries = read_job(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
+    entries = read_entries(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
     units = build_units(PTP, scenario=entries)
     blocks: list[Any] = [outputs["x"].block for outputs in OfflineMachine(PTP, units).run()]
     positions = [value for block in blocks for value in block.set_position]

@@ -11,7 +11,7 @@ from machine_support import CYCLE_TIME, PTP, MachineBench, axis_bench
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
 from cnc_ptp.protocol.blocks import Command
 
-Row = list[float]
+SetpointRow = list[float]
 HORIZON = 60_000
 """60 s in cycles of 1 ms."""
 
@@ -19,7 +19,7 @@ HORIZON = 60_000
 WARNINGS: list[tuple[int, int, str]] = []
 
 
-def row(cycle: int, position: float = 0.0, direction: int = 1) -> Row:
+def row(cycle: int, position: float = 0.0, direction: int = 1) -> SetpointRow:
     return [cycle, position, 0.0, 0.0, direction]
 
 
@@ -27,16 +27,16 @@ def new_queue() -> SetpointQueue:
     return SetpointQueue(cycle_time=CYCLE_TIME, warn=lambda cycle, number, text: WARNINGS.append((cycle, number, text)))
 
 
-def rows_of(commands: Sequence[Command], axis: str = "x") -> list[Row]:
+def rows_of(commands: Sequence[Command], axis: str = "x") -> list[SetpointRow]:
     assert all(command.command == "external_setpoints" for command in commands)
     return [row for command in commands if command.target == axis for row in command.arguments["setpoints"]]
 
 
-def taken(queue: SetpointQueue, first_cycle: int, count: int = 10) -> list[Row]:
+def taken(queue: SetpointQueue, first_cycle: int, count: int = 10) -> list[SetpointRow]:
     return rows_of(list(queue.take(first_cycle, count)))
 
 
-def cycles(rows: Sequence[Row]) -> list[float]:
+def cycles(rows: Sequence[SetpointRow]) -> list[float]:
     return [each[0] for each in rows]
 
 
@@ -238,7 +238,7 @@ def test_an_axis_that_is_lost_has_ended_too() -> None:
 # in the machine
 
 
-def constant(first: int, count: int, velocity: float = 100.0) -> list[Row]:
+def constant(first: int, count: int, velocity: float = 100.0) -> list[SetpointRow]:
     return [[first + k, velocity * k * CYCLE_TIME, velocity, 0.0, 1] for k in range(count)]
 
 

@@ -13,7 +13,7 @@ from machine_support import MachineBench
 from scipy.integrate import quad
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.job import check_program
+from cnc_ptp.machine.run_entries import check_program
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C

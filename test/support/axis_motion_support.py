@@ -12,7 +12,7 @@ from ruckig import ControlInterface, InputParameter, Result, Ruckig, RuckigError
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
-State = tuple[float, float, float]
+MotionState = tuple[float, float, float]
 """Position, velocity, acceleration."""
 
 
@@ -38,7 +38,7 @@ def run_to_standstill(bench: UnitBench, most: int = 30_000) -> None:
     raise AssertionError(f"the axis is in state {bench.state} after {most} cycles")
 
 
-def motion(bench: UnitBench) -> list[State]:
+def motion(bench: UnitBench) -> list[MotionState]:
     """Position, velocity and acceleration of every cycle."""
     names = ("position", "velocity", "acceleration")
     return list(zip(*(bench.column(f"set_{name}") for name in names), strict=True))
@@ -81,7 +81,7 @@ def _calculate(inputs: InputParameter) -> Trajectory:
     return trajectory
 
 
-def _inputs(state: State, v: float, a: float, j: float) -> InputParameter:
+def _inputs(state: MotionState, v: float, a: float, j: float) -> InputParameter:
     inputs = InputParameter(1)
     inputs.current_position, inputs.current_velocity, inputs.current_acceleration = ([x] for x in state)
     inputs.max_velocity, inputs.max_acceleration, inputs.max_jerk = [v], [a], [j]
@@ -89,24 +89,24 @@ def _inputs(state: State, v: float, a: float, j: float) -> InputParameter:
     return inputs
 
 
-def to_position(state: State, target: float, v: float = V, a: float = A, j: float = J) -> Trajectory:
+def to_position(state: MotionState, target: float, v: float = V, a: float = A, j: float = J) -> Trajectory:
     inputs = _inputs(state, v, a, j)
     inputs.target_position = [target]
     return _calculate(inputs)
 
 
-def to_rest(state: State, a: float = A, j: float = J) -> Trajectory:
+def to_rest(state: MotionState, a: float = A, j: float = J) -> Trajectory:
     inputs = _inputs(state, 1e9, a, j)
     inputs.control_interface = ControlInterface.Velocity
     return _calculate(inputs)
 
 
-def at(trajectory: Trajectory, t: float) -> State:
+def at(trajectory: Trajectory, t: float) -> MotionState:
     p, v, a = trajectory.at_time(min(t, trajectory.duration))
     return (p[0], v[0], a[0])
 
 
-def expected(legs: Sequence[Trajectory], cycles: int) -> list[State]:
+def expected(legs: Sequence[Trajectory], cycles: int) -> list[MotionState]:
     """The states of `cycles` cycles along trajectories that follow each other."""
     states = []
     for k in range(cycles):
@@ -121,7 +121,7 @@ def expected(legs: Sequence[Trajectory], cycles: int) -> list[State]:
     return states
 
 
-def legs_to(state: State, target: float, v: float = V, a: float = A, j: float = J) -> list[Trajectory]:
+def legs_to(state: MotionState, target: float, v: float = V, a: float = A, j: float = J) -> list[Trajectory]:
     """The way to a new target: straight, or by a stop and from there back (TX1250 2.3)."""
     stop = to_rest(state, a, j)
     rest = at(stop, stop.duration)[0]

@@ -9,8 +9,8 @@ from typing import Any
 from channel_spindle_support import moves
 from machine_support import MachineBench
 
-from cnc_ptp.machine.job import read_job
 from cnc_ptp.machine.offline import OfflineMachine
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
 
@@ -24,7 +24,7 @@ class ExampleRun(MachineBench):
     def __init__(self, machine: str, program: str = "", scenario: str = "") -> None:
         self.machine = read_machine(EXAMPLES / machine)
         files = (str(EXAMPLES / name) if name else None for name in (program, scenario))
-        job = read_job(self.machine, **dict(zip(("program", "scenario"), files, strict=True)))
+        job = read_entries(self.machine, **dict(zip(("program", "scenario"), files, strict=True)))
         self.units = build_units(self.machine, scenario=job)
         self.offline = OfflineMachine(self.machine, self.units)
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}

@@ -17,7 +17,7 @@ from cnc_ptp.machine.wiring import build_units, unit_kinds
 from cnc_ptp.parameters import AxisParameters, GearParameters, MachineParameters, SpindleParameters, read_machine
 from cnc_ptp.parameters.view.control_view import ControlParameters
 from cnc_ptp.plc.scenario import Entry, parse_scenario
-from cnc_ptp.protocol.blocks import AxisBlock, Block, Command, CommandRecord, CycleTick, Event
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, CycleBlock, CycleTick, Event
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL
 from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
@@ -64,7 +64,7 @@ class UnitBench:
         assert not record.accepted
         return f"P-ERR-{record.error_id} {record.message}"
 
-    def run(self, cycles: int, inputs: Mapping[str, Block] | None = None) -> None:
+    def run(self, cycles: int, inputs: Mapping[str, CycleBlock] | None = None) -> None:
         """Blocks of `count` cycles, the last one shorter where it must be."""
         end = self.cycle + cycles
         while self.cycle < end:
@@ -92,7 +92,7 @@ class UnitBench:
         return [f"P-ERR-{event.error_id} {event.text}" for event in self.events]
 
 
-def _fields(block: Block) -> Iterable[tuple[str, Any]]:
+def _fields(block: CycleBlock) -> Iterable[tuple[str, Any]]:
     return ((name, getattr(block, name)) for name in type(block).__dataclass_fields__)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from machine_support import CYCLE_TIME, MILL, MachineBench, machine
-from superposition_support import Row, generator
+from superposition_support import SetpointRow, generator
 
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord
@@ -67,14 +67,14 @@ class PathBench(MachineBench):
         return abs(last - before) < 1e-12
 
 
-def profile(bench: PathBench, way: float, velocity: float, *, a: float = 400.0, after: int = 10) -> list[Row]:
+def profile(bench: PathBench, way: float, velocity: float, *, a: float = 400.0, after: int = 10) -> list[SetpointRow]:
     """Gives x the three phases of the manual's example, from `after` cycles on."""
     rows = generator(way, first_cycle=bench.cycle + after, velocity=velocity, a=a)
     assert bench.give("x", "external_setpoints", setpoints=rows).accepted
     return rows
 
 
-def expected(rows: list[Row], cycles: int) -> np.ndarray:
+def expected(rows: list[SetpointRow], cycles: int) -> np.ndarray:
     """The contribution of each cycle to rows that begin at 0: before them 0, after them where they end."""
     return np.interp(np.arange(cycles), [row[0] for row in rows], [row[1] for row in rows])
 

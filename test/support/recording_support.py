@@ -12,10 +12,10 @@ import plotly.graph_objects as go
 from cnc_ptp.plots.report_figures import rows_figure
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
-    Block,
     ChannelBlock,
     Command,
     CommandRecord,
+    CycleBlock,
     CycleTick,
     Event,
     HandshakeRequest,
@@ -84,7 +84,7 @@ class Blocks:
         block.requests = [HandshakeRequest(first + 3, 5, "channel", "M", "s", 3, 0.0, 12, True)]
         return block
 
-    def machine(self, count: int, axes: tuple[str, ...] = ("x", "y")) -> Iterator[tuple[str, Block]]:
+    def machine(self, count: int, axes: tuple[str, ...] = ("x", "y")) -> Iterator[tuple[str, CycleBlock]]:
         """`count` blocks of a PLC, a channel, axes and a spindle."""
         for first in range(0, 10 * count, 10):
             yield "plc", PlcBlock(first, 10, first)
@@ -94,7 +94,7 @@ class Blocks:
             yield "s", self.spindle(first)
 
 
-def record(path: Path, blocks: list[tuple[str, Block]], **options: float) -> None:
+def record(path: Path, blocks: list[tuple[str, CycleBlock]], **options: float) -> None:
     """A recording of the blocks with one event and one command."""
     with Recording(path, MACHINE, **options) as recording:
         recording.event(Event(3, "x", 1, 23001, 'x: Öl <niedrig> & "fällt"', 4))

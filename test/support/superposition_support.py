@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 A, J = 5000.0, 50000.0
 """Acceleration and jerk of the axis of the bench."""
-Row = list[float]
+SetpointRow = list[float]
 """Cycle, position, velocity, acceleration, direction."""
 HAS_JOB, COMPENSATING, EXTERNAL, IN_TARGET = 1 << 8, 1 << 13, 1 << 14, 1 << 4
 
@@ -77,7 +77,7 @@ def assert_no_steps(bench: UnitBench, *, acceleration: float, jerk: float, corne
 
 def generator(
     way: float, *, first_cycle: int, velocity: float = 1000.0, a: float = 4000.0, every: int = 1, start: float = 0.0
-) -> list[Row]:
+) -> list[SetpointRow]:
     """The manual's example: three phases with rectangular acceleration, direction set one cycle longer on each side."""
     sign, ramp = float(np.sign(way)), velocity / a
     seconds = abs(way) / velocity + ramp
@@ -97,7 +97,7 @@ def generator(
     return [row for row in rows if every == 1 or (row[0] - first_cycle) % every == 0 or row[4] == 0]
 
 
-def feed(bench: UnitBench, rows: Iterable[Row], cycles: int) -> None:
+def feed(bench: UnitBench, rows: Iterable[SetpointRow], cycles: int) -> None:
     """Runs `cycles` with each block's rows given before it, as the PLC does."""
     rows, end = list(rows), bench.cycle + cycles
     while bench.cycle < end:
@@ -116,7 +116,7 @@ def external_axis(mode: str = "absolute", *, cycles: int = 10, count: int = 10, 
     return bench
 
 
-def setpoints(bench: UnitBench, rows: list[Row]) -> list[tuple[float, ...]]:
+def setpoints(bench: UnitBench, rows: list[SetpointRow]) -> list[tuple[float, ...]]:
     """(position, velocity, acceleration) that the axis had in the cycles of `rows`."""
     columns = [bench.column(f"set_{name}") for name in ("position", "velocity", "acceleration")]
     return [tuple(values[int(row[0])] for values in columns) for row in rows]

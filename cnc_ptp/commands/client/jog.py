@@ -43,7 +43,7 @@ def jog(axis: str, direction: str, speed: float, distance: float | None, seconds
         client.require_unit(axis, ("axis",))
         jogger = Jogger(client, axis, speed if direction == "+" else -speed)
         if not jogger.ready():
-            return jogger.told("the machine does not listen, or shows nothing of the axis; nothing has moved")
+            return jogger.report("the machine does not listen, or shows nothing of the axis; nothing has moved")
         jogger.run(lambda: end.given, distance, seconds)
         return jogger.end()
 
@@ -80,7 +80,7 @@ class Jogger:
         while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
             self._stalled = time.monotonic() - sent > SILENCE
             if self._stalled:  # the machine has ended the jog; that this process goes on is no reason to move again
-                self.told(f"this command has stood still for more than {SILENCE:g} s; the jog has ended")
+                self.report(f"this command has stood still for more than {SILENCE:g} s; the jog has ended")
                 return
             sent = time.monotonic()
             self._send(self._velocity)
@@ -95,7 +95,7 @@ class Jogger:
     def end(self) -> int:
         """Ends the jog, waits until the axis stands, tells where; the exit status."""
         if self._ignored:
-            return self.told("the jog is ignored: another client jogs the axis, or the machine is in free run")
+            return self.report("the jog is ignored: another client jogs the axis, or the machine is in free run")
         cycle = self._place().cycle
         self._send(0.0)
 
@@ -104,13 +104,13 @@ class Jogger:
 
         self._client.spin_until(lambda: stands() or self._blocks.gone, STOP)
         if self._blocks.gone:
-            return self.told(GONE_TEXT)
+            return self.report(GONE_TEXT)
         view = self._place()
         where = f"{view.position:.3f} {view.unit}" if view.position is not None else ""
         print(f"{self._axis}: {view.state} at {where}")
         return RUN_FAILED if self._refused or self._stalled or view.error_id or not stands() else 0
 
-    def told(self, text: str) -> int:
+    def report(self, text: str) -> int:
         self._errors.print(f"{self._axis}: {text}", style="red", markup=False)
         return RUN_FAILED
 

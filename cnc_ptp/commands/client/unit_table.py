@@ -55,8 +55,8 @@ def cells(view: UnitView) -> list[str]:
 def line(view: UnitView) -> str:
     """The same for a file."""
     unit, state, place, speed, error, override, number, age = cells(view)
-    told = [unit, state, place, speed, error and f"following error {error}", f"override {override}", f"age {age}"]
-    return "  ".join(text for text in [*told, "" if number == "-" else number] if text)
+    words = [unit, state, place, speed, error and f"following error {error}", f"override {override}", f"age {age}"]
+    return "  ".join(text for text in [*words, "" if number == "-" else number] if text)
 
 
 def value_text(value: float | None, decimals: int, unit: str) -> str:

@@ -93,9 +93,9 @@ def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, so
         "      table:",
     ]
     for index, entry in enumerate(table.entries):
-        lines.append(f'        "{index}": {{in: {entry.velocity}, out: {entry.current}}}  # {_told(data, entry.point)}')
+        lines.append(f'        "{index}": {{in: {entry.velocity}, out: {entry.current}}}  # {_note(data, entry.point)}')
     return "\n".join([*lines, ""])
 
 
-def _told(data: AxisData, point: FrictionPoint) -> str:
+def _note(data: AxisData, point: FrictionPoint) -> str:
     return f"{point.speed:.4g} {data.unit}/s: {point.friction:.4g} {data.effort} ± {point.scatter:.2g}"

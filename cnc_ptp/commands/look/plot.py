@@ -14,7 +14,7 @@ from cnc_ptp.plots.report import plots_page
 from cnc_ptp.plots.report_figures import time_range
 from cnc_ptp.recording.fields import chosen_rows, usual_rows
 from cnc_ptp.recording.reader import Recorded, read_recording
-from cnc_ptp.recording.rows import Row
+from cnc_ptp.recording.rows import PlotRow
 from cnc_ptp.recording.selection import NOT_RECORDED, selected
 from cnc_ptp.recording.statistics import axis_units, in_machine_order, torque_units
 
@@ -44,7 +44,7 @@ def plot(
     return 0
 
 
-def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[Row]:
+def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[PlotRow]:
     """What is to be drawn. Raises CncError 26011 where nothing is."""
     units = axis_units(recorded)
     rows = chosen_rows(recorded, topics, units, torque_units(recorded)) if topics else usual_rows(recorded, units)
@@ -56,7 +56,7 @@ def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[Row]:
     return rows
 
 
-def content_of(recorded: Recorded, rows: list[Row], title: str, kind: str) -> str | bytes:
+def content_of(recorded: Recorded, rows: list[PlotRow], title: str, kind: str) -> str | bytes:
     if kind == "html":
         return plots_page(recorded, rows, title=title)
     begin, end = time_range(recorded)

@@ -34,7 +34,7 @@ class RunProgress:
         self._line = LiveLine()
         self._live = Live(self._line, console=console, refresh_per_second=round(1.0 / PERIOD))
         self._next = 0.0
-        self._told: set[Note] = set()
+        self._reported: set[Note] = set()
 
     def __enter__(self) -> RunProgress:
         if self._on:
@@ -60,8 +60,8 @@ class RunProgress:
     def tell(self, notes: Iterable[Note]) -> None:
         """Shows what has come to `notes`, above the line: a run that waits for somebody says so at once."""
         for note in notes:
-            if self._on and note not in self._told:
-                self._told.add(note)
+            if self._on and note not in self._reported:
+                self._reported.add(note)
                 self._live.console.print(str(note), style="yellow", markup=False, highlight=False, soft_wrap=True)
 
     def show_block(self, outputs: Outputs) -> None:

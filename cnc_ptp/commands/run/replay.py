@@ -10,7 +10,7 @@ from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.wiring import PLC, build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.commands import COUPLINGS
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.verify import verify as verify_recording
@@ -33,7 +33,7 @@ def replay(recording: str, verify: bool, publish: bool, rate: float, inputs: boo
     return status
 
 
-def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, Block]]:
+def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, CycleBlock]]:
     """Re-runs the kernel with the machine file and the commands of a recording; all blocks up to its last cycle."""
     machine = load_machine(recorded.machine_yaml, f"{recorded.path}:machine.yaml")
     offline = OfflineMachine(machine, build_units(machine, end_when_idle=False))

@@ -8,10 +8,10 @@ from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
-from cnc_ptp.machine.job import read_job
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.supervisor import Job, Supervisor
+from cnc_ptp.nodes.supervisor import RunOrder, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
 
@@ -35,8 +35,8 @@ def run(
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    read_job(parameters, program=program, scenario=scenario)
-    job = Job(machine, program, scenario, duration, record, free_run, stay, state_rate)
+    read_entries(parameters, program=program, scenario=scenario)
+    job = RunOrder(machine, program, scenario, duration, record, free_run, stay, state_rate)
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:

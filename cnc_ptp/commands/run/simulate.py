@@ -15,8 +15,8 @@ from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.job import read_file, read_job
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
+from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import PLC, build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.plc_unit import error_of
@@ -74,7 +74,7 @@ def simulate(
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    job = read_job(parameters, program=program, scenario=scenario)
+    job = read_entries(parameters, program=program, scenario=scenario)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()

@@ -19,8 +19,8 @@ from scipy.linalg import expm
 from cnc_ptp.parameters.view.control_view import PlantParameters
 from cnc_ptp.parameters.view.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
 
-Row = tuple[float, ...]
-Rows = tuple[Row, Row, Row]
+Weights = tuple[float, ...]
+Rows = tuple[Weights, Weights, Weights]
 """Free, at the upper torque limit, at the lower one (index -1); there the limit is the acceleration asked for."""
 
 

@@ -28,7 +28,7 @@ class JogTopics:
     def __init__(self, warn: Callable[[int, str], None]) -> None:
         """`warn(number, text)`: tells people what happens to their messages, once for each client."""
         self._warn = warn
-        self._told: set[tuple[int, str, str]] = set()
+        self._reported: set[tuple[int, str, str]] = set()
         self._sequence: dict[tuple[str, str], int] = {}
         self._velocity: dict[str, float] = {}
         self._silence = Silence(PATIENCE)
@@ -71,8 +71,8 @@ class JogTopics:
         return self._silence.is_heard(axis, now) and client != self._client[axis]
 
     def _tell(self, error_id: int, axis: str, client: str, text: str) -> None:
-        if (error_id, axis, client) not in self._told:
-            self._told.add((error_id, axis, client))
+        if (error_id, axis, client) not in self._reported:
+            self._reported.add((error_id, axis, client))
             self._warn(error_id, text)
 
 

@@ -13,7 +13,7 @@ from cnc_ptp.nodes.topics import JOINT_STATES, PLC_INPUT
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.parameters.view.control_view import torque_per_acceleration
 from cnc_ptp.parameters.view.gears import active_gear
-from cnc_ptp.protocol.blocks import AxisBlock, Block, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, SpindleBlock
 
 MILLIMETRE = 1e-3
 DEGREE = math.pi / 180.0
@@ -34,7 +34,7 @@ class JointStates:
         """Somebody subscribes."""
         return bool(self._publisher.get_subscription_count())
 
-    def publish(self, blocks: Mapping[str, Block], stamp: Time) -> None:
+    def publish(self, blocks: Mapping[str, CycleBlock], stamp: Time) -> None:
         """The last cycle of `blocks`; units that are lost are missing. `stamp`: of that cycle."""
         message = JointState()
         message.header.stamp = stamp
@@ -46,7 +46,7 @@ class JointStates:
                     values.append(value)
         self._publisher.publish(message)
 
-    def _row(self, name: str, block: Block | None) -> tuple[float, float, float] | None:
+    def _row(self, name: str, block: CycleBlock | None) -> tuple[float, float, float] | None:
         if isinstance(block, AxisBlock):
             to_si, torque = self._to_si[name], block.actual_torque[-1]
             return block.actual_position[-1] * to_si, block.actual_velocity[-1] * to_si, torque * self._to_load[name]

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, Block, ChannelBlock, Event, PlcBlock, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, Event, PlcBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording import node_figures as figures
@@ -27,7 +27,7 @@ class Health:
         self._unit = unit
         self._block_ms = block_ms
         self._length_unit = length_unit
-        self._block: Block | None = None
+        self._block: CycleBlock | None = None
         self._blocks = 0
         self._error_texts: dict[int, str] = {}
         self._following_error = 0.0
@@ -36,7 +36,7 @@ class Health:
         self.lateness = Lateness()
         self.lost_blocks = 0
 
-    def add_block(self, block: Block) -> None:
+    def add_block(self, block: CycleBlock) -> None:
         """The block that was computed last."""
         self._block = block
         self._blocks += 1

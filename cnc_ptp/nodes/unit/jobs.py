@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 
-from cnc_ptp.protocol.blocks import Block, Command
+from cnc_ptp.protocol.blocks import Command, CycleBlock
 
 if TYPE_CHECKING:
     from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -32,8 +32,8 @@ class JobServer:
         *,
         start: Callable[[Any], list[Command]],
         halt: Command,
-        feedback: Callable[[Block, Any], None],
-        result: Callable[[Block, Any], bool | None],
+        feedback: Callable[[CycleBlock, Any], None],
+        result: Callable[[CycleBlock, Any], bool | None],
     ) -> None:
         """`start(goal)` gives the commands that begin the job, `halt` ends it; `feedback(block, message)` fills in
         progress, `result(block, message)` the result: None while the job runs, then whether it was done in full."""
@@ -87,7 +87,7 @@ class JobServer:
         if self._goal is not None:
             self._finish(self._type.Result(message="the run has ended"))
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         """Called by the node with each block that it has computed."""
         if self._goal is None or block.first_cycle < self._first_cycle:
             return

@@ -43,7 +43,7 @@ from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Block, Command, CommandRecord, CycleTick, Event, PlcBlock, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import Unit
 
@@ -105,7 +105,7 @@ class UnitNode(Node):
         """Why the node cannot go on."""
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
-        self._said = self._checked = now
+        self._heartbeat_at = self._checked = now
         self._machine = machine
         self._own_name = MACHINE if unit.kind == PLC else unit.name
 
@@ -298,7 +298,7 @@ class UnitNode(Node):
         self._gate.add_master_block(master, convert.message_to_block(message))
         self._compute_ready_blocks()
 
-    def _compute(self, tick: CycleTick, inputs: dict[str, Block]) -> None:
+    def _compute(self, tick: CycleTick, inputs: dict[str, CycleBlock]) -> None:
         with self._working():
             block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
@@ -329,15 +329,15 @@ class UnitNode(Node):
     def complete_commands(self, block: PlcBlock) -> None:
         """For subclasses: what commands of the PLC need besides what travels in its block."""
 
-    def after_block(self, block: Block) -> None:
+    def after_block(self, block: CycleBlock) -> None:
         """For subclasses: what else is to be published of a block."""
 
     def stamp(self, cycle: int) -> Time:
         return convert.time_message(self._start_ns + cycle * self._cycle_ns)
 
-    def _publish_block(self, block: Block) -> None:
+    def _publish_block(self, block: CycleBlock) -> None:
         self._block_publisher.publish(convert.block_to_message(block, self.stamp(block.first_cycle)))
-        self._said = time.monotonic()
+        self._heartbeat_at = time.monotonic()
 
     def _publish_records(self) -> None:
         for record in self.unit.take_records():
@@ -358,8 +358,8 @@ class UnitNode(Node):
         if self._alone:
             self._tick_alone()
             return
-        if now - self._said > self._watchdog / 4.0:
-            self._say()
+        if now - self._heartbeat_at > self._watchdog / 4.0:
+            self._publish_heartbeat()
         begun = self._gate.next_cycle > self._count
         patience = self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
         for source in self._gate.missing():
@@ -390,9 +390,9 @@ class UnitNode(Node):
         """To the clock: ready (-1), or in free run a block that is computed."""
         self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
 
-    def _say(self) -> None:
+    def _publish_heartbeat(self) -> None:
         """To all: this node lives."""
-        self._said = time.monotonic()
+        self._heartbeat_at = time.monotonic()
         self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=self._gate.next_cycle))
 
     @contextmanager
@@ -409,7 +409,7 @@ class UnitNode(Node):
         busy_for = 0.0
         while self.context.ok():
             if self._busy and 0.0 < busy_for < LONGEST_COMMAND:
-                self._say()
+                self._publish_heartbeat()
             busy_for = busy_for + period if self._busy else 0.0
             time.sleep(period)
 

@@ -117,8 +117,8 @@ def find(wanted: str) -> list[Declaration]:
         lambda entry: all(word in f"{entry.id} {entry.name}".lower() for word in words),
         lambda entry: all(word in f"{entry.id} {entry.name} {entry.text}".lower() for word in words),
     )
-    exact, numbered, named, told = ([entry for entry in declarations if fits(entry)] for fits in searches)
-    found = exact or numbered or [*named, *(entry for entry in told if entry not in named)]
+    exact, numbered, named, described = ([entry for entry in declarations if fits(entry)] for fits in searches)
+    found = exact or numbered or [*named, *(entry for entry in described if entry not in named)]
     if not found or not words:
         raise CncError(errors.UNKNOWN_PARAMETER, f"no parameter is called {wanted!r}{near(wanted)}")
     return found

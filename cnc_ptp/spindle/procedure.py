@@ -24,7 +24,7 @@ class Step(Enum):
 
 
 @dataclass(slots=True)
-class Job:
+class Procedure:
     """`name` of the command; the rest as the steps need it."""
 
     name: str
@@ -48,7 +48,7 @@ class Job:
 class Work:
     """The job in work of one spindle, and what became of the last one."""
 
-    job: Job | None = None
+    procedure: Procedure | None = None
     done: bool = True
     """The last job came to its end."""
     last_done: int = 0
@@ -57,22 +57,22 @@ class Work:
     @property
     def gear_request(self) -> int:
         """The stage that the PLC is to change to, 0 if none."""
-        return self.job.stage if self.job is not None and self.job.steps[0] is Step.SHIFT else 0
+        return self.procedure.stage if self.procedure is not None and self.procedure.steps[0] is Step.SHIFT else 0
 
     @property
     def changes_gear(self) -> bool:
-        return self.job is not None and self.job.stage != 0
+        return self.procedure is not None and self.procedure.stage != 0
 
     def finish(self) -> None:
         """The job in work is done."""
-        if self.job is not None:
-            self.last_done = self.job.number
-        self.job, self.done = None, True
+        if self.procedure is not None:
+            self.last_done = self.procedure.number
+        self.procedure, self.done = None, True
 
     def cancel(self) -> None:
-        self.job, self.done = None, False
+        self.procedure, self.done = None, False
 
     def forget_rotation(self) -> None:
         """The endless rotation that a gear change has interrupted does not go on after it."""
-        if self.job is not None:
-            self.job.resume = 0.0
+        if self.procedure is not None:
+            self.procedure.resume = 0.0

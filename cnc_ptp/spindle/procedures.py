@@ -14,12 +14,12 @@ from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
-from cnc_ptp.spindle.job import DIRECTIONS, Job, Step
 from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stop_way
+from cnc_ptp.spindle.procedure import DIRECTIONS, Procedure, Step
 from cnc_ptp.spindle.spindle import Spindle
 
 
-class Jobs:
+class Procedures:
     """Carries the job of one spindle out, step by step."""
 
     def __init__(self, spindle: Spindle) -> None:
@@ -32,18 +32,18 @@ class Jobs:
 
     # begin
 
-    def start(self, cycle: int, job: Job) -> None:
+    def start(self, cycle: int, procedure: Procedure) -> None:
         """Begins a job; what it needs before its first own step is put in front."""
         spindle = self._spindle
         spindle.take_tool(cycle)
-        spindle.end_job()
-        needs_reference = job.steps[0] is Step.POSITION and not spindle.referenced
+        spindle.end_procedure()
+        needs_reference = procedure.steps[0] is Step.POSITION and not spindle.referenced
         if needs_reference:
-            job.steps.appendleft(Step.SEARCH)
+            procedure.steps.appendleft(Step.SEARCH)
         if self._loop_stays_open:
-            job.steps.appendleft(Step.APPROACH)
-        spindle.work.job = job
-        spindle.programmed_speed = job.speed
+            procedure.steps.appendleft(Step.APPROACH)
+        spindle.work.procedure = procedure
+        spindle.programmed_speed = procedure.speed
         spindle.wanted_speed = 0.0
         spindle.unsettled = True
         self._begin_step(cycle)
@@ -65,23 +65,23 @@ class Jobs:
             Step.SHIFT: self._shift,
         }[self._current().steps[0]](cycle)
 
-    def _current(self) -> Job:
-        job = self._spindle.work.job
-        assert job is not None
-        return job
+    def _current(self) -> Procedure:
+        procedure = self._spindle.work.procedure
+        assert procedure is not None
+        return procedure
 
     def _approach(self, cycle: int) -> None:
         spindle = self._spindle
         self._begin(homes=self._current().homes)
         speed = spindle.motion(cycle)[1]
-        limit = self._job_speed if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
+        limit = self._procedure_speed if spindle.parameters.open_loop else spindle.parameters.velocity_control_off
         spindle.ramp_to(cycle, copysign(min(abs(speed), limit), speed))
 
     @property
-    def _job_speed(self) -> float:
+    def _procedure_speed(self) -> float:
         """Of the motion after the approach, without override."""
-        job = self._current()
-        return self._homing_speed if job.homes else self._spindle.limits.positioning(job.speed).speed
+        procedure = self._current()
+        return self._homing_speed if procedure.homes else self._spindle.limits.positioning(procedure.speed).speed
 
     def _begin(self, *, homes: bool) -> None:
         self._spindle.take(T.HOME if homes else T.POSITION)
@@ -100,27 +100,27 @@ class Jobs:
         return min(self._spindle.gear.homing_speed, self._spindle.limits.max_speed)
 
     def _position(self, cycle: int) -> None:
-        spindle, job = self._spindle, self._current()
+        spindle, procedure = self._spindle, self._current()
         self._begin(homes=False)
         position, speed, _ = spindle.motion(cycle)
-        limits = spindle.limits.positioning(job.speed * spindle.override)
+        limits = spindle.limits.positioning(procedure.speed * spindle.override)
         turn = spindle.gear.modulo_high - spindle.gear.modulo_low
-        self._turns = self._direction(position, speed, job, turn)
-        spindle.target = next_target(position, speed, job.goal, turn, self._turns, limits)
+        self._turns = self._direction(position, speed, procedure, turn)
+        spindle.target = next_target(position, speed, procedure.goal, turn, self._turns, limits)
         table = plan_positioning(position, speed, spindle.target, self._turns, limits)
         assert table is not None, "the target was chosen so that the spindle can stop there"
         spindle.follow(cycle, table)
 
-    def _direction(self, position: float, speed: float, job: Job, turn: float) -> float:
+    def _direction(self, position: float, speed: float, procedure: Procedure, turn: float) -> float:
         """The given one, else the only one permitted, else the current one in rotation and the shortest from rest."""
-        if job.direction in DIRECTIONS:
-            return DIRECTIONS[job.direction]
+        if procedure.direction in DIRECTIONS:
+            return DIRECTIONS[procedure.direction]
         if self._spindle.parameters.preferred_direction:
             return float(self._spindle.parameters.preferred_direction)
-        if speed and job.direction != "shortest":
+        if speed and procedure.direction != "shortest":
             return copysign(1.0, speed)
         limits = self._spindle.limits.positioning(0.0)
-        return shortest_direction(position + copysign(stop_way(abs(speed), limits), speed), job.goal, turn)
+        return shortest_direction(position + copysign(stop_way(abs(speed), limits), speed), procedure.goal, turn)
 
     def _halt(self, cycle: int) -> None:
         spindle = self._spindle
@@ -136,11 +136,11 @@ class Jobs:
 
     def replan(self, cycle: int) -> bool:
         """Another override in a positioning; False where the spindle brakes for its target already."""
-        spindle, job = self._spindle, self._current()
-        if job.steps[0] is not Step.POSITION or spindle.target is None:
+        spindle, procedure = self._spindle, self._current()
+        if procedure.steps[0] is not Step.POSITION or spindle.target is None:
             return True
         position, speed, _ = spindle.motion(cycle)
-        limits = spindle.limits.positioning(job.speed * spindle.override)
+        limits = spindle.limits.positioning(procedure.speed * spindle.override)
         table = plan_positioning(position, speed, spindle.target, self._turns, limits)
         if table is None:
             return False
@@ -149,8 +149,8 @@ class Jobs:
 
     def advance(self, cycle: int, actual_speed: float) -> None:
         """Is the step in work done? Then the next one begins in this cycle, or the job is over."""
-        job = self._current()
-        step = job.steps[0]
+        procedure = self._current()
+        step = procedure.steps[0]
         if step is Step.APPROACH:
             done = self._approached(cycle)
         elif step is Step.SEARCH:
@@ -159,10 +159,10 @@ class Jobs:
             done = self._shifted(cycle)
         else:
             done = self._stands(cycle, actual_speed)
-        if not done or self._spindle.work.job is not job:
+        if not done or self._spindle.work.procedure is not procedure:
             return
-        job.steps.popleft()
-        if job.steps:
+        procedure.steps.popleft()
+        if procedure.steps:
             self._begin_step(cycle)
         else:
             self._finish()
@@ -250,18 +250,18 @@ class Jobs:
         return False
 
     def _finish(self) -> None:
-        spindle, job = self._spindle, self._current()
+        spindle, procedure = self._spindle, self._current()
         spindle.work.finish()
         spindle.programmed_speed = 0.0
         spindle.take(T.FINISH if spindle.powered else T.FINISH_WITHOUT_POWER)
-        if job.name in ("home", "stop"):
+        if procedure.name in ("home", "stop"):
             spindle.mode = SpindleMode.STOP
 
-    def gear_changed(self, cycle: int) -> Job:
+    def gear_changed(self, cycle: int) -> Procedure:
         """The PLC has acknowledged: the parameters of the new gear count; returns the job that is over."""
-        job = self._current()
-        self._spindle.use_gear(cycle, job.stage)
+        procedure = self._current()
+        self._spindle.use_gear(cycle, procedure.stage)
         self._spindle.target = None
         self._spindle.mode = SpindleMode.STOP
         self._finish()
-        return job
+        return procedure

@@ -15,7 +15,7 @@ from cnc_ptp.protocol.blocks import Command
 UNREADABLE = 26110
 
 
-def read_job(
+def read_entries(
     machine: MachineParameters, *, program: str | None, scenario: str | None, may_be_empty: bool = False
 ) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
