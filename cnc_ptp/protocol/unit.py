@@ -89,7 +89,7 @@ class Unit(ABC):
         return False
 
     def waits_for(self) -> str:
-        """What the unit needs to go on that time alone does not bring; empty while it goes on or has nothing to do."""
+        """What the unit waits for that does not come with time alone; empty while it goes on or has nothing to do."""
         return ""
 
     def lag_share(self, block: CycleBlock) -> float:
