@@ -21,7 +21,7 @@ SILENCE = f"{PATIENCE * 1000.0:.0f} ms"
 class JogTopics:
     """Velocities that clients ask for, axis by axis: their changes, and clients that have fallen silent.
 
-    Only one client jogs an axis, until it ends its jog or falls silent; others are ignored. In free run all are ignored:
+    Only one client jogs an axis, until it ends its jog or falls silent; others are ignored. In free run all are:
     a silence in which the clock of the machine runs ahead would be a long motion.
     """
 
