@@ -44,17 +44,17 @@ def separate_nodes(given, switches, namespace):
     """The end of the clock ends the launch; the recorder, told to end, first takes what still comes."""
     from cnc_ptp.commands.output_file import check_recording
     from cnc_ptp.machine.gate import CLOCK
-    from cnc_ptp.machine.job import read_job
-    from cnc_ptp.nodes.supervisor import Job, command_lines
+    from cnc_ptp.machine.run_entries import read_entries
+    from cnc_ptp.nodes.supervisor import RunOrder, command_lines
     from cnc_ptp.nodes.topics import RECORDER
     from cnc_ptp.parameters import read_machine
 
     duration = float(given.pop("duration")) if "duration" in given else None
     rate = float(given.pop("state_rate")) if "state_rate" in given else None
-    job = Job(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
+    job = RunOrder(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
     check_recording(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
     machine = read_machine(job.machine)
-    read_job(machine, program=job.program, scenario=job.scenario)
+    read_entries(machine, program=job.program, scenario=job.scenario)
     observers = [RECORDER] if job.record else []
     return [
         node(executable, arguments, name=name, namespace=namespace, on_exit=Shutdown() if name == CLOCK else refused)
