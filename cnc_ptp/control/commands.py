@@ -23,7 +23,7 @@ def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) ->
         return None
     return (
         f"feedforward waits: at {abs(velocity):g} {unit}/s there is no room up to {limit:g} {unit}/s (P-AXIS-00212) to "
-        f"make up the following error; {feedforward.percent:g} % act, the rest does when the motion is slower"
+        f"make up the following error; {feedforward.percent:g} % is active, the rest follows when the motion is slower"
     )
 
 
@@ -59,7 +59,7 @@ class FeedforwardCommands:
         if enabled is None and weight_percent is None:
             return f"{self._subject}: set_feedforward without effect, neither enabled nor weight_percent is given"
         if weight_percent is not None and not 0.0 <= weight_percent < inf:
-            reason = f"weight_percent = {weight_percent} is no number of 0 or more (G136)"
+            reason = f"weight_percent = {weight_percent} must be a number of 0 or more (G136)"
             self._refuse("set_feedforward", BAD_WEIGHT, reason, weight_percent=weight_percent)
         self._on = self._on if enabled is None else enabled
         if weight_percent is not None:

@@ -163,7 +163,7 @@ class Arc:
             raise CncError(
                 22101,
                 f"arc around ({self.center[0]!r}, {self.center[1]!r}) with radius {self.radius:.6g} mm "
-                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm beside its target; the limit is {limit:.6g} mm",
+                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm away from its target; the limit is {limit:.6g} mm",
                 "the motion is refused",
                 miss=miss,
                 limit=limit,

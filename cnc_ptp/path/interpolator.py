@@ -171,7 +171,7 @@ class PathInterpolator:
             raise CncError(
                 22110,
                 f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element",
-                "the running one goes on",
+                "the active one continues",
                 distance_to_go=self.distance_to_go,
             )
 

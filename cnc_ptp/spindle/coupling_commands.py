@@ -52,7 +52,7 @@ class CouplingCommands:
         if master not in self._spindles:
             known = ", ".join(self._spindles)
             spindle.refuse(
-                "couple", UNKNOWN_MASTER, f"'{master}' is no spindle of the machine ({known})", master=master
+                "couple", UNKNOWN_MASTER, f"'{master}' is not a spindle of the machine ({known})", master=master
             )
         for name, value in (("factor_num", factor_num), ("factor_den", factor_den)):
             if value == 0.0:
@@ -79,10 +79,10 @@ class CouplingCommands:
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """The spindle goes on as it is, on its own; a channel ends its own couplings only. Refused with 24023."""
         if owner and owner != self.owner:
-            return f"spindle {self._spindle.name}: decouple without effect, it was not '{owner}' who has coupled it"
+            return f"spindle {self._spindle.name}: decouple without effect, it was not coupled by '{owner}'"
         if not (self.master or self.wanted):
             if owner:
-                return f"spindle {self._spindle.name}: decouple without effect, the spindle is not coupled any more"
+                return f"spindle {self._spindle.name}: decouple without effect, the spindle is no longer coupled"
             self._spindle.refuse("decouple", NOT_COUPLED, "the spindle is not coupled")
         self.master = self.wanted = ""
         return None

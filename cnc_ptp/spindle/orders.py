@@ -75,7 +75,7 @@ class Orders:
             self._spindle.refuse(command, SLAVE_LOCKED, reason, master=master)
         stops_its_own = command == "stop" and source == self.commander
         if source and source != PLC and self.source and source != self.source and not stops_its_own:
-            reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
+            reason = f"the spindle works for '{self.source}', '{source}' must wait until that is finished"
             self._spindle.refuse(command, AT_WORK, reason, owner=self.source, source=source)
 
     def must_wait(self, command: str, source: str) -> bool:

@@ -23,7 +23,7 @@ from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
 from cnc_ptp.spindle.spindle import Spindle
 
 NEEDS_REFERENCE = (
-    "the spindle has no reference point and does not home by itself (P-AXIS-00015 0x100); home it first (G74)"
+    "the spindle has no reference point and does not home automatically (P-AXIS-00015 0x100); home it first (G74)"
 )
 
 
@@ -104,7 +104,7 @@ class PositionCommands:
         spindle.require_ready("select_gear")
         if stage not in spindle.parameters.gears:
             known = ", ".join(map(str, spindle.parameters.gears))
-            reason = f"gear {stage} has no record getriebe[i]; there are {known}"
+            reason = f"gear {stage} has no record getriebe[i]; known are: {known}"
             spindle.refuse("select_gear", NO_SUCH_GEAR, reason, gear=stage)
         if stage == spindle.gear.stage:
             return f"spindle {spindle.name}: gear {stage} is selected already"
@@ -127,7 +127,7 @@ class PositionCommands:
             return None
         if abs(procedure.resume) > spindle.gear.max_speed:
             rpm, limit = abs(procedure.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
-            above = f"speed {rpm:g} rpm of before is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
+            above = f"the previous speed {rpm:g} rpm is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
             return spindle.warn(cycle, SPEED_LIMITED, f"{above} (P-AXIS-00212); the spindle stays at rest")
         spindle.rotate(cycle, procedure.resume)
         return None

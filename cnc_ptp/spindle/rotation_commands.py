@@ -109,7 +109,7 @@ class RotationCommands:
         if spindle.state == S.CONTINUOUS_MOTION:
             spindle.apply_speed(cycle)
         elif spindle.state == S.DISCRETE_MOTION and not self._procedures.replan(cycle):
-            return f"spindle {spindle.name}: {what} does not change the positioning in work (brake phase)"
+            return f"spindle {spindle.name}: {what} does not change the active positioning (brake phase)"
         return None
 
     def do_set_limits(

@@ -142,7 +142,7 @@ class SpindleCycles:
             return
         wanted = spindle.wanted_speed / DEG_S_PER_RPM
         seconds = f"{spindle.parameters.speed_time:g} s"
-        missing = f"was not reached {seconds} after the setpoint got there"
+        missing = f"was not reached {seconds} after the setpoint"
         if spindle.speed_lost_at > -inf:
             missing = f"was lost and has not come back for {seconds}"
         limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"

@@ -98,7 +98,7 @@ class SpindleUnit(Unit):
             return f"spindle {self.name} waits for the PLC to change to gear {block.gear_request}"
         reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
         if reason and open_orders:
-            return f"spindle {self.name} still has {open_orders} of the PLC's commands to do: {reason}"
+            return f"spindle {self.name} still has {open_orders} of the PLC's commands to carry out: {reason}"
         held = reason and block.state[-1] == S.DISCRETE_MOTION
         return f"spindle {self.name} is held by override 0" if held else ""
 
@@ -184,9 +184,11 @@ class SpindleUnit(Unit):
         spindle, procedure = self.spindle, self.spindle.work.procedure
         numbers = [procedure.number] if procedure is not None and procedure.homes else []
         numbers += [order.number for order in self._orders.waiting if order.command == "home"]
-        reference = "the reference point of before counts" if spindle.referenced else "there is no reference point"
+        reference = (
+            "the previous reference point remains valid" if spindle.referenced else "there is no reference point"
+        )
         for number in numbers:
-            text = f"{by} before the zero pulse, homing (order {number}) is given up; {reference}"
+            text = f"{by} before the zero pulse, homing (order {number}) is aborted; {reference}"
             self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
 
     @staticmethod
