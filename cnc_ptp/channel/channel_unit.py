@@ -16,7 +16,7 @@ from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck
 from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.channel.waits import Outgoing
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Pairs, Program
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
@@ -110,7 +110,7 @@ class ChannelUnit(Unit):
         """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
         self._require_idle("load")
         if text is None:
-            self._refuse("load", NO_TEXT, f"no text came with program '{program}'")
+            self._refuse("load", NO_TEXT, f"no text came with program '{program}'", program=program)
         prepared = self._prepared is not None and self._prepared.text == text and self._prepared.program.file == program
         self._program = self._prepared.program if prepared and self._prepared else parse_program(text, program)
         self._sequence.source = NO_SOURCE
@@ -143,7 +143,11 @@ class ChannelUnit(Unit):
         limit = self._parameters.max_override_percent
         if not 0.0 <= percent <= limit:
             self._refuse(
-                "set_override", BAD_OVERRIDE, f"percent = {percent} is not within 0 ... {limit:g} (P-CHAN-00056)"
+                "set_override",
+                BAD_OVERRIDE,
+                f"percent = {percent} is not within 0 ... {limit:g} (P-CHAN-00056)",
+                percent=percent,
+                limit=limit,
             )
         self._override_percent = float(percent)
         self._apply_override()
@@ -172,7 +176,7 @@ class ChannelUnit(Unit):
         open_requests = self._sequence.open_requests
         if id not in open_requests:
             waiting = ", ".join(map(str, sorted(open_requests))) or "none"
-            self._refuse("acknowledge", NOTHING_TO_ACKNOWLEDGE, f"no request {id} waits (waiting: {waiting})")
+            self._refuse("acknowledge", NOTHING_TO_ACKNOWLEDGE, f"no request {id} waits (waiting: {waiting})", id=id)
         self._sequence.acknowledge(id)
 
     def do_measuring_event(self, cycle: int) -> None:
@@ -308,13 +312,16 @@ class ChannelUnit(Unit):
         for node, state in self._axes.states.items():
             if state != AxisStateCode.STANDSTILL:
                 self._refuse(
-                    command, AXIS_NOT_READY, f"axis {node} is in {state_name(state)}, it must be in Standstill"
+                    command,
+                    AXIS_NOT_READY,
+                    f"axis {node} is in {state_name(state)}, it must be in Standstill",
+                    axis=node,
                 )
         for node in self._axes.beside:
-            self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done")
+            self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done", axis=node)
         for node in self.lost:
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
-                self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more")
+                self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more", unit=node)
         ready = self._ready(command, program, modal)
         if ready is not None:
             blocks, modal = ready.blocks, ready.modal_at_end
@@ -431,12 +438,19 @@ class ChannelUnit(Unit):
 
     def _require_idle(self, command: str) -> None:
         if self._error_id:
-            self._refuse(command, NOT_NOW, f"the channel is in error P-ERR-{self._error_id}; reset it first")
+            self._refuse(
+                command,
+                NOT_NOW,
+                f"the channel is in error P-ERR-{self._error_id}; reset it first",
+                error=self._error_id,
+            )
         if self._sequence.phase is not Phase.IDLE:
-            self._refuse(command, NOT_NOW, f"a program is running (line {self._sequence.source.line})")
+            line = self._sequence.source.line
+            self._refuse(command, NOT_NOW, f"a program is running (line {line})", line=line)
 
-    def _refuse(self, command: str, error_id: int, reason: str) -> NoReturn:
-        raise CncError(error_id, f"channel {self.name}: {command} refused: {reason}; nothing was changed")
+    def _refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
+        where = f"channel {self.name}: {command} refused"
+        raise CncError(number, reason, "nothing was changed", where=where, **values)
 
 
 PHASE_STATES = {
