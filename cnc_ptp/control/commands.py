@@ -17,7 +17,7 @@ FULL_WEIGHT = 100.0
 
 
 def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) -> str | None:
-    """What to tell when feedforward waits at a constant set `velocity` (mm/s, deg/s) for room that is not there."""
+    """The warning when feedforward waits at a constant set `velocity` (mm/s, deg/s) for missing velocity reserve."""
     limit = feedforward.take_wait()
     if limit is None:
         return None
@@ -32,7 +32,7 @@ class FeedforwardLoop(Protocol):
 
     @property
     def feedforward(self) -> Feedforward:
-        """That of the gear in work."""
+        """The control loop of the active gear."""
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136."""
@@ -53,7 +53,7 @@ class FeedforwardCommands:
     ) -> str | None:
         """G135/G137 (`enabled`) and G136 (`weight_percent`); what is left out stays. Refusal 23060.
 
-        A warning when nothing is asked for, when a weight above 100 is limited to it (TF5200 feedforward 3), or where
+        A warning when nothing is given, when a weight above 100 is limited to it (TF5200 feedforward 3), or where
         there is no feedforward (P-AXIS-00223).
         """
         if enabled is None and weight_percent is None:

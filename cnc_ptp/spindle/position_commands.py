@@ -62,7 +62,7 @@ class PositionCommands:
         return self._slower(cycle, speed)
 
     def _slower(self, cycle: int, speed: float) -> str | None:
-        """What people hear of a positioning speed in °/s that tool or control limit do not permit."""
+        """The warning for a positioning speed in °/s that tool or control limit do not permit."""
         limits = self._spindle.limits
         used = limits.max_positioning_speed
         if speed <= used:
@@ -95,10 +95,10 @@ class PositionCommands:
         self._procedures.start(cycle, Procedure("home", deque([Step.SEARCH, Step.HALT])))
 
     def do_select_gear(self, cycle: int, *, stage: int, resume: bool = True) -> str | None:
-        """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear and says `gear_changed`.
+        """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear (`gear_changed`).
 
-        An endless rotation goes on after that, unless `resume` is False: who commands says how it goes on.
-        Nothing happens for the gear in use. Refused with 24003 and 24014; 24007 as for `orient`.
+        An endless rotation resumes after that, unless `resume` is False: then the commander decides how to continue.
+        No effect for the gear in use. Refused with 24003 and 24014; 24007 as for `orient`.
         """
         spindle = self._spindle
         spindle.require_ready("select_gear")
@@ -118,7 +118,7 @@ class PositionCommands:
         return self._slower(cycle, procedure.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
-        """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""
+        """The PLC has changed the gear; a previous endless rotation resumes. Refused with 24015."""
         spindle = self._spindle
         if not spindle.work.gear_request:
             spindle.refuse("gear_changed", NO_GEAR_CHANGE, "no gear change waits for its acknowledgement")
