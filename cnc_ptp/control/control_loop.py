@@ -31,7 +31,7 @@ HISTORY = 16
 
 
 class ControlCycle(NamedTuple):
-    """Actual values and commands of a cycle; mm, mm/s (deg, deg/s), Nm (N), friction current in the unit of the drive."""
+    """Values and commands of a cycle; mm, mm/s (deg, deg/s), Nm (N), friction current in the unit of the drive."""
 
     actual_position: float
     actual_velocity: float

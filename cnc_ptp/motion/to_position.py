@@ -161,7 +161,8 @@ def _leave_at_rising_acceleration(
 ) -> float | None:
     """Acceleration at which a piece of jerk +J from a to `end`, started at x with v, is left to stop at `distance`.
 
-    None if it is not left. Within the piece the deceleration peak √q is above A- outside -edge < a < edge, edge² = A-² - c.
+    None if it is not left. Within the piece the deceleration peak √q is above A- outside -edge < a < edge, edge² = A-²
+    - c.
     """
     c = v * jerk - 0.5 * a * a
     rest = jerk * jerk * (distance - x) + a * (c + a * a / 6.0)

@@ -12,7 +12,7 @@ from cnc_ptp.nc.canonical import Source
 class ProgramError(CncError):
     """A fault in an NC program: nothing of the block was executed.
 
-    `reason` is the bare fault, `message` adds file, line, column and the line's text; `caret` is the line with a mark
+    `reason` is the fault alone, `message` adds file, line, column and the line's text; `caret` is the line with a mark
     below it.
     """
 

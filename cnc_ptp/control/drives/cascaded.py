@@ -286,7 +286,7 @@ class CascadedDrive:
     def _impulse_at_rest(
         self, side: int, duration: float, start: tuple[float, float], end: tuple[float, float]
     ) -> float:
-        """Integral of the torque demand of the velocity controller over a step at rest, from values and slopes at its ends.
+        """Integral of the torque demand over a step at rest, from values and slopes at both ends.
 
         `start`, `end`: set velocity and integral. A current loop outputs it later: Ti m' = demand - m.
         """
