@@ -101,7 +101,7 @@ def positioning_ended(block: SpindleBlock) -> str:
 
 def homing_ended(block: SpindleBlock) -> str:
     if block.referenced[-1]:
-        return "the homing was aborted, the previous reference point is kept"
+        return "the homing was aborted, the previous reference point remains valid"
     return "the homing has ended without a reference"
 
 

@@ -223,7 +223,7 @@ def test_a_speed_that_never_comes_ends_in_an_error(monkeypatch: pytest.MonkeyPat
     drive = StuckDrive(stuck=False, limit=400.0 * RPM)
     monkeypatch.setattr("cnc_ptp.spindle.spindle_unit.make_drive", lambda *_: drive)
     bench = run("M3 S1000\nG01 X20 F6000", machine_of(channel_spindle("S", "s", 4, MVS_SVS)))
-    text = "spindle s: speed 1000 rpm was not reached 5 s after the setpoint got there (P-AXIS-00217, P-MACH-00050)"
+    text = "spindle s: speed 1000 rpm was not reached 5 s after the setpoint (P-AXIS-00217, P-MACH-00050)"
     assert bench.errors() == [
         f"P-ERR-24013 {text}; the spindle stops on its ramp (ErrorStop)",
         "P-ERR-22012 channel channel: s is in error P-ERR-24013; the path stops on its ramp and the program is aborted",

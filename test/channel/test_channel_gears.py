@@ -158,7 +158,7 @@ def test_a_speed_beyond_every_gear_is_refused_before_anything_moves() -> None:
         0.1
     )
     assert bench.refusals() == [
-        "P-ERR-21069 test.nc line 3 column 1 'S8000 M3': speed 8000 rpm of spindle S lies in no gear stage "
+        "P-ERR-21069 test.nc line 3 column 1 'S8000 M3': speed 8000 rpm of spindle S is in no gear stage "
         "(P-CHAN-00058, P-CHAN-00055): M40 50 to 560 rpm, M41 400 to 800 rpm, M42 700 to 3500 rpm, "
         "M43 3501 to 4000 rpm, M44 3800 to 5500 rpm, M45 5400 to 7000 rpm"
     ]

@@ -125,7 +125,7 @@ def test_a_jog_that_is_refused_or_ends_at_the_limit_says_so(machine):
     assert call("do", "x", "move_absolute", "290", "--wait").exit_code == 0
     done = call("jog", "x", "+", "--speed", "100")
     assert done.exit_code == 0 and "x: Standstill at " in done.stdout
-    assert "P-ERR-23070 axis x: the jog has come to the positive soft limit 300.0 mm (P-AXIS-00178)" in done.stderr
+    assert "P-ERR-23070 axis x: the jog has reached the positive soft limit 300.0 mm (P-AXIS-00178)" in done.stderr
     assert place("x") == pytest.approx(300.0, abs=0.1)
 
 

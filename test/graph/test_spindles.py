@@ -80,7 +80,7 @@ def test_services_of_a_spindle(client):
     client.done("s", "select_gear", stage=2, source="")
     client.wait_last("s", lambda block: block.gear[-1] == 2, "gear 2")
     client.done("s", "reset_limits")
-    text = "spindle s: select_gear refused: gear 4 has no record getriebe[i]; there are 1, 2; nothing was changed"
+    text = "spindle s: select_gear refused: gear 4 has no record getriebe[i]; known are: 1, 2; nothing was changed"
     client.refused("s", "select_gear", 24014, text, stage=4, source="")
     text = "spindle s: stop refused: unknown source 'plcs'; nothing was changed. Known: plc"
     client.refused("s", "stop", 22001, text, source="plcs")
@@ -142,7 +142,7 @@ def test_a_homing_that_is_overtaken_is_no_success(client):
     client.done("t", "stop", source="")
     status, result = client.result_of(goal)
     assert (status, result.success) == (GoalStatus.STATUS_ABORTED, False)
-    assert result.message == "the homing was aborted, the previous reference point is kept"
+    assert result.message == "the homing was aborted, the previous reference point remains valid"
 
 
 def test_actions_wait_for_the_gear_and_a_cancel_forgets_them(client):

@@ -119,12 +119,12 @@ def test_a_program_that_nobody_will_help_is_aborted(program: str, scenario: str,
 @pytest.mark.parametrize(
     ("override", "orders", "reason"),
     [
-        (0, "start, direction: cw, speed_rpm: 500", "1 of the PLC's commands to do: it is held by override 0"),
-        (0, "orient, position_deg: 90", "1 of the PLC's commands to do: it is held by override 0"),
+        (0, "start, direction: cw, speed_rpm: 500", "1 of the PLC's commands to carry out: it is held by override 0"),
+        (0, "orient, position_deg: 90", "1 of the PLC's commands to carry out: it is held by override 0"),
         (
             100,
             "start, direction: cw, speed_rpm: 123.4567, source: plc}\n- {at: 0.1, to: s, do: orient, position_deg: 90",
-            "2 of the PLC's commands to do: its speed is not reached",
+            "2 of the PLC's commands to carry out: its speed is not reached",
         ),
     ],
 )
