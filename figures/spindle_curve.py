@@ -22,7 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from cnc_ptp.commissioning.curve_points import CurvePoint, parse_point
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import CurveParameters
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.plots.colours import BLUE, FAINT, INK, RED, SOFT
 from cnc_ptp.plots.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 from cnc_ptp.spindle.acceleration_curves import raw_pieces

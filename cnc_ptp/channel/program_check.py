@@ -29,7 +29,7 @@ from cnc_ptp.parameters import (
     SpindleParameters,
     catalogue,
 )
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from cnc_ptp.protocol.command_texts import COMMAND_TEXTS, argument_text
+from cnc_ptp.protocol.command_help import COMMAND_TEXTS, argument_text
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
 
 INTRODUCTION = """\

@@ -13,7 +13,7 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -184,7 +184,7 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 
 
 @click.command()
-@arguments.MACHINE
+@node_command_line.MACHINE
 @click.option("--duration", type=DURATION, help="Seconds; without it the run ends automatically.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @click.option("--free-run", is_flag=True, help="As fast as all nodes report their blocks.")
@@ -206,7 +206,7 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

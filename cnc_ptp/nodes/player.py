@@ -18,7 +18,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.observed_topics import is_input
 from cnc_ptp.nodes.topics import block_topic, published_topic
 from cnc_ptp.nodes.unit.claim import claim_unit
@@ -219,7 +219,7 @@ def command(recording: str, rate: float, inputs: bool) -> None:
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

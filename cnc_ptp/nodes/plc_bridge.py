@@ -16,7 +16,7 @@ from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import PLC, build_unit
-from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
@@ -239,12 +239,12 @@ def without_text(entry: Entry) -> Entry:
 
 
 @click.command()
-@arguments.MACHINE
+@node_command_line.MACHINE
 @click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
-@arguments.RECORDERS
-@arguments.STATE_RATE
+@node_command_line.RECORDERS
+@node_command_line.STATE_RATE
 def command(
     machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int, state_rate: float | None
 ) -> None:
@@ -266,7 +266,7 @@ def command(
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.topics import (
@@ -239,7 +239,7 @@ def _namespace(logger: str) -> str:
 
 
 @click.command()
-@arguments.MACHINE
+@node_command_line.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
 def command(machine: str, output: str) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
@@ -251,7 +251,7 @@ def command(machine: str, output: str) -> None:
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from typing import Any
 
 from cnc_ptp import action
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments
+from cnc_ptp.nodes import node_command_line
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
@@ -22,7 +22,7 @@ class SpindleNode(UnitNode):
     """
 
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
-        arguments.require_unit(machine, name, ["spindle"])
+        node_command_line.require_unit(machine, name, ["spindle"])
         super().__init__(machine, build_unit(machine, name), **options)
         self._numbers: dict[str, int] = {}
 
@@ -108,7 +108,7 @@ def homing_ended(block: SpindleBlock) -> str:
 ENDED = {"orient": positioning_ended, "home": homing_ended}
 """The message about a job that something else has ended."""
 
-main = arguments.unit_main(SpindleNode, "spindle")
+main = node_command_line.unit_main(SpindleNode, "spindle")
 
 if __name__ == "__main__":
     main()

@@ -13,7 +13,7 @@ from cnc_ptp.plc.axis_groups import AxisGroups
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.setpoint_file import placed
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
-from cnc_ptp.plc.spindle_groups import spindle_answers
+from cnc_ptp.plc.spindle_answers import spindle_answers
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (
     AxisBlock,

@@ -15,7 +15,7 @@ from cnc_ptp.parameters import (
     Synchronisation,
     load_machine,
 )
-from cnc_ptp.parameters.units import to_kernel
+from cnc_ptp.parameters.list_units import to_kernel
 from cnc_ptp.parameters.view.encoder import resolution
 
 NONE = Synchronisation.NO_SYNCH

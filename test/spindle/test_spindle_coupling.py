@@ -11,7 +11,7 @@ from machine_support import MILL, MachineBench, spindle_bench, spindle_parameter
 from spindle_support import two_gears
 
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.plc.spindle_groups import spindle_answers
+from cnc_ptp.plc.spindle_answers import spindle_answers
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CycleTick, SpindleBlock
 from cnc_ptp.spindle.spindle_unit import SpindleUnit

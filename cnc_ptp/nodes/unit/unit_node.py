@@ -38,7 +38,7 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.nodes.unit.claim import claim_unit
-from cnc_ptp.nodes.unit.health import Health
+from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
@@ -90,7 +90,7 @@ class UnitNode(Node):
         self._start_ns = 0
         rotary = unit.kind == "spindle" or (unit.kind == "axis" and machine.axes[unit.name].rotary)
         block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
-        self.health = Health(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
+        self.diagnostics = UnitDiagnostics(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
         self._state_period = period_cycles(machine, state_rate)
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
@@ -303,10 +303,10 @@ class UnitNode(Node):
             block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publish_block(block)
-        self.health.add_block(block)
+        self.diagnostics.add_block(block)
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
-            self.health.add_lateness((time.monotonic_ns() - scheduled) // 1000)
+            self.diagnostics.add_lateness((time.monotonic_ns() - scheduled) // 1000)
         else:
             self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
@@ -343,7 +343,7 @@ class UnitNode(Node):
         for record in self.unit.take_records():
             self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
         for event in self.unit.take_events():
-            self.health.note(event)
+            self.diagnostics.note(event)
             self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     # watchdog
@@ -370,7 +370,7 @@ class UnitNode(Node):
     def _lose(self, source: str, reason: str | None) -> None:
         """Continues without `source`; the unit decides what that means for its motion."""
         if reason is not None:
-            self.health.lost_blocks += 1
+            self.diagnostics.lost_blocks += 1
             self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
@@ -416,11 +416,11 @@ class UnitNode(Node):
     def _publish_diagnostics(self) -> None:
         if not self._running:
             return
-        message = DiagnosticArray(status=[self.health.status(self._gate.duplicates)])
+        message = DiagnosticArray(status=[self.diagnostics.status(self._gate.duplicates)])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
-        if self.health.lateness.counts:
-            lateness = self.health.lateness.message(self.unit.name)
+        if self.diagnostics.lateness.counts:
+            lateness = self.diagnostics.lateness.message(self.unit.name)
             lateness.header.stamp = message.header.stamp
             self._lateness_publisher.publish(lateness)
 

@@ -6,9 +6,9 @@ from cnc_ptp.parameters.check.control_notices import control_notices
 from cnc_ptp.parameters.check.friction_notices import friction_notices
 from cnc_ptp.parameters.check.spindle_checks import above_control_limit
 from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.axis_view import is_modulo
 from cnc_ptp.parameters.view.channel_members import spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cnc_ptp.parameters import units
+from cnc_ptp.parameters import list_units
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import (
     Array,
@@ -93,7 +93,7 @@ class ParameterSet:
 
     def kernel(self, number: str, *indexes: int) -> float:
         """Value of an int or float parameter in kernel units (mm, °, s, ratios)."""
-        return units.to_kernel(self.number(number, *indexes), self.unit(number))
+        return list_units.to_kernel(self.number(number, *indexes), self.unit(number))
 
     def percent(self, number: str) -> float:
         """Value in 0.1 % as percent."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, NamedTuple
 
 from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.channel_members import (
     ChannelAxisEntry,
     axis_entries,

@@ -19,7 +19,7 @@ Finding = tuple[bytes, str]
 """A level of DiagnosticStatus and what is wrong."""
 
 
-class Health:
+class UnitDiagnostics:
     """Gathers the diagnostics of a unit's node; a report covers the time since the previous one."""
 
     def __init__(self, unit: Unit, *, block_ms: float, length_unit: str) -> None:
