@@ -1,4 +1,4 @@
-"""The one exception type of the kernel: a P-ERR number, where and why, what happens now, and the values of the text."""
+"""The exception type of the kernel: P-ERR number, place, reason, effect, and the values of the text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all functions of an axis share: its state, its setpoints, refusals and faults."""
+"""The core of an axis: its state, its setpoints, refusals and faults."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.carried import CarriedMotion
-from cnc_ptp.axis.checks import MotionChecks
+from cnc_ptp.axis.command_checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import ExternalSetpoints
@@ -40,7 +40,7 @@ Report = Callable[[int, int, str], None]
 
 
 class Axis:
-    """The setpoint side of an axis. Commands (one class a group) change it, the unit around it computes cycles.
+    """The setpoint side of an axis. Commands (one class per group) change it, the unit around it computes cycles.
 
     The setpoint is the basic motion (PTP generator, path, master) plus what a compensation, external setpoints and a
     flying saw on a path add. Every fault ends in ErrorStop on the axis' own ramp (P-AXIS-00002 and the ramp time
@@ -74,7 +74,7 @@ class Axis:
             window=parameters.position_window, cycles=round(parameters.target_time / cycle_time)
         )
         self.coupling: Coupling | None = None
-        """To the master; it stays until a reset when an error has put the axis on its own ramp."""
+        """To the master; after an error has put the axis on its own ramp it is kept until a reset."""
         self.carried: CarriedMotion | None = None
         """What the coupling adds to the path of a channel; None where it is the basic motion itself."""
         self.slaves: set[str] = set()
@@ -101,11 +101,11 @@ class Axis:
     # setpoints
 
     def setpoint(self, cycle: int) -> MotionState:
-        """Position, velocity, acceleration and jerk at `cycle`, as they stand before a command that acts there."""
+        """Position, velocity, acceleration and jerk at `cycle`, before a command that acts there."""
         return self.superimposed(cycle, self.ptp.state(cycle))
 
     def superimposed(self, cycle: int, base: MotionState) -> MotionState:
-        """The basic motion at `cycle` with all that is added."""
+        """The basic motion at `cycle` with everything that is superimposed."""
         if not self.superposed:
             return base
         p, v, a, j = self.external.at(cycle, self.compensation.at(cycle, base))
@@ -115,7 +115,7 @@ class Axis:
         return p + position, v + velocity, a + acceleration, j + jerk
 
     def shift(self, cycle: int) -> float:
-        """Where the axis is beside its basic motion for good, mm (deg): targets of the axis lie there too."""
+        """Lasting offset of the axis from its basic motion, mm (deg); targets of the axis have it too."""
         self.setpoint(cycle)
         return self.compensation.offset + self.external.zero(cycle)
 
@@ -123,13 +123,14 @@ class Axis:
         return self.superposition_moves(cycle) or not self.ptp.finished(cycle)
 
     def superposition_moves(self, cycle: int) -> bool:
-        """Compensation or external setpoints move the axis on top of its basic motion."""
+        """Compensation or external setpoints move the axis in addition to its basic motion."""
         return self.superposed and (self.compensation.moving or self.external.moving(cycle))
 
     def absorb(self, cycle: int) -> None:
-        """The basic motion takes over what compensation and external setpoints have added; both are over.
+        """The basic motion takes over what compensation and external setpoints have added; both end.
 
-        Their acceleration is not limited in jerk and ends here: on a jerk-limited ramp it would drive the velocity on.
+        Their acceleration is not limited in jerk and ends here: on a jerk-limited ramp it would raise the velocity
+        further.
         """
         if self.superposed:
             position, velocity, _, _ = self.setpoint(cycle)
@@ -137,9 +138,9 @@ class Axis:
             self._end_superposition()
 
     def _bearable(self, velocity: float, acceleration: float) -> float:
-        """What of an acceleration may be ramped down: a²/2J must not lead the axis above P-AXIS-00212, or through 0.
+        """The part of an acceleration to be ramped down: a²/2J must not lead above P-AXIS-00212, or through 0.
 
-        Neither may it be more than the axis itself, or the job that has made it, would take.
+        Nor may it exceed the limits of the axis, or of the job that caused it.
         """
         limits = self.own_limits if self.ptp.job is None else self.ptp.job.limits
         jerk = min(self.own_limits.jerk, limits.jerk)
@@ -150,7 +151,7 @@ class Axis:
         return acceleration if abs(acceleration) <= bearable else copysign(bearable, acceleration)
 
     def brake(self, cycle: int, setpoint: MotionState) -> None:
-        """The own ramp begins at `setpoint`, without what is added; the acceleration of that ends at once."""
+        """The axis' own ramp starts at `setpoint`; superimposed motions and their acceleration end immediately."""
         position, velocity, acceleration, _ = setpoint
         if self.superposed:
             own = 0.0 if self.state == S.SYNCHRONIZED_MOTION else self.ptp.state(cycle)[2]
@@ -160,7 +161,7 @@ class Axis:
         self.ptp.stop(cycle, self.own_limits, at_least=True)
 
     def leave_master(self, cycle: int) -> None:
-        """The own generator goes on where the coupling has led the axis, with what it can bear of the acceleration."""
+        """The axis' own generator continues the motion of the coupling, with as much acceleration as it may keep."""
         self.absorb(cycle)
         position, velocity, acceleration, _ = self.ptp.state(cycle)
         bearable = self._bearable(velocity, acceleration)
@@ -168,7 +169,7 @@ class Axis:
             self.ptp.take_over(cycle, position, velocity, bearable)
 
     def place(self, cycle: int, position: float) -> None:
-        """A standing axis without position control was moved to `position`."""
+        """An axis at a standstill without position control was moved to `position`."""
         self.ptp.take_over(cycle, position, 0.0, 0.0)
         self._end_superposition()
 
@@ -181,7 +182,7 @@ class Axis:
     def stop(self, cycle: int, *, locks: bool = True) -> None:
         """Basic motion, compensation and external setpoints come to rest, each on its ramp; `locks` as in the PTP.
 
-        A target that the external setpoints were to reach counts no more.
+        A target that the external setpoints were to reach no longer counts.
         """
         self.setpoint(cycle)  # brings compensation and external setpoints up to this cycle
         self.target_window.target = None
@@ -190,7 +191,7 @@ class Axis:
         self.external.disable(cycle)
 
     def set_override(self, cycle: int, percent: float) -> bool:
-        """Lets an override act; False when it does not change the motion in work."""
+        """Applies an override; False when it does not change the active motion."""
         acts = self.ptp.set_override(cycle, percent / 100.0)
         self.override_percent = float(percent) if self.ptp.override else 0.0
         return acts
@@ -223,28 +224,28 @@ class Axis:
         return self._master_has_job if self.coupled else self.ptp.job is not None
 
     def follow_master(self, target_velocity: float, has_job: bool) -> None:
-        """What the master says about its motion besides its setpoints."""
+        """What the master reports about its motion besides its setpoints."""
         self._master_velocity, self._master_has_job = target_velocity, has_job
 
     def target_velocity(self) -> float:
-        """Velocity (mm/s, deg/s) of the motion in work at 100 % override; of a slave |ratio| times its master's."""
+        """Velocity (mm/s, deg/s) of the active motion at 100 % override; of a slave |ratio| times its master's."""
         if self.coupling is not None:
             return abs(self.coupling.ratio) * self._master_velocity
         return self.ptp.target_velocity
 
-    def give_up_coupling(self, cycle: int, error_id: int, reason: str) -> None:
-        """A coupling that cannot begin; it has not moved the axis yet. A path that counts on it must not go on."""
+    def abort_coupling(self, cycle: int, error_id: int, reason: str) -> None:
+        """A coupling that cannot start; it has not moved the axis yet. A path that needs it must not continue."""
         assert self.coupling is not None
         if self.carried is not None:
-            self.fault(cycle, error_id, f"cannot follow {self.coupling.master} on top of the path: {reason}")
+            self.fault(cycle, error_id, f"cannot follow {self.coupling.master} in addition to the path: {reason}")
             return
-        text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands, it is not coupled"
+        text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands and is not coupled"
         self.coupling = None
         self.take(T.DECOUPLE_AT_REST if self.powered else T.DECOUPLE_WITHOUT_POWER)
         self._report_warning(cycle, error_id, text)
 
     def couples_actual(self) -> bool:
-        """Slaves follow the actual values: of a main master without enable, of an axis with a delayed error."""
+        """Slaves follow the actual values: of a main master without enable, or of an axis with a delayed error."""
         if not self.parameters.couple_to_actual:
             return False
         if self.error_id:
@@ -266,11 +267,11 @@ class Axis:
         return self.ptp.states(cycle, count if due is None else max(1, min(count, due - cycle)))
 
     def take(self, transition: Transition) -> None:
-        """Changes the state; nothing else does. That only the table's ways are taken is checked by every test."""
+        """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
         self.state = transition.target
 
     def advance_state(self, cycle: int) -> None:
-        """Ends a motion that is through at `cycle`; a request that waited for the end of a stop has begun by itself."""
+        """Ends a motion that has finished at `cycle`; a request that waited for the end of a stop has started."""
         if self.ptp.job is not None and self.state == S.STOPPING:
             self.take(T.NEW_TARGET)
             self.has_been_stopped = False
@@ -280,7 +281,7 @@ class Axis:
         if self.compensation.moving:
             return
         if self.jogs_to_limit:
-            self._tell_limit(cycle)
+            self._report_limit(cycle)
         if self.superposed and self.external.mode is not None:
             self._finish(T.GO_ON_EXTERNALLY)
         elif self.superposed and self.external.moving(cycle):
@@ -290,19 +291,19 @@ class Axis:
 
     @property
     def jogs_to_limit(self) -> bool:
-        """Only a jog has a job with an end in ContinuousMotion: to stand at the soft limit, as far as it is let."""
+        """Only a jog has a job with an end in ContinuousMotion: to stop at the soft limit if nothing ends it before."""
         return self.state == S.CONTINUOUS_MOTION and self.ptp.job is not None and isfinite(self.ptp.job.target)
 
-    def _tell_limit(self, cycle: int) -> None:
+    def _report_limit(self, cycle: int) -> None:
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
         limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
         now = "the axis stands" if rest == position else f"the axis stands at {rest:g} {self.unit}"
         if self.external.mode is not None or self.superposition_moves(cycle):
-            now = "external setpoints have the axis now"
-        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has come to the {limit.text}; {now}")
+            now = "external setpoints move the axis now"
+        self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has reached the {limit.text}; {now}")
 
     def _finish(self, transition: Transition) -> None:
-        """A stop that has finished, while external setpoints come to rest, may still be led to a new target."""
+        """A stop that has finished, while external setpoints come to rest, may still be given a new target."""
         if transition.target != self.state or self.ptp.job is not None:
             self.ptp.finish()
         self.take(transition)
@@ -344,7 +345,7 @@ class Axis:
         """Error reaction: own ramp from the setpoint of `cycle`, state ErrorStop.
 
         The slave of a gantry pair whose group has an error follows its master to standstill (`end_with_master`).
-        `setpoint` within a block, where another source than the own generator has given it.
+        `setpoint` within a block, if it comes from another source than the axis' own generator.
         """
         self.error_id = error_id
         pair = self.pair_in(error_id)

@@ -1,4 +1,4 @@
-"""Where an axis gets its basic motion from besides its own generator: the path of a channel, a master axis."""
+"""Sources of basic motion besides an axis' own generator: the path of a channel, a master axis."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
 PATH_TOLERANCE = 1e-9
-"""Largest distance (mm, deg) between an axis and the begin of the path that takes it over."""
+"""Largest distance (mm, deg) between an axis and the start of the path that takes it over."""
 
 
 def in_range(state: MotionState) -> bool:
-    """False for what no table can be made for, an infinity or a NaN: where factors of a cascade multiply."""
+    """False for an infinity or a NaN, for which no table can be made; multiplied factors of a cascade lead there."""
     p, v, a, _ = state
     return -LARGEST_STATE <= p <= LARGEST_STATE and abs(v) <= LARGEST_STATE and abs(a) <= LARGEST_STATE
 
@@ -41,7 +41,7 @@ class PathSource:
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
-        """The setpoints of the channel that moves the axis, none if no one does; switches the setpoint source."""
+        """The setpoints of the channel that moves the axis, none if no channel does; switches the setpoint source."""
         channel = self._owning_channel(inputs)
         if channel is None:
             self._leave(first_cycle)
@@ -65,7 +65,7 @@ class PathSource:
         return setpoints
 
     def watch(self, cycle: int, velocity: float) -> None:
-        """A path that waits in a direction waits no more when it turns round, or another element begins."""
+        """A path no longer waits in a direction when it turns round, or when another element begins."""
         axis, n = self._axis, cycle - self._first_cycle
         if not axis.path_direction:
             return
@@ -74,7 +74,7 @@ class PathSource:
             axis.path_direction = 0.0
 
     def put_down(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
-        """Where the path of the channel has ended below a flying saw, the axis is an ordinary slave from now on."""
+        """When the path of the channel has ended under a flying saw, the axis is an ordinary slave from now on."""
         axis = self._axis
         if self._owning_channel(inputs) is not None or not isinstance(axis.coupling, FlyingSaw):
             return
@@ -95,8 +95,8 @@ class PathSource:
                 return block
         return None
 
-    def _enter(self, cycle: int, begin: float) -> None:
-        """The channel moves the axis from now on; a fault unless it stands at `begin`, the path's first setpoint."""
+    def _enter(self, cycle: int, start: float) -> None:
+        """The channel moves the axis from now on; a fault unless it stands at `start`, the path's first setpoint."""
         axis = self._axis
         if axis.state == S.ERROR_STOP or axis.on_path:
             return
@@ -104,8 +104,8 @@ class PathSource:
         if axis.state != S.STANDSTILL:
             reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
-        elif abs(begin - position) > PATH_TOLERANCE:
-            reason = f"the path of the channel begins at {begin} {axis.unit}, the axis stands at {position} {axis.unit}"
+        elif abs(start - position) > PATH_TOLERANCE:
+            reason = f"the path of the channel begins at {start} {axis.unit}, the axis stands at {position} {axis.unit}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
         else:
             axis.absorb(cycle)
@@ -113,13 +113,13 @@ class PathSource:
             axis.take(T.ENTER_PATH)
 
     def _leave(self, cycle: int) -> None:
-        """The path is over; external setpoints on top of it go on alone, or come to rest."""
+        """The path has ended; external setpoints superimposed on it continue alone, or come to rest."""
         axis = self._axis
         if not axis.on_path:
             return
         axis.take(T.LEAVE_PATH)
         if axis.ptp.state(cycle)[1] != 0.0:
-            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel let the axis go while it moved")
+            axis.fault(cycle, PATH_NOT_ACCEPTED, "the channel released the axis while it moved")
         else:
             axis.advance_state(cycle)
 
@@ -129,7 +129,7 @@ PAIR_PATIENCE = 4
 
 
 class MasterSource:
-    """The master of a coupled axis: its set values, or its actual values where these are the ones to follow."""
+    """The master of a coupled axis: its set values, or or its actual values if those are to be followed."""
 
     def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
         """`axes` of the machine by name, `cycle_time` in s."""
@@ -140,7 +140,7 @@ class MasterSource:
         self._actual = False
         self._velocity = 0.0
         self._rest: float | None = None
-        """Where the master stood at the end of its last block, None if it moved."""
+        """Position of the master at the end of its last block, None if it moved."""
         self._first_cycle = 0
         self._gantry: list[float] | None = None
         self._gantry_distance: float | None = None
@@ -168,10 +168,10 @@ class MasterSource:
         try:
             setpoints = coupling.follow((axis.carried or axis.ptp).state(first_cycle)[0], states)
         except CncError as error:
-            axis.give_up_coupling(first_cycle, error.number, error.message)
+            axis.abort_coupling(first_cycle, error.number, error.message)
             return []
         if not all(in_range(state) for state in setpoints):
-            axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of all range")
+            axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of range")
             return []
         if axis.error_id and self._pair_ends(first_cycle, setpoints[0][0], block):
             return []
@@ -183,7 +183,7 @@ class MasterSource:
         return setpoints
 
     def _pair_ends(self, first_cycle: int, position: float, block: AxisBlock) -> bool:
-        """The slave of a gantry pair in error: it ends with its master, or alone where the master does not stop."""
+        """The slave of a gantry pair in error: it stops with its master, or alone if the master does not stop."""
         self._blocks_in_error += 1
         if not (block.set_velocity[0] or block.set_acceleration[0]):
             self._axis.end_with_master(first_cycle, position)
@@ -194,7 +194,7 @@ class MasterSource:
         return True
 
     def _allow_placing(self, coupling: Coupling, block: AxisBlock) -> None:
-        """A standing master that counts from elsewhere (it was moved without enable) does not take its slave along."""
+        """A master at a standstill whose position changed without enable does not take its slave along."""
         before, now = self._rest, block.set_position[0]
         if self._actual or block.couples_actual or before is None or before == now:
             return
@@ -217,7 +217,7 @@ class MasterSource:
     def _filtered(self, master: str, velocity: float) -> float:
         """Actual velocity of the master: 0 within its velocity window, through a first-order filter.
 
-        The filter alone would never come to rest: within the window it goes on as fast as it entered it.
+        The filter alone would never come to rest: within the window the velocity at which it was entered is kept.
         """
         parameters = self._axes[master]
         window = max(parameters.velocity_window, NEGLIGIBLE_VELOCITY)
@@ -240,7 +240,7 @@ class MasterSource:
         return self._gantry is not None and self._axis.coupled
 
     def watch_gantry(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
-        """A fault when the actual positions of a gantry pair have left their distance by more than its limit."""
+        """A fault when the actual positions of a gantry pair deviate from their distance by more than its limit."""
         if self._gantry is None or self._axis.error_id or not self._axis.coupled:
             return
         axis, coupling = self._axis, self._axis.coupling

@@ -1,4 +1,4 @@
-"""The axis: chooses its setpoint source (PTP generator or channel path), closes the position loop, keeps its state."""
+"""Axis unit: chooses its setpoint source (PTP generator, path, master), closes the position loop, keeps its state."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
 
 control_columns = attrgetter(*ControlCycle._fields)
-"""The columns of an AxisBlock with the values of a ControlCycle, which bear the same names."""
+"""The columns of an AxisBlock with the values of a ControlCycle, which have the same names."""
 
 
 class AxisUnit(Unit):
@@ -105,12 +105,12 @@ class AxisUnit(Unit):
         if block is None or block.state[-1] != S.CONTINUOUS_MOTION:
             return ""
         endless = block.status_bits[-1] & StatusBit.HAS_JOB and block.set_velocity[-1] != 0.0
-        return f"axis {self.name} drives on without an end" if endless else ""
+        return f"axis {self.name} moves endlessly" if endless else ""
 
     # commands
 
     def handler(self, command: str) -> Handler:
-        """From the group of commands that has it."""
+        """The handler of a command, from the group that has it."""
         group = next(group for group in self._commands if hasattr(group, f"do_{command}"))
         handler: Handler = getattr(group, f"do_{command}")
         return handler
@@ -126,7 +126,7 @@ class AxisUnit(Unit):
         return None
 
     def remaining_distance(self, cycle: int) -> float:
-        """What is left of the positioning in work at `cycle`, mm (deg), with its sign."""
+        """Distance to go of the active positioning at `cycle`, mm (deg), with its sign."""
         job = self._axis.ptp.job
         return 0.0 if job is None else job.target - self._axis.ptp.state(cycle)[0]
 
@@ -157,7 +157,7 @@ class AxisUnit(Unit):
         return block
 
     def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
-        """Setpoints of a master or of a channel, none where the own generator moves the axis."""
+        """Setpoints of a master or of a channel, none if its own generator moves the axis."""
         axis = self._axis
         if axis.carried is not None:
             self._path.put_down(first_cycle, inputs)
@@ -185,7 +185,7 @@ class AxisUnit(Unit):
                 break
 
     def _undisturbed_cycles(self, first_cycle: int, setpoints: list[MotionState], block: AxisBlock) -> int:
-        """The same as `_cycle` for cycles in which the axis does nothing but follow; up to a following error too large.
+        """The same as `_cycle` for cycles in which the axis only follows; up to an excessive following error.
 
         Returns their number.
         """

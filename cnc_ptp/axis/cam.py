@@ -21,7 +21,7 @@ SMALLEST_STEP = 1e-6
 """mm or deg, of the master."""
 ASCEND = f"a cam table must ascend by {SMALLEST_STEP:g} or more"
 BEGIN_TOLERANCE = 1e-6
-"""Largest distance (mm, deg) between a slave and where a table with a slave offset has it."""
+"""Largest distance (mm, deg) between a slave and its place by a table with a slave offset."""
 
 Floats = NDArray[np.float64]
 
@@ -29,8 +29,9 @@ Floats = NDArray[np.float64]
 class CamTable:
     """y(x) through the points of a table, and its derivatives.
 
-    `cyclic`: the table goes on after its end with the same slopes and curvatures, lifted by what it ends higher than it
-    begins. Otherwise it holds its first and last value outside, and begins and ends with slope and curvature 0.
+    `cyclic`: the table repeats after its end with the same slopes and curvatures, raised by the difference between its
+    end and its start. Otherwise it holds its first and last value outside, and begins and ends with slope and curvature
+    0.
     """
 
     def __init__(self, points: Sequence[Sequence[float]], *, cyclic: bool) -> None:
@@ -43,10 +44,10 @@ class CamTable:
         starts, coefficients = _cyclic_pieces(x, y) if cyclic else _single_pieces(x, y)
         self._starts: list[float] = starts.tolist()
         self._pieces: list[list[float]] = coefficients.T.tolist()
-        self._begin, self._end = float(y[0]), float(y[-1])
+        self._start, self._end = float(y[0]), float(y[-1])
 
     def turn(self, x: float) -> int:
-        """In which repetition of a cyclic table x lies; 0 is the table itself."""
+        """The repetition of a cyclic table in which x is; 0 is the table itself."""
         return floor((x - self.first) / self.length) if self.cyclic else 0
 
     def at(self, x: float) -> tuple[float, float, float, float]:
@@ -54,7 +55,7 @@ class CamTable:
         turns = self.turn(x)
         x -= turns * self.length
         if not self.cyclic and x < self.first:
-            return self._begin, 0.0, 0.0, 0.0
+            return self._start, 0.0, 0.0, 0.0
         if not self.cyclic and x >= self.last:
             return self._end, 0.0, 0.0, 0.0
         index = max(0, bisect_right(self._starts, x) - 1)
@@ -67,7 +68,7 @@ class CamTable:
 def _cyclic_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Where the pieces begin (n,) and their coefficients (4, n), cubic first.
 
-    What differs from the mean slope is periodic.
+    The deviation from the mean slope is periodic.
     """
     slope = (y[-1] - y[0]) / (x[-1] - x[0])
     rest = y - y[0] - slope * (x - x[0])
@@ -79,10 +80,10 @@ def _cyclic_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 
 def _single_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """The same of a table that is run through once.
+    """The same for a table that is run through once.
 
-    Slope and curvature 0 at both ends are two conditions more than a cubic spline has room for; a knot in the middle of
-    the first and of the last interval makes it.
+    Slope and curvature 0 at both ends are two conditions more than a cubic spline can meet; an additional knot in the
+    middle of the first and of the last interval makes room for them.
     """
     middles = 0.5 * (x[[0, -2]] + x[[1, -1]])
     knots = np.concatenate([[x[0]] * 4, np.sort(np.concatenate([x[1:-1], middles])), [x[-1]] * 4])
@@ -136,14 +137,14 @@ class CamCoupling(Coupling):
         self._slave_offset = slave_offset
 
     def change_table(self, table: CamTable) -> None:
-        """The new table comes in when the master passes the seam of the cyclic table in work."""
+        """The new table comes in when the master passes the seam of the active cyclic table."""
         self._next = table
 
     def _x(self, master_position: float) -> float:
         return (master_position - self._master_offset) / self._master_scaling
 
     def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        """Raises CncError 23053 in the first block when the slave does not stand where the slave offset has it."""
+        """Raises CncError 23053 in the first block when the slave is not where the slave offset puts it."""
         if self._turn is None:
             self._begin(position, self._x(states[0][0]))
         return [self._state(state) for state in states]
@@ -154,7 +155,7 @@ class CamCoupling(Coupling):
             self._slave_offset = position - height
         place = height + self._slave_offset
         if abs(place - position) > BEGIN_TOLERANCE:
-            reason = f"the cam table has the slave at {place:g} with its slave_offset, the axis is at {position:g}"
+            reason = f"the cam table puts the slave at {place:g} with its slave_offset, the axis is at {position:g}"
             raise CncError(CAM_POSITION, reason, place=float(place), position=position)
         self._turn = self.table.turn(x)
 

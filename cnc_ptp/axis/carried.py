@@ -1,4 +1,4 @@
-"""What a flying saw adds to the path of a channel: machining on a moving workpiece (TX1250 2.6)."""
+"""Motion of a flying saw added to the path of a channel: machining on a moving workpiece (TX1250 2.6)."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from cnc_ptp.motion.profile import MotionState
 
 
 class CarriedMotion:
-    """The motion of the slave beside its path, in blocks of cycles; it counts from where the path was before.
+    """The motion of the slave relative to its path, in blocks of cycles; it counts from where the path was before.
 
-    Between the end of a block and the next one it goes on with its acceleration, for commands and faults.
+    Between the end of a block and the next one it continues with its acceleration, for commands and faults.
     """
 
     def __init__(self, cycle: int, *, cycle_time: float) -> None:

@@ -5,10 +5,10 @@ and ends with r2: AK+ and AK- for D > 0, AK- and AK+ for D < 0. Its peak v solve
 
     |D| = v·T - v²/2·(1/r1 + 1/r2)      with v <= VK and v·(1/r1 + 1/r2) <= T
 
-and where no such v exists, the largest one is taken: what cannot be reached is cut. The compensation is tied to the
+and if no such v exists, the largest one is taken: what cannot be reached is cut off. The compensation is tied to the
 basic motion: it goes in its direction, its velocity follows that of the trapezoid times h = min(1, |v|/VP), and its
 time stands while both stand. It never changes faster than r1 and r2: where the basic motion takes h in or out faster,
-it lags behind, and may come to rest after the basic motion. As it stays within the trapezoid, D is never exceeded; it
+it lags behind and may come to rest after the basic motion. As it stays within the trapezoid, D is never exceeded; it
 is reached exactly where the basic motion keeps VP or more, less of it otherwise.
 """
 
@@ -20,13 +20,13 @@ from cnc_ptp.motion import Profile
 from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-12
-"""Part of a value that is rounding."""
+"""Part of a value that counts as rounding."""
 
 
 def plan_compensation(
     length: float, difference: float, process_velocity: float, velocity_increase: float, rise: float, fall: float
 ) -> Profile:
-    """Table of the compensation, counted in the direction of the basic motion; it ends at D, or at what of D it can.
+    """Table of the compensation, counted in the direction of the basic motion; it ends at D, or as near as possible.
 
     `length` and `difference` in mm (deg), `process_velocity` VP and `velocity_increase` VK in mm/s, `rise` AK+ and
     `fall` AK- in mm/s²; all but the difference > 0.
@@ -44,7 +44,7 @@ def plan_compensation(
 
 
 def _trapezoid(sign: float, peak: float, first: float, last: float, duration: float, end: float) -> Profile:
-    """Rows for ramps of the rates `first` and `last`, between which the rest of `duration` is at the peak."""
+    """Rows for ramps of the rates `first` and `last`, between them the peak is held for the rest of `duration`."""
     rise, fall = peak / first, peak / last
     hold_end = max(rise, duration - fall)
     rows = [
@@ -80,7 +80,7 @@ class Compensation:
 
     @property
     def _time(self) -> float:
-        """Seconds of the table that are through."""
+        """Elapsed time of the table, s."""
         return self._ran * self._cycle_time
 
     @property
@@ -95,7 +95,7 @@ class Compensation:
     def start(
         self, cycle: int, base: MotionState, *, direction: float, process_velocity: float, profile: Profile
     ) -> None:
-        """Begins at `cycle`, where the basic motion has the state `base` and goes in `direction` (+1, -1)."""
+        """Starts at `cycle`, at which the basic motion has the state `base` and goes in `direction` (+1, -1)."""
         sign = copysign(1.0, profile.rows[0][3])
         self._profile = Profile([(t, sign * p, sign * v, sign * a, 0.0) for t, p, v, a, _ in profile.rows])
         self._rise, self._fall = self._profile.rows[0][3], -self._profile.rows[-2][3]
@@ -106,27 +106,27 @@ class Compensation:
         self._speed, self._lags = 0.0, False
 
     def stop(self) -> bool:
-        """Ramps the compensation down with its last rate: D becomes what is reached then. False in its last ramp.
+        """Ramps the compensation down with its last rate: D becomes what is reached by then. False in its last ramp.
 
-        One that still rises after a rest of the basic motion rises no further.
+        If it still rises while the basic motion is at rest, it does not rise further.
         """
         profile = self._profile
         if profile is None:
             return False
-        way, velocity, _, _ = profile.state_at(self._time)
+        distance, velocity, _, _ = profile.state_at(self._time)
         h = self._follow(self._base[0])[0]
         if self._lags and self._speed < velocity * h:
             velocity = self._speed / h
         elif self._time >= profile.starts[-2]:
             return False
         d = velocity / self._fall
-        end = (d, way + 0.5 * velocity * d, 0.0, 0.0, 0.0)
-        self._profile = Profile([(0.0, way, velocity, -self._fall, 0.0), end]) if d > 0.0 else None
+        end = (d, distance + 0.5 * velocity * d, 0.0, 0.0, 0.0)
+        self._profile = Profile([(0.0, distance, velocity, -self._fall, 0.0), end]) if d > 0.0 else None
         self._ran = 0
         return True
 
     def end(self) -> None:
-        """The basic motion has come to its end: so does the compensation, on its last ramp where it still adds some."""
+        """The basic motion has ended: so does the compensation, on its last ramp if it still moves."""
         if self.moving:
             self.stop()
         else:
@@ -171,7 +171,7 @@ class Compensation:
         return ratio, scale * acceleration, scale * jerk
 
     def _advance(self, cycle: int, base: MotionState) -> None:
-        """The cycles since the last call: on to the speed that the basic motion asks for, as far as the rates allow."""
+        """The cycles since the last call: towards the speed for the basic motion, as far as the rates allow."""
         profile = self._profile
         assert profile is not None
         before, self._base = self._base, base[1:3]
@@ -186,20 +186,22 @@ class Compensation:
         reached = self._speed + change
         late = abs(wanted - reached) > ROUNDING * (wanted + self._speed)
         if late or self._lags:
-            way = seconds * (self._speed + 0.5 * change)
+            distance = seconds * (self._speed + 0.5 * change)
         else:
-            way = self._way(profile, start, end, before, seconds)
-        self.offset += self._side * way
+            distance = self._distance(profile, start, end, before, seconds)
+        self.offset += self._side * distance
         self._speed, self._lags = reached if late else wanted, late
         if self._time >= profile.duration * (1.0 - ROUNDING) and not late:
             self._profile = None
 
-    def _way(self, profile: Profile, start: float, end: float, before: tuple[float, float], seconds: float) -> float:
-        """The way of the trapezoid from `start` to `end` times the mean of h since the basic motion was as `before`."""
+    def _distance(
+        self, profile: Profile, start: float, end: float, before: tuple[float, float], seconds: float
+    ) -> float:
+        """Distance of the trapezoid from `start` to `end` times the mean of h since `before` of the basic motion."""
         (v0, a0), (v1, a1) = before, self._base
         middle = 0.5 * (v0 + v1) + 0.125 * (a0 - a1) * seconds
         h0, hm, h1 = (self._follow(v)[0] for v in (v0, middle, v1))
         mean = (h0 + 4.0 * hm + h1) / 6.0
         w0, wm, w1 = (profile.state_at(t)[1] for t in (start, 0.5 * (start + end), end))
-        way = mean * (profile.state_at(end)[0] - profile.state_at(start)[0])
-        return way + (end - start) / 6.0 * (w0 * (h0 - mean) + 4.0 * wm * (hm - mean) + w1 * (h1 - mean))
+        distance = mean * (profile.state_at(end)[0] - profile.state_at(start)[0])
+        return distance + (end - start) / 6.0 * (w0 * (h0 - mean) + 4.0 * wm * (hm - mean) + w1 * (h1 - mean))

@@ -45,8 +45,8 @@ class CompensationCommands:
     ) -> str | None:
         """Compensates `difference` D over `length` L; AK+ and AK- that are left out come from the axis.
 
-        Refusals: 23004, 23013, 23018 – 23022, 120002, 120003. The rest of the way is used where L is longer; where D
-        cannot be reached, what can be reached of it is compensated, and the answer says so.
+        Refusals: 23004, 23013, 23018 – 23022, 120002, 120003. If L is longer than the distance to go, that is used; if
+        D cannot be reached, as much of it as possible is compensated, and the answer says so.
         """
         axis = self._axis
         axis.setpoint(cycle)  # a compensation may end in this cycle
@@ -83,13 +83,13 @@ class CompensationCommands:
             return
         if axis.state not in (S.DISCRETE_MOTION, S.STOPPING) and axis.ptp.job is None:
             state = state_name(axis.state)
-            reason = f"no basic motion is in work (the axis is in {state})"
+            reason = f"no basic motion is active (the axis is in {state})"
             axis.refuse(START, NOTHING_TO_COMPENSATE, reason, state=state)
         if axis.ptp.braking(cycle):
             axis.refuse(START, COMPENSATION_IN_STOP, "the axis is stopping or in its brake phase")
 
     def _basic_motion(self, cycle: int) -> tuple[MotionState, Job]:
-        """State and job of the basic motion; refused while it stops behind its target in order to return.
+        """State and job of the basic motion; refused while it stops beyond its target in order to return.
 
         The basic motion of a slave has no target of its own; it must move, so that there is a direction.
         """
@@ -97,7 +97,7 @@ class CompensationCommands:
         base, job = axis.ptp.state(cycle), axis.ptp.job
         if job is None:
             if base[1] == 0.0:
-                axis.refuse(START, NOTHING_TO_COMPENSATE, "the basic motion of the slave stands")
+                axis.refuse(START, NOTHING_TO_COMPENSATE, "the basic motion of the slave is at a standstill")
             velocity = axis.target_velocity()
             return base, Job(copysign(inf, base[1]), axis.own_limits._replace(velocity=velocity), velocity)
         if base[1] != 0.0 and axis.ptp.passes_by(cycle, job) > 0.0:
@@ -119,7 +119,7 @@ class CompensationCommands:
             self._axis.checks.acceleration(START, name, positive[name])
 
     def _check_velocity(self, velocity: float, table: Profile) -> None:
-        """The axis must keep its velocity limit, also backwards: there the most is the peak, over a standing base."""
+        """The axis must keep its velocity limit, also backwards: there the peak counts, over a basic motion at rest."""
         axis = self._axis
         forwards = velocity + max(row[2] for row in table.rows)
         peak = max(forwards, max(-row[2] for row in table.rows))
@@ -132,7 +132,7 @@ class CompensationCommands:
         axis, unit = self._axis, self._axis.unit
         cuts = []
         if used < length:
-            cuts.append(f"length {length:g} {unit} is more than the rest of the way; {used:g} {unit} is used")
+            cuts.append(f"length {length:g} {unit} is more than the distance to go; {used:g} {unit} is used")
         if reached != difference:
             cuts.append(
                 f"difference {difference:g} {unit} cannot be reached over {used:g} {unit}; {reached:g} {unit} is used"
@@ -140,7 +140,7 @@ class CompensationCommands:
         return warning_text(COMPENSATION_CUT, f"axis {axis.name}: {START}: {'; '.join(cuts)}") if cuts else None
 
     def do_compensation_stop(self, cycle: int) -> str | None:
-        """Ramps the compensation down; D becomes what has been compensated then. Not in its last ramp."""
+        """Ramps the compensation down; D becomes what has been compensated by then. No effect in its last ramp."""
         axis = self._axis
         if not axis.compensation.active:
             return f"axis {axis.name}: compensation_stop without effect: no compensation is active"

@@ -1,6 +1,6 @@
-"""Couplings of a slave axis to its master: what makes slave setpoints of master setpoints (TX1250 3.2, 3.3).
+"""Couplings of a slave axis to its master: slave setpoints computed from master setpoints (TX1250 3.2, 3.3).
 
-All run cycle by cycle on the states of the master; where the slave is in the first cycle gives the offset.
+All work cycle by cycle on the states of the master; the position of the slave in the first cycle gives the offset.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from math import copysign
 from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-9
-"""Part of an acceleration limit: a velocity is rounded, its change in a cycle even more so."""
+"""Part of an acceleration limit that counts as rounding: a velocity is rounded, its change in a cycle even more so."""
 
 
 class Coupling(ABC):
-    """A coupling to the axis `master`; `ratio` is slave velocity over master velocity, where it is constant."""
+    """A coupling to the axis `master`; `ratio` is slave velocity over master velocity if that is constant."""
 
     def __init__(self, master: str, ratio: float) -> None:
         self.master = master
         self.ratio = ratio
         self.keeps_pair = False
-        """An error of the group leaves the slave on its master, which stops on its ramp: a ramp of its own would tear
-        the two apart."""
+        """In an error of the group the slave keeps following its master, which stops on its ramp: a ramp of its own
+        would tear the two apart."""
 
     @abstractmethod
     def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        """States of the slave for the cycles of these master states; `position`: where the slave is in the first."""
+        """States of the slave for the cycles of these master states; `position` is that of the slave in the first."""
 
     @abstractmethod
     def change_source(self, before: float, now: float) -> None:
@@ -38,7 +38,7 @@ class LinearCoupling(Coupling):
     """Slave position = factor · master position + offset; a new factor keeps the position continuous."""
 
     def __init__(self, master: str, factor: float, *, difference_limit: float | None = None) -> None:
-        """`difference_limit` (mm, deg) of the actual positions makes a gantry pair of the two."""
+        """With a `difference_limit` (mm, deg) of the actual positions the two are a gantry pair."""
         super().__init__(master, factor)
         self.difference_limit = difference_limit
         self.keeps_pair = difference_limit is not None
@@ -68,19 +68,19 @@ class LinearCoupling(Coupling):
 class CyclicCoupling(Coupling):
     """The factor comes cyclically from the PLC and is smoothed: the slave's acceleration stays within AccBound B.
 
-    Its velocity goes towards factor · vm by at most B·T a cycle. Once it is there, the slave is a linear one
-    (p = f·pm + offset) for as long as the factor stays and B is kept. Stable where B >= max|factor| · max(A+, A-) of
+    Its velocity goes towards factor · vm by at most B·T per cycle. Once it is there, the slave is a linear one
+    (p = f·pm + offset) as long as the factor is unchanged and B is kept. Stable where B >= max|factor| · max(A+, A-) of
     the master, else it lags behind its factor. Source: TX1250 3.3.
     """
 
     def __init__(self, master: str, acc_bound: float, *, cycle_time: float) -> None:
-        """`acc_bound` in mm/s² (deg/s²), `cycle_time` in s; the factor is 0 until one comes."""
+        """`acc_bound` in mm/s² (deg/s²), `cycle_time` in s; the factor is 0 until one is set."""
         super().__init__(master, 0.0)
         self.acc_bound = acc_bound
         self._cycle_time = cycle_time
         self._slave: MotionState | None = None
         self._reached: float | None = None
-        """The factor that is held exactly, with its offset; None on the way to another."""
+        """The factor that is held exactly, with its offset; None while it changes to another."""
         self._offset = 0.0
 
     def set_factor(self, factor: float) -> None:

@@ -35,10 +35,10 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
 GROUP = ("above", "master_stands", "master_lost")
-"""What the PLC fills in."""
+"""Arguments that the PLC fills in."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR = 1e-6, 1e6
-"""Beyond these a coupling factor is a slip of the pen."""
+"""A coupling factor beyond these is taken for a typing error."""
 
 
 class CouplingCommands:
@@ -70,7 +70,7 @@ class CouplingCommands:
         difference_limit: float,
         **group: Any,
     ) -> str | None:
-        """Factor 1 with a limit (mm, deg) on how far the actual positions may leave their distance."""
+        """Factor 1 with a limit (mm, deg) for the deviation of the actual positions from their distance."""
         self._check("couple_gantry", master, **group)
         self._check_positive("couple_gantry", difference_limit=difference_limit)
         coupling = LinearCoupling(master, 1.0, difference_limit=float(difference_limit))
@@ -97,7 +97,8 @@ class CouplingCommands:
     ) -> str | None:
         """Runs up to a moving master; synchronous from `master_position` and `slave_position` (mm, deg) on.
 
-        On the path of a channel it is added to that: `slave_position` counts from the path, as the coupling finds it.
+        On the path of a channel it is added to the path: `slave_position` counts from the path position at the
+        coupling.
         """
         command, axis = "couple_flying_saw", self._axis
         group = {name: others.pop(name) for name in GROUP if name in others}
@@ -111,7 +112,7 @@ class CouplingCommands:
         return self._couple(command, cycle, saw)
 
     def _can_be_carried(self, cycle: int) -> bool:
-        """A path axis to which nothing else adds a motion."""
+        """A path axis on which nothing else is superimposed."""
         axis = self._axis
         added = axis.superposed and (axis.external.mode is not None or axis.external.moving(cycle))
         return axis.on_path and axis.coupling is None and not added
@@ -146,7 +147,7 @@ class CouplingCommands:
         return self._couple(command, cycle, coupling)
 
     def do_change_cam(self, cycle: int, *, table: Sequence[Sequence[float]], file: str = "") -> None:
-        """A new table for a cyclic cam; it comes in when the master passes the seam of the one in work."""
+        """A new table for a cyclic cam; it comes in when the master passes the seam of the active one."""
         coupling = self._axis.coupling
         if not isinstance(coupling, CamCoupling) or not coupling.table.cyclic:
             self._axis.refuse("change_cam", FACTOR_KIND, "the axis is not coupled by a cyclic cam table")
@@ -186,7 +187,7 @@ class CouplingCommands:
             reason = f"{master} is a slave of the axis already ({chain})"
             axis.refuse(command, COUPLING_LOOP, reason, master=master, chain=chain)
         if not master_stands:
-            reason = f"the master {master} moves; both axes must stand"
+            reason = f"the master {master} moves; both axes must be at a standstill"
             axis.refuse(command, MASTER_NOT_STANDING, reason, master=master)
 
     def _check_factor(self, command: str, factor: float, name: str = "factor") -> None:
@@ -205,7 +206,7 @@ class CouplingCommands:
                 self._axis.refuse(command, BAD_COUPLING_VALUE, reason, argument=name, value=value)
 
     def _couple(self, command: str, cycle: int, coupling: Coupling) -> str | None:
-        """A warning when slave and master are not equally late."""
+        """A warning when the controllers of slave and master work with different delays."""
         axis = self._axis
         if axis.on_path:
             axis.carried = CarriedMotion(cycle, cycle_time=self._cycle_time)
@@ -267,7 +268,7 @@ class CouplingCommands:
     # decouple
 
     def do_decouple(self, cycle: int, *, target: float | None = None, velocity: float | None = None) -> str | None:
-        """Ends the coupling. A moving slave goes on as a master with its velocity, or to `target`, or at `velocity`.
+        """Ends the coupling. A moving slave continues as a master with its velocity, or to `target`, or at `velocity`.
 
         `target` in mm (deg), in or against the direction of travel; `velocity` > 0 in mm/s (deg/s).
         Refusals: 23003, 23004, 23011, 23047, 23054 (an argument on the path of a channel), 120002, 120003.
@@ -290,7 +291,7 @@ class CouplingCommands:
         return self._go_on(cycle, target, velocity)
 
     def _put_down(self, cycle: int, carried: CarriedMotion, **arguments: float | None) -> None:
-        """What was added to the path comes to rest on the ramp of the axis; the path goes on beside its place."""
+        """What was added to the path comes to rest on the ramp of the axis; the path continues with that offset."""
         axis = self._axis
         for name, value in arguments.items():
             if value is not None:
@@ -338,7 +339,7 @@ class CouplingCommands:
     # the group
 
     def do_lead(self, cycle: int, *, slave: str, enabled: bool) -> None:
-        """The PLC: `slave` is coupled to this axis, or is not any more."""
+        """The PLC: `slave` is coupled to this axis, or no longer is."""
         (self._axis.slaves.add if enabled else self._axis.slaves.discard)(slave)
 
     def do_group_error(self, cycle: int, *, source: str, error: int) -> None:

@@ -1,4 +1,4 @@
-"""External setpoints: a generator outside moves the axis, alone or on top of its PTP motion (TX1250 2.6)."""
+"""External setpoints: an external generator moves the axis, alone or superimposed on its PTP motion (TX1250 2.6)."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from cnc_ptp.motion.limits import LARGEST_STATE, rounding
 from cnc_ptp.motion.profile import MotionState
 
 LONGEST_PERIOD = 0.02
-"""Seconds between two setpoints of a cyclic task; what is farther apart is a pause."""
+"""Seconds between two setpoints of a cyclic task; a longer distance is a pause."""
 NEGLIGIBLE_VELOCITY = 1e-9
-"""mm/s (deg/s): rounding of a generator outside; its last setpoint stands."""
+"""mm/s (deg/s): rounding of an external generator; a slower last setpoint is at a standstill."""
 ABSOLUTE = "absolute"
 RELATIVE = "relative"
 
 
 class Setpoint(NamedTuple):
-    """What the axis does in `cycle`, in mm, mm/s, mm/s² (deg for rotary axes).
+    """The commanded state of the axis in `cycle`, in mm, mm/s, mm/s² (deg for rotary axes).
 
-    `direction` 0 ends the motion: that position is taken over once more, then nothing counts until -1 or +1 comes.
+    `direction` 0 ends the motion: that position is taken over once more, then setpoints are ignored until -1 or +1
+    comes.
     """
 
     cycle: int
@@ -34,10 +35,10 @@ class Setpoint(NamedTuple):
 
 
 def read_setpoint(row: object) -> Setpoint:
-    """A setpoint from five numbers. Raises ValueError with the reason why they are none."""
+    """A setpoint from five numbers. Raises ValueError with the reason if they are none."""
     names = ", ".join(Setpoint._fields)
     if not isinstance(row, (list, tuple)):
-        raise ValueError(f"a setpoint needs {names}; {row!r} is no list of them")
+        raise ValueError(f"a setpoint needs {names}; {row!r} is not a list of them")
     if len(row) != len(Setpoint._fields):
         raise ValueError(f"a setpoint needs {names}; {list(row)} has {len(row)} values")
     for name, value in zip(Setpoint._fields, row, strict=True):
@@ -48,12 +49,12 @@ def read_setpoint(row: object) -> Setpoint:
     if cycle < 0 or cycle != int(cycle):
         raise ValueError(f"cycle = {cycle} is not a whole number from 0 on")
     if direction not in (-1, 0, 1):
-        raise ValueError(f"setpoint of cycle {int(cycle)}: direction = {direction} is none of -1, 0, 1")
+        raise ValueError(f"setpoint of cycle {int(cycle)}: direction = {direction} is not one of -1, 0, 1")
     return Setpoint(int(cycle), float(position), float(velocity), float(acceleration), int(direction))
 
 
 def read_setpoints(rows: Iterable[object]) -> list[Setpoint]:
-    """Setpoints from rows of five numbers, in ascending cycles. Raises ValueError with the first reason against it."""
+    """Setpoints from rows of five numbers, in ascending cycles. Raises ValueError with the first reason."""
     setpoints = [read_setpoint(row) for row in rows]
     for before, setpoint in pairwise(setpoints):
         check_order(before.cycle, setpoint)
@@ -70,7 +71,7 @@ class ExternalSetpoints:
     """The contribution of external setpoints, added to the basic motion cycle by cycle.
 
     `at` must be called in the order of cycles; for the same cycle it may be called again. Between two setpoints the
-    axis goes on with velocity and acceleration of the last one, not further than to standstill. When the setpoints end
+    axis continues with velocity and acceleration of the last one, at most to standstill. When the setpoints end
     in motion, the contribution comes to rest on the ramp of the axis.
     """
 
@@ -92,12 +93,12 @@ class ExternalSetpoints:
         self.mode: str | None = None
         """absolute, relative, or None while disabled."""
         self.rejected: tuple[Setpoint, float] | None = None
-        """A setpoint too far away to get there, with its distance (mm, deg); it was not taken over."""
+        """A setpoint too far away to be reached, with its distance (mm, deg); it was not taken over."""
 
     # commands
 
     def enable(self, cycle: int, mode: str, position: float) -> None:
-        """Setpoints count from `cycle` on, at which the axis is at `position`. When enabled already, nothing changes.
+        """Setpoints count from `cycle` on, at which the axis is at `position`. No effect if already enabled.
 
         Absolute setpoints are positions of the axis, relative ones count from where the axis is now.
         """
@@ -125,7 +126,7 @@ class ExternalSetpoints:
     def feed(self, setpoints: Iterable[Setpoint]) -> None:
         """Takes setpoints in the order of their cycles; once disabled, none after the last cycle.
 
-        The end of a motion (direction 0) takes the place of what waits from its cycle on.
+        The end of a motion (direction 0) replaces what waits from its cycle on.
         """
         last = self._last_cycle if self.mode is None else None
         for setpoint in setpoints:
@@ -142,7 +143,7 @@ class ExternalSetpoints:
             self._last_cycle = cycle
 
     def brake(self, cycle: int, state: MotionState) -> None:
-        """Another motion ends at `cycle` with `state`: it comes to rest here, beside what is contributed at rest."""
+        """Another motion ends at `cycle` with `state`: it comes to rest here, in addition to what is contributed."""
         position, velocity = self.contribution(cycle)[0] + state[0], state[1]
         self._rest, self._rest_cycle = plan_to_velocity(position, velocity, 0.0, 0.0, self._limits), cycle
 
@@ -165,7 +166,7 @@ class ExternalSetpoints:
         return cycle - self._driving.cycle
 
     def zero(self, cycle: int) -> float:
-        """What stays of the contribution: without relative setpoints, or when it has come to rest after the end."""
+        """The lasting part of the contribution: without relative setpoints, or once it is at rest after the end."""
         if self.mode is not None:
             return -self._reference if self.mode == RELATIVE else self.contribution(cycle)[0]
         rest = self._rest if self._driving is None else self._to_rest(self._driving, cycle)
@@ -188,9 +189,9 @@ class ExternalSetpoints:
     def _driven(self, setpoint: Setpoint, cycle: int) -> MotionState:
         """The setpoint (its position is that of the contribution) brought forward to `cycle` and by the dead time.
 
-        It goes at most to where it comes to rest.
+        At most to where it comes to rest.
 
-        Its acceleration counts for as long as setpoints are usually apart, so that silence does not speed the axis up.
+        Its acceleration counts for the usual time between setpoints, so that silence does not speed the axis up.
         """
         d = (cycle - setpoint.cycle) * self._cycle_time + self._dead_time
         position, v, a = setpoint.position, setpoint.velocity, setpoint.acceleration
@@ -202,8 +203,8 @@ class ExternalSetpoints:
         return position + d * v + a * ramp * (d - 0.5 * ramp), v + a * ramp, a if d == ramp else 0.0, 0.0
 
     def _advance(self, cycle: int) -> None:
-        """Takes the setpoints that have come due; one that comes late counts from now on, brought forward."""
-        self._let_go(cycle)
+        """Takes the setpoints that have come due; a late one counts from now on, brought forward."""
+        self._come_to_rest(cycle)
         while self._waiting and self._waiting[0].cycle <= cycle:
             setpoint = self._waiting.popleft()
             if setpoint.direction == 0 and self._driving is None:
@@ -212,10 +213,10 @@ class ExternalSetpoints:
                 self._last_cycle = cycle  # an end that was overtaken: it counts, its position is out of date
                 continue
             driving = setpoint._replace(position=setpoint.position - self._reference)
-            way = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
+            distance = self._driven(driving, cycle)[0] - self.contribution(cycle - 1)[0]
             farthest = self._limits.velocity * self._cycle_time * (1.0 + 1e-9)
-            if abs(way) > farthest + rounding(setpoint.position, self._reference):
-                self.rejected = setpoint, way
+            if abs(distance) > farthest + rounding(setpoint.position, self._reference):
+                self.rejected = setpoint, distance
                 self._waiting.clear()
                 return
             if self._driving is not None:
@@ -223,7 +224,7 @@ class ExternalSetpoints:
             self._driving = driving
             self._last_cycle = cycle if setpoint.direction == 0 or self.mode is None else None
 
-    def _let_go(self, cycle: int) -> None:
+    def _come_to_rest(self, cycle: int) -> None:
         """Comes to rest after the last cycle of the setpoints."""
         if self._driving is None or self._last_cycle is None or cycle <= self._last_cycle:
             return
@@ -232,10 +233,10 @@ class ExternalSetpoints:
         self._driving = self._last_cycle = None
 
     def _to_rest(self, driving: Setpoint, cycle: int) -> Profile:
-        """The ramp to rest from `cycle` on; a standing setpoint stays where it is.
+        """The ramp to rest from `cycle` on; a setpoint at a standstill stays where it is.
 
         Setpoints know no jerk limit, and neither does their end: their acceleration ends at once. On the jerk limit of
-        the axis it would drive the velocity on by a²/2J.
+        the axis it would raise the velocity further by a²/2J.
         """
         position, velocity, _, _ = self._driven(driving, cycle)
         if abs(velocity) <= NEGLIGIBLE_VELOCITY:

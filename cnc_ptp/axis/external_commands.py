@@ -87,16 +87,16 @@ class ExternalCommands:
             reason = f"external setpoints are enabled as {enabled}; {mode} does not match"
             axis.refuse(ENABLE, EXTERNAL_MODE, reason, mode=mode, enabled=enabled)
         if mode == ABSOLUTE and (axis.state == S.DISCRETE_MOTION or axis.ptp.job is not None):
-            reason = "absolute setpoints beside a PTP motion are not permitted; use relative"
+            reason = "absolute setpoints are not permitted during a PTP motion; use relative"
             axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
 
     def _check_path(self, mode: str, target: float | None) -> None:
         """The axis does not know where the path ends, so there is no target to be watched."""
         if mode == ABSOLUTE:
-            reason = "absolute setpoints beside the path of a channel are not permitted; use relative"
+            reason = "absolute setpoints are not permitted on the path of a channel; use relative"
             self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason)
         if target is not None:
-            reason = f"a target ({target:g}) beside the path of a channel is not permitted; leave it out"
+            reason = f"a target ({target:g}) is not permitted on the path of a channel; leave it out"
             self._axis.refuse(ENABLE, EXTERNAL_BESIDE_MOTION, reason, target=target)
 
     def do_external_disable(self, cycle: int) -> str | None:

@@ -1,9 +1,9 @@
-"""Flying saw: a standing slave runs up to a moving master and is synchronous from a position on.
+"""Flying saw: a slave at a standstill runs up to a moving master and is synchronous from a position on.
 
-The run-up is a jerk-limited ramp over the way of the master: its table is planned with the velocity v0 that the master
-has, and read at the time τ = (pm - pm0)/v0, so that the slave meets its place whatever the master does meanwhile. With
-r = dτ/dt = vm/v0:  v = v'(τ)·r,  a = a'(τ)·r² + v'(τ)·r',  j = j'·r³ + 3·a'·r·r' + v'·r''.
-While the slave still waits, a master with another velocity has the run-up planned anew.
+The run-up is a jerk-limited ramp over the distance of the master: its table is planned for the velocity v0 of the
+master, and read at the time τ = (pm - pm0)/v0, so that the slave meets its position whatever the master does meanwhile.
+With r = dτ/dt = vm/v0:  v = v'(τ)·r,  a = a'(τ)·r² + v'(τ)·r',  j = j'·r³ + 3·a'·r·r' + v'·r''. While the slave still
+waits, the run-up is replanned when the velocity of the master changes.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from cnc_ptp.motion.limits import rounding
 from cnc_ptp.motion.profile import MotionState
 
 ROUNDING = 1e-12
-"""s; what a run-up may be late or long, as it can be planned anew in the very moment of its begin.
+"""s; tolerance for a run-up that is late or long, as it can be replanned in the very cycle in which it starts.
 
-The rounding of the positions comes on top, which is seconds where the axes are slow.
+The rounding of the positions comes in addition, which amounts to seconds if the axes are slow.
 """
 
 
@@ -47,14 +47,14 @@ class FlyingSaw(Coupling):
         self._linear = LinearCoupling(master, factor)
         self._linear.offset = slave_position - factor * master_position
         self._table: Profile | None = None
-        self._begin = 0.0
+        self._start = 0.0
         self._speed = 1.0
         self._wait = 0.0
         self._waits = True
         self.synchronous = False
 
     def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        """Raises CncError 23051 while the slave stands when there is no time or way left to synchronise."""
+        """Raises CncError 23051 while the slave stands if there is no time or distance left to synchronise."""
         if self._table is None:
             if states[0][1] == 0.0:
                 raise CncError(SAW_TOO_LATE, "the master stands; a flying saw needs a moving master")
@@ -63,7 +63,7 @@ class FlyingSaw(Coupling):
 
     def _next(self, position: float, master: MotionState) -> MotionState:
         assert self._table is not None
-        moment = (master[0] - self._begin) / self._speed
+        moment = (master[0] - self._start) / self._speed
         if moment > self._wait:
             self._waits = False
         elif self._waits and master[1] not in (0.0, self._speed):
@@ -75,16 +75,16 @@ class FlyingSaw(Coupling):
     def _plan(self, position: float, master: MotionState) -> float:
         """Wait, ramp up to factor · v0, and on at that velocity so that the two positions are met together.
 
-        Returns the moment 0.0 at which the table begins.
+        Returns the moment 0.0 at which the table starts.
         """
-        self._begin, self._speed = master[:2]
+        self._start, self._speed = master[:2]
         velocity, unit = self.ratio * self._speed, self._unit
         if abs(velocity) > self._limits.velocity:
             limit = f"its velocity is limited to {self._limits.velocity:g} {unit}/s"
             reason = f"it would have to run at {abs(velocity):g} {unit}/s, {limit}"
             raise CncError(SAW_TOO_LATE, reason, velocity=abs(velocity), limit=self._limits.velocity)
         ramp = plan_to_velocity(position, 0.0, 0.0, velocity, self._limits)
-        meeting = (self._master_position - self._begin) / self._speed
+        meeting = (self._master_position - self._start) / self._speed
         cruise = (self._slave_position - ramp.end[0]) / velocity
         self._wait = meeting - ramp.duration - cruise
         if cruise < -ROUNDING - rounding(position, self._slave_position) / abs(velocity):
@@ -93,7 +93,7 @@ class FlyingSaw(Coupling):
             needed = abs(ramp.end[0] - position)
             reason = f"the run-up takes {needed:g} {unit}, the synchronous position is {where}"
             raise CncError(SAW_TOO_LATE, reason, needed=needed, distance=distance)
-        if self._wait < -ROUNDING - rounding(self._begin, self._master_position) / abs(self._speed):
+        if self._wait < -ROUNDING - rounding(self._start, self._master_position) / abs(self._speed):
             when = f"is there in {meeting:g} s" if meeting >= 0.0 else f"was there {-meeting:g} s ago"
             needed = ramp.duration + cruise
             reason = f"the run-up takes {needed:g} s, the master {when}"
@@ -110,7 +110,7 @@ class FlyingSaw(Coupling):
         return p, v * r, a * r * r + v * dr, j * r**3 + 3.0 * a * r * dr + v * ddr
 
     def shift(self, distance: float) -> None:
-        """The slave's positions count from elsewhere: all are greater by `distance` from now on."""
+        """The slave's coordinates are shifted: all positions are greater by `distance` from now on."""
         assert self._linear.offset is not None
         self._slave_position += distance
         self._linear.offset += distance
@@ -118,6 +118,6 @@ class FlyingSaw(Coupling):
             self._table = Profile([(t, p + distance, v, a, j) for t, p, v, a, j in self._table.rows])
 
     def change_source(self, before: float, now: float) -> None:
-        self._begin += now - before
+        self._start += now - before
         self._master_position += now - before
         self._linear.change_source(before, now)

@@ -17,17 +17,17 @@ JOG = "jog"
 
 
 class JogCommands:
-    """`jog`. Its job leads to the soft limit, so that the axis comes to rest there whatever override and speed are."""
+    """`jog`. Its job leads to the soft limit, so that the axis comes to rest there at any override and velocity."""
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
         self._job: Job | None = None
 
     def do_jog(self, cycle: int, *, velocity: float) -> str | None:
-        """Moves at `velocity` (mm/s, deg/s; its sign is the direction) until another one comes; 0 ends the jog.
+        """Moves at `velocity` (mm/s, deg/s; its sign is the direction) until another one is commanded; 0 ends the jog.
 
         Refusals: 23003 – 23005, 23011, 23015, 23027, 23040, 120002, 120003. A velocity of 0 is never refused: it halts
-        a jog, and leaves all other motion alone.
+        a jog and leaves all other motion alone.
         """
         if velocity == 0.0:
             self._end(cycle)
@@ -48,7 +48,7 @@ class JogCommands:
         return warning
 
     def _end(self, cycle: int) -> None:
-        """A halt of the jog; it may be led on while it brakes."""
+        """A halt of the jog; a new velocity or target is permitted while it brakes."""
         if self._jogs():
             self._axis.stop(cycle, locks=False)
             self._axis.take(T.END_JOG)
@@ -71,7 +71,7 @@ class JogCommands:
             axis.refuse(JOG, COMPENSATION_RUNS, "a position compensation is active")
 
     def _check_room(self, cycle: int, velocity: float) -> None:
-        """Raises 120002 and 120003 outwards from the soft limit at which the axis stands, or beyond which it is."""
+        """Raises 120002 and 120003 outwards from the soft limit at which, or beyond which, the axis is."""
         axis, limit = self._axis, self._axis.checks.soft_limit(velocity)
         position = axis.setpoint(cycle)[0]
         room = copysign(1.0, velocity) * (limit.position - position)

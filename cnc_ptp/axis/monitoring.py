@@ -1,4 +1,4 @@
-"""What is watched of an axis while it moves: feed releases, soft limits, what is superposed, its target window."""
+"""Monitoring of an axis in motion: feed releases, soft limits, superimposed motions, target window."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
-"""States that can end by themselves."""
+"""States that can end without a command."""
 
 
 class Monitoring:
-    """Looks at the setpoints of an axis cycle by cycle, and at where it comes to rest; a fault changes the setpoint."""
+    """Checks the setpoints of an axis cycle by cycle, and where it comes to rest; a fault changes the setpoint."""
 
     def __init__(self, axis: Axis, *, cycle_time: float, report_warning: Report) -> None:
         """`cycle_time` in s."""
@@ -23,7 +23,7 @@ class Monitoring:
         self._report_warning = report_warning
         self._longest_silence = round(axis.parameters.external_timeout / cycle_time)
         self._before: tuple[int, MotionState] | None = None
-        """The last cycle with a superposition, and its setpoint."""
+        """The last cycle with superimposed motion, and its setpoint."""
 
     def undisturbed(self, first_cycle: int, setpoints: Sequence[MotionState]) -> bool:
         """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
@@ -47,9 +47,9 @@ class Monitoring:
         return not axis.target_window.watching
 
     def watch(self, cycle: int, setpoint: MotionState) -> MotionState:
-        """What nothing has checked beforehand: feed releases, soft limits, external setpoints that jump or stay away.
+        """Checks that cannot be made beforehand: feed releases, soft limits, external setpoints that jump or stay away.
 
-        Returns the setpoint to be used, which is another one where a fault prevents it.
+        Returns the setpoint to be used, which is another one if a fault prevents it.
         """
         axis = self._axis
         if axis.error_id:
@@ -65,7 +65,7 @@ class Monitoring:
         return setpoint
 
     def _stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """For a motion in a withheld direction: its own generator or its channel brakes it already, or will."""
+        """True for a motion in a withheld direction that its own generator or its channel brakes or will brake."""
         axis = self._axis
         if axis.on_path:
             return self._path_stops_in_time(cycle, velocity)
@@ -77,7 +77,7 @@ class Monitoring:
         return not driven and axis.ptp.withholds(axis.ptp.state(cycle)[1])
 
     def _path_stops_in_time(self, cycle: int, velocity: float) -> bool:
-        """The channel brakes its path; what is added to that must not drive the axis in a withheld direction."""
+        """The channel brakes its path; motions added to it must not move the axis in a withheld direction."""
         axis = self._axis
         added = axis.superimposed(cycle, (0.0, 0.0, 0.0, 0.0))[1]
         if axis.ptp.withholds(velocity - added):
@@ -86,9 +86,10 @@ class Monitoring:
         return not (driven and axis.ptp.withholds(added))
 
     def _fault_before(self, cycle: int, error_id: int, reason: str, setpoint: MotionState) -> MotionState:
-        """A fault that `setpoint` must not come to: the ramp begins in the cycle before. Returns what is to be used.
+        """A fault that excludes `setpoint`: the ramp starts in the cycle before. Returns the setpoint to be used.
 
-        Without a superposition there, it begins at `setpoint`. The slave of a gantry pair goes on with its master.
+        If nothing was superimposed there, it starts at `setpoint`. The slave of a gantry pair continues with its
+        master.
         """
         axis = self._axis
         if axis.pair_in(error_id) is not None:
@@ -104,17 +105,17 @@ class Monitoring:
         if axis.coupled and not axis.has_job and setpoint[1] == 0.0:
             axis.compensation.end()
         if axis.external.rejected is not None:
-            packet, way = axis.external.rejected
+            packet, distance = axis.external.rejected
             reason = (
-                f"external setpoint {packet.position} {unit} is {abs(way):g} {unit} away, farther than the axis gets "
-                f"at {most} {unit}/s (P-AXIS-00212)"
+                f"external setpoint {packet.position} {unit} is {abs(distance):g} {unit} away, more than the axis can "
+                f"move in a cycle at {most} {unit}/s (P-AXIS-00212)"
             )
             axis.fault(cycle, SETPOINT_TOO_FAR, reason, setpoint)
         elif axis.external.silence(cycle) > self._longest_silence:
             timeout = f"{axis.parameters.external_timeout * 1000.0:g} ms"
             axis.fault(cycle, SETPOINTS_STOPPED, f"no external setpoint for {timeout} while the axis moves", setpoint)
         elif abs(setpoint[1]) > most * (1.0 + ROUNDING):
-            total = f"the superposed motions would add up to {abs(setpoint[1]):g} {unit}/s"
+            total = f"the superimposed motions would add up to {abs(setpoint[1]):g} {unit}/s"
             reason = f"{total}, above the maximum {most} {unit}/s (P-AXIS-00212)"
             return self._fault_before(cycle, SUM_TOO_FAST, reason, setpoint)
         else:

@@ -1,10 +1,10 @@
-"""Override filter: takes the noise of a potentiometer out of the override, as the PLC library of the vendor does."""
+"""Override filter: removes the noise of a potentiometer from the override, as the PLC library of the vendor does."""
 
 from __future__ import annotations
 
 
 class OverrideFilter:
-    """Passes an override on in steps, not more often than once an interval; 0 and 100 % at once."""
+    """Passes an override on in steps, at most once per interval; 0 and 100 % immediately."""
 
     def __init__(self, *, steps: int, interval_cycles: int) -> None:
         """`steps` between 0 and 100 %, 0 = no filter; `interval_cycles` between two values that are passed on."""

@@ -55,10 +55,10 @@ class PowerCommands:
             axis.has_been_stopped = True
 
     def do_set_feed_release(self, cycle: int, *, forward: bool, backward: bool) -> None:
-        """Releases motion towards greater and towards smaller positions, each for itself.
+        """Releases motion towards greater and towards smaller positions, each separately.
 
-        A positioning in a direction that is withheld stops on its ramp and goes on when it is released. A path stops
-        with its channel; what only others can stop (a slave, external setpoints) is a fault, 23058.
+        A positioning in a direction that is withheld stops on its ramp and continues when it is released. A path stops
+        with its channel; a motion that only others can stop (a slave, external setpoints) is a fault, 23058.
         """
         self._axis.release_feed(cycle, forward=forward, backward=backward)
 

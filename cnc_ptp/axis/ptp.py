@@ -24,23 +24,23 @@ STANDING = (0.0, 0.0, 0.0)
 """Velocity, acceleration and jerk of an axis at rest."""
 
 NEGLIGIBLE = 1e-9
-"""mm, mm/s (deg, deg/s): no direction."""
+"""mm, mm/s (deg, deg/s): smaller values have no direction."""
 
 SMALLEST_OVERRIDE = 1e-6
 """One step of the override (TX1250 2.2); a smaller one is 0."""
 
 INSTANT = 1e-9
-"""s; a stop that misses the target by what the axis moves in it, or by rounding, ends there."""
+"""s; a stop that misses the target by what the axis moves in this time, or by rounding, ends at the target."""
 
 REDUCTIONS = 8
-"""Steps in which a new velocity that cannot be reached is brought nearer to the old one (TX1250 2.4)."""
+"""Steps of the bisection that brings an unreachable new velocity nearer to the old one (TX1250 2.4)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A positioning: where to, with which limits, and the velocity that its last leg can reach of them.
+    """A positioning: its target, its limits, and the velocity that its last part can reach within them.
 
-    The velocity of the limits is the one that the user asked for; it may become reachable with a new target.
+    The velocity of the limits is the commanded one; it may become reachable with a new target.
     A target at ±infinity is endless motion in that direction.
     """
 
@@ -51,7 +51,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Activation:
-    """A new velocity (mm/s) that comes when the axis passes `position` in `direction`."""
+    """A new velocity (mm/s) that becomes active when the axis passes `position` in `direction`."""
 
     position: float
     direction: float
@@ -61,10 +61,10 @@ class Activation:
 class PtpGenerator:
     """Generates the setpoints of one axis from runtime tables.
 
-    Time is the cycle number: a table that was made for cycle c gives its start state at c. A command given for cycle c
+    Time is the cycle number: a table made for cycle c has its start state at c. A command given for cycle c
     plans from the state that the old table has at c, so that no change steps the velocity or the acceleration.
-    What happens later by itself (a new velocity at its activation position, a request that waits for the end of a stop)
-    is due at a cycle that is known beforehand: `states` gives cycles up to it, `advance` carries it out.
+    What happens later without a command (a new velocity at its activation position, a request that waits for the end of
+    a stop) is due at a cycle known beforehand: `states` gives cycles up to it, `advance` carries it out.
     """
 
     def __init__(self, *, position: float, cycle_time: float, override_type: int) -> None:
@@ -111,14 +111,14 @@ class PtpGenerator:
             self._lead(cycle, job, self._table(cycle, job))
 
     def _must_wait(self, cycle: int, job: Job) -> bool:
-        """From where a stop would bring the axis to rest, the target lies in a withheld direction."""
+        """True if a stop would bring the axis to rest where the target is in a withheld direction."""
         if not self.restricted:
             return False
         position, velocity, acceleration, _ = self.state(cycle)
         return self.withholds(job.target - plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0])
 
     def _lead(self, cycle: int, job: Job, table: Profile) -> None:
-        """Puts a table of the active job, or the ramp to standstill where it must wait."""
+        """Sets the table of the active job, or the ramp to standstill if it must wait."""
         self._waits_for_release = self._must_wait(cycle, job)
         if self._waits_for_release:
             table = plan_to_velocity(*self.state(cycle)[:3], 0.0, job.limits)
@@ -141,11 +141,11 @@ class PtpGenerator:
         return [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
 
     def finished(self, cycle: int) -> bool:
-        """True when the table in work has come to its end at `cycle`."""
+        """True when the active table has ended at `cycle`."""
         return (cycle - self._origin) * self._cycle_time >= self._profile.duration
 
     def arrived(self, cycle: int) -> bool:
-        """True when the table is through and leaves nothing to do (a job held by override 0 is something left)."""
+        """True when the table has finished and nothing is left to do (a job held by override 0 is left)."""
         return self.finished(cycle) and self._suspended is None and (self.job is None or self._ends_at(self.job))
 
     def braking(self, cycle: int) -> bool:
@@ -157,16 +157,16 @@ class PtpGenerator:
 
     @property
     def target_velocity(self) -> float:
-        """Velocity (mm/s, deg/s) of the job in work at 100 % override; 0.0 without one."""
+        """Velocity (mm/s, deg/s) of the active job at 100 % override; 0.0 without one."""
         return 0.0 if self.job is None else self._full_velocity(self.job)
 
     @property
     def can_redirect(self) -> bool:
-        """True while there is a positioning, or a stop of one, that can be led to a new target."""
+        """True while there is a positioning, or a stop of one, that can be given a new target."""
         return self.job is not None or self._stopped_job is not None
 
     def brakes_to(self, cycle: int, target: float) -> bool:
-        """True in the brake phase of a job to `target`, in which nothing can be changed any more."""
+        """True in the brake phase of a job to `target`, in which nothing can be changed."""
         return self.job is not None and self.job.target == target and self._in_brake_phase(cycle, self.job)
 
     def halts(self, job: Job | None) -> bool:
@@ -174,7 +174,7 @@ class PtpGenerator:
         return job is not None and self.job is None and self._stopped_job is job
 
     def highest_velocity(self, cycle: int) -> float:
-        """The largest |v| (mm/s) that the positioning in work may still have, with a new velocity that is to come."""
+        """The largest |v| (mm/s) that the active positioning may still reach, including a pending new velocity."""
         limits = [] if self.job is None else [self.job.reduced_velocity]
         coming = [] if self._activation is None else [self._activation.velocity]
         return max([abs(self.state(cycle)[1]), *limits, *coming])
@@ -191,9 +191,9 @@ class PtpGenerator:
         self._begin(cycle, job, self._table(cycle, job))
 
     def drive_on(self, cycle: int, full_velocity: float, limits: Limits) -> None:
-        """Goes on endlessly with the velocity that is left when the acceleration is taken out; 0 ends in standstill.
+        """Continues endlessly with the velocity left when the acceleration is taken out; 0 ends at a standstill.
 
-        `full_velocity` (mm/s, deg/s) is what 100 % override mean when it changes. Source: TX1250 3.2.3.
+        `full_velocity` (mm/s, deg/s) is the velocity at 100 % override when that changes. Source: TX1250 3.2.3.
         """
         position, velocity, acceleration, jerk = self.state(cycle)
         left = velocity + acceleration * abs(acceleration) / (2.0 * limits.jerk)
@@ -205,25 +205,25 @@ class PtpGenerator:
         self._begin(cycle, job, plan_to_velocity(position, velocity, acceleration, left, limits))
 
     def _blur(self, jerk: float, own_jerk: float) -> float:
-        """Velocity (mm/s) that a master's last ramp may seem to leave, because it ends within a cycle, not at one."""
+        """Velocity (mm/s) that a master's last ramp seems to leave because it ends within a cycle, not at its start."""
         most = max(abs(jerk), own_jerk)
         return 0.5 * most * self._cycle_time**2 * (1.0 + most / own_jerk)
 
     def lead_on(self, cycle: int, target: float, limits: Limits) -> None:
-        """A job for an axis that moves without one: to `target`, which ±infinity makes endless.
+        """A job for an axis that moves without one: to `target`, endless for ±infinity.
 
         Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.
         """
         check_limits(limits)
-        job = self._job_on_the_way(cycle, target, limits)
+        job = self._job_in_motion(cycle, target, limits)
         self._begin(cycle, job, self._table(cycle, job))
 
     def set_override(self, cycle: int, ratio: float) -> bool:
         """Takes over an override of 0.0 to 1.0; False when it only counts for the next start.
 
-        It acts at once unless a stop runs or the brake phase is reached. Types 1 and 2 keep the old table when the new
-        velocity level cannot be reached; types 3 and 4 take the highest level that can, which is that of the old table
-        when the axis is faster than the new level.
+        It acts immediately unless a stop is active or the brake phase is reached. Types 1 and 2 keep the old table when
+        the new velocity level cannot be reached; types 3 and 4 take the highest level that can, which is that of the
+        old table when the axis is faster than the new level.
         """
         self.override = ratio if ratio >= SMALLEST_OVERRIDE else 0.0
         job = self.job
@@ -236,10 +236,10 @@ class PtpGenerator:
         return True
 
     def stop(self, cycle: int, limits: Limits, *, at_least: bool = False, locks: bool = True) -> None:
-        """Ends the job and ramps down with A- and J of the motion in work, or of `limits` if none is.
+        """Ends the job and ramps down with A- and J of the active motion, or of `limits` if there is none.
 
-        `at_least`: the ramp is not weaker than `limits` either. A brake phase runs on otherwise. `locks`: new targets
-        wait until the axis stands (a stop); without, they act at once (a halt).
+        `at_least`: the ramp is not weaker than `limits` either. Otherwise a brake phase continues. `locks`: new targets
+        wait until the axis stands (a stop); without it they act immediately (a halt).
         """
         ramp = self._ramp_limits or limits
         if at_least:
@@ -252,10 +252,10 @@ class PtpGenerator:
             self._set(cycle, plan_to_velocity(*self._start(cycle), 0.0, ramp), ramp)
 
     def redirect(self, cycle: int, request: Request) -> None:
-        """New target, with or without a new velocity, for the positioning in work (TX1250 2.3, 2.4).
+        """New target, with or without a new velocity, for the active positioning (TX1250 2.3, 2.4).
 
         A pending activation is deleted. During a stop the request waits until the axis stands.
-        Raises CncError 23001 and 23002 for a velocity or target that no table can be made for; nothing is changed then.
+        Raises CncError 23001 and 23002 for a velocity or target that no table can be made for; then nothing is changed.
         """
         check_state(target=request.target)
         if request.velocity is not None:
@@ -267,7 +267,7 @@ class PtpGenerator:
             self._carry_out(cycle, request)
 
     def drop_suspended(self) -> bool:
-        """Takes back a request that waits for the end of a stop; False when there is none."""
+        """Cancels a request that waits for the end of a stop; False when there is none."""
         waiting = self._suspended is not None
         if waiting:
             self._suspended = self._due = None
@@ -286,7 +286,7 @@ class PtpGenerator:
             self._change_velocity(cycle, self.job, activation.velocity)
 
     def finish(self) -> None:
-        """The table is through: job and stop are done."""
+        """The table has finished: job and stop have ended."""
         self.job = self._stopped_job = None
         self._ramp_limits = None
         self._suspended = self._activation = self._due = None
@@ -311,20 +311,20 @@ class PtpGenerator:
             self._due = self._crossing(cycle, self._activation)
 
     def _end_cycle(self) -> int:
-        """The first cycle at which the table in work is through."""
+        """The first cycle at which the active table has finished."""
         cycle = self._origin + ceil(self._profile.duration / self._cycle_time)
         return cycle if self.finished(cycle) else cycle + 1
 
     def _ends_at(self, job: Job) -> bool:
-        """The table in work leads to the target; the one of override 0 does not."""
+        """The active table leads to the target; that of override 0 does not."""
         return bool(self._profile.end[0] == job.target)
 
     def _is_stop_ramp(self) -> bool:
-        """For a table without a job: it comes to rest; what was taken over in motion does not."""
+        """For a table without a job: it comes to rest; one that was taken over in motion does not."""
         return self._profile.end[1:] == (0.0, 0.0)
 
     def _start(self, cycle: int) -> tuple[float, float, float]:
-        """Position, velocity and acceleration from which a new table begins.
+        """Position, velocity and acceleration from which a new table starts.
 
         In the last jerk phase before standstill the velocity is exactly the one that this phase takes out, so that no
         rounding makes the axis miss its standstill.
@@ -337,16 +337,16 @@ class PtpGenerator:
         return position, velocity, acceleration
 
     def passes_by(self, cycle: int, job: Job) -> float:
-        """How far (mm, deg) behind the target of `job`, seen in the direction of motion, a stop would end; 0 at it."""
+        """How far (mm, deg) beyond the target of `job`, in the direction of motion, a stop would end; at least 0."""
         position, velocity, acceleration, _ = self.state(cycle)
         ahead = plan_to_velocity(position, velocity, acceleration, 0.0, job.limits).end[0]
         behind = copysign(1.0, velocity) * (ahead - job.target)
         return 0.0 if abs(behind) <= abs(velocity) * INSTANT + rounding(position, job.target) else behind
 
     def _in_brake_phase(self, cycle: int, job: Job) -> bool:
-        """True when the table leads to the target and a stop would do the same: nothing can be changed any more.
+        """True when the table leads to the target and a stop would do the same: nothing can be changed.
 
-        Without a stretch at constant velocity that is so before the velocity falls, as soon as the acceleration does.
+        Without a segment of constant velocity this begins before the velocity falls, as soon as the acceleration does.
         """
         if not self._ends_at(job):
             return False
@@ -358,8 +358,8 @@ class PtpGenerator:
     def _job_from_rest(self, position: float, target: float, limits: Limits) -> Job:
         return self._job_of(target, limits, plan_rest_to_rest(position, target, limits).rows)
 
-    def _job_on_the_way(self, cycle: int, target: float, limits: Limits) -> Job:
-        """The job to `target` for an axis in motion; where it stops and returns, the way back counts."""
+    def _job_in_motion(self, cycle: int, target: float, limits: Limits) -> Job:
+        """The job to `target` for an axis in motion; if it stops and returns, the way back counts."""
         if isinf(target):
             return Job(target, limits, limits.velocity)
         leg = last_leg(plan_to_position(*self._start(cycle), target, limits))
@@ -371,14 +371,14 @@ class PtpGenerator:
         return Job(target, limits, min(limits.velocity, peak_velocity(leg)))
 
     def _level(self, job: Job) -> Limits:
-        """Limits with the velocity of the override; below what tables can be made for, the smallest of these."""
+        """Limits with the velocity of the override; at least the smallest for which tables can be made."""
         return job.limits._replace(velocity=max(self._full_velocity(job) * self.override, SMALLEST_LIMIT))
 
     def _full_velocity(self, job: Job) -> float:
         return job.limits.velocity if self.override_type in (2, 4) else job.reduced_velocity
 
     def _table(self, cycle: int, job: Job) -> Profile:
-        """The way to the target at the velocity of the override; with override 0 the way to standstill."""
+        """The table to the target at the velocity of the override; with override 0 to standstill."""
         position, velocity, acceleration = self._start(cycle)
         if self.override == 0.0:
             return plan_to_velocity(position, velocity, acceleration, 0.0, job.limits)
@@ -392,8 +392,8 @@ class PtpGenerator:
     def _level_is_missed(self, cycle: int, job: Job, table: Profile) -> bool:
         """The active table leads to the target, and the new one does not reach its level.
 
-        Override types 3 and 4 take what can be reached instead, unless the axis would have to come down to the level:
-        it would brake for the level and then for the target, later and rougher than with the table that it has.
+        Override types 3 and 4 take what can be reached instead, unless the axis would have to slow down to the level:
+        it would brake for the level and then for the target, later and harder than with the table that it has.
         """
         if self.override == 0.0 or not self._ends_at(job):
             return False
@@ -406,9 +406,9 @@ class PtpGenerator:
     # new target, new velocity
 
     def _carry_out(self, cycle: int, request: Request) -> None:
-        """Leads to the new target; the new velocity comes now, later or never.
+        """Leads to the new target; the new velocity becomes active now, later or never.
 
-        Where the axis has passed the target, or cannot stop before it, it stops and returns, with the old velocity; if
+        If the axis has passed the target, or cannot stop before it, it stops and returns, with the old velocity; if
         that cannot be reached on the way back but the new one can, with the new one.
         """
         before = self.job or self._stopped_job
@@ -418,7 +418,7 @@ class PtpGenerator:
         goal = request.target if self.job is None else self.job.target
         direction = copysign(1.0, velocity or goal - position)
         self._activation = self._due = None
-        job = self._job_on_the_way(cycle, request.target, before.limits)
+        job = self._job_in_motion(cycle, request.target, before.limits)
         leg = last_leg(plan_to_position(*self._start(cycle), request.target, before.limits))
         returns = velocity != 0.0 and leg[0][2] == 0.0
         if returns and request.velocity is not None and request.velocity <= job.reduced_velocity < job.limits.velocity:
@@ -436,15 +436,15 @@ class PtpGenerator:
             self._due = self._crossing(cycle, self._activation)
 
     def _change_velocity(self, cycle: int, job: Job, velocity: float) -> None:
-        """Takes the new velocity, or what comes nearest to it on the rest of the way; else the old table stays."""
+        """Takes the new velocity, or the nearest one that the distance to go permits; else the old table is kept."""
         reached = self._nearest_reached(cycle, job, velocity)
         if reached is not None:
-            reduced = self._job_on_the_way(cycle, job.target, job.limits._replace(velocity=reached))
+            reduced = self._job_in_motion(cycle, job.target, job.limits._replace(velocity=reached))
             wanted = replace(reduced, limits=job.limits._replace(velocity=velocity))
             self._begin(cycle, wanted, self._table(cycle, reduced))
 
     def _nearest_reached(self, cycle: int, job: Job, velocity: float) -> float | None:
-        """`velocity` if the rest of the way has a stretch at it, else by bisection towards the old one; None if not."""
+        """`velocity` if the distance to go has a segment at it, else by bisection towards the old one; None if none."""
         best, low, high, candidate = None, job.limits.velocity, velocity, velocity
         for _ in range(1 + REDUCTIONS):
             if self._can_reach(cycle, job, candidate):
@@ -457,7 +457,7 @@ class PtpGenerator:
         return best
 
     def _can_reach(self, cycle: int, job: Job, velocity: float) -> bool:
-        """True when the rest of the way has a stretch at `velocity`, scaled by the override."""
+        """True when the distance to go has a segment at `velocity`, scaled by the override."""
         if isinf(job.target):
             return True
         level = velocity * (self.override or 1.0)
@@ -465,7 +465,7 @@ class PtpGenerator:
         return reaches(plan_to_position(*self._start(cycle), job.target, limits), limits.velocity)
 
     def _crossing(self, cycle: int, activation: Activation) -> int | None:
-        """The first cycle at which the table in work is at or past the activation position, None when it never is."""
+        """The first cycle at which the active table is at or past the activation position, None when it never is."""
         end = max(cycle, min(self._end_cycle(), cycle + sys.maxsize))
 
         def passed(at: int) -> bool:

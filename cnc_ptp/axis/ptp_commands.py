@@ -28,9 +28,9 @@ OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
 def refuse_other_source(axis: Axis, command: str) -> None:
-    """Raises 23027 and 23040 where external setpoints or a master move the axis."""
+    """Raises 23027 and 23040 if external setpoints or a master move the axis."""
     if axis.external.mode is not None:
-        reason = "external setpoints are enabled; a PTP start beside them is not permitted"
+        reason = "external setpoints are enabled; a PTP start is not permitted at the same time"
         axis.refuse(command, START_BESIDE_EXTERNAL, reason)
     if axis.coupled and axis.coupling is not None:
         reason = f"the axis is a slave of {axis.coupling.master}; decouple it"
@@ -56,7 +56,7 @@ class PtpCommands:
     def do_move_modulo(self, cycle: int, *, position: float, **dynamics: float) -> str | None:
         """Starts to the modulo position |`position`| (deg), with whole turns; its sign is the direction.
 
-        Refused besides with 23024 on an axis that does not count modulo.
+        Also refused with 23024 on an axis that does not count modulo.
         """
         parameters = self._axis.parameters
         if not parameters.modulo:
@@ -101,28 +101,28 @@ class PtpCommands:
         if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
             return None
         reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
-        return f"axis {axis.name}: override {percent} % does not change the motion in work ({reason})"
+        return f"axis {axis.name}: override {percent} % does not change the active motion ({reason})"
 
     def do_set_override_type(self, cycle: int, *, type: int) -> None:
         """1 reduced, 2 original, 3 and 4 the same iterated; counts from the next override or start on."""
         if type not in OVERRIDE_TYPES:
-            reason = f"type = {type} is none of 1, 2, 3, 4"
+            reason = f"type = {type} is not one of 1, 2, 3, 4"
             self._axis.refuse("set_override_type", BAD_OVERRIDE_TYPE, reason, type=type)
         self._axis.ptp.override_type = type
 
     # new target (2.3), new velocity and new target (2.4)
 
     def do_new_target(self, cycle: int, *, target: float) -> str | None:
-        """Leads the positioning in work to `target` (mm, deg). Refusals: 23005, 23014, 23015, 120002, 120003."""
+        """Leads the active positioning to `target` (mm, deg). Refusals: 23005, 23014, 23015, 120002, 120003."""
         self._check_redirection("new_target", target)
         return self._redirect("new_target", cycle, Request(self._in_basic_motion(cycle, target)))
 
     def do_new_velocity_and_target(
         self, cycle: int, *, velocity: float, target: float, activation_position: float
     ) -> str | None:
-        """New target at once, new velocity (mm/s) from `activation_position` on.
+        """New target immediately, new velocity (mm/s) from `activation_position` on.
 
-        Refused besides with 23003, 23004 and 23011 for the velocity.
+        Also refused with 23003, 23004 and 23011 for the velocity.
         """
         command = "new_velocity_and_target"
         self._check_redirection(command, target)
@@ -138,7 +138,7 @@ class PtpCommands:
         axis = self._axis
         if axis.state not in REDIRECTABLE or not axis.ptp.can_redirect:
             state = state_name(axis.state)
-            reason = f"no positioning is in work (the axis is in {state}); start one"
+            reason = f"no positioning is active (the axis is in {state}); start one"
             axis.refuse(command, NO_POSITIONING, reason, state=state)
         if not axis.powered:
             axis.refuse(command, NOT_READY, "the enable was removed")

@@ -26,30 +26,30 @@ class StopCommands:
         return self._stop("stop", cycle, locks=True)
 
     def do_halt(self, cycle: int) -> str | None:
-        """Stops on the ramp of the start, but a new target leads the axis on at once (state DiscreteMotion)."""
+        """Stops on the ramp of the start, but a new target acts immediately (state DiscreteMotion)."""
         return self._stop("halt", cycle, locks=self._axis.state == S.CONTINUOUS_MOTION)
 
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
         self._refuse_synchronous(command)
-        taken_back = self._take_target_back(command)
-        if taken_back is not None:
-            return taken_back
+        cancelled = self._cancel_target(command)
+        if cancelled is not None:
+            return cancelled
         if axis.state not in MOVING:
             return without_effect(axis.name, command, axis.state)
         axis.stop(cycle, locks=locks)
         self._stopped(locks)
         return None
 
-    def _take_target_back(self, command: str) -> str | None:
-        """Drops a new target that waits for the end of a stop; says so if there is one."""
+    def _cancel_target(self, command: str) -> str | None:
+        """Cancels a new target that waits for the end of a stop; the warning says so."""
         axis = self._axis
         if axis.state != S.STOPPING or not axis.ptp.drop_suspended():
             return None
-        return f"axis {axis.name}: {command} takes the new target back; the axis stops"
+        return f"axis {axis.name}: {command} cancels the waiting new target; the axis stops"
 
     def _refuse_synchronous(self, command: str) -> None:
-        """What follows a channel or a master is stopped there."""
+        """An axis that follows a channel or a master is stopped there."""
         axis = self._axis
         if axis.coupled and axis.coupling is not None:
             master = axis.coupling.master
@@ -68,24 +68,24 @@ class StopCommands:
         """Stops with a deceleration (mm/s²) and a jerk (mm/s³), which are at least those of the start.
 
         No value keeps the axis from stopping; warning 23016 says what was corrected. The ramp of a stop or halt
-        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing on top of it), 23040 (a
+        becomes at least as strong. Refusals: 23005, 23017 (natural brake phase with nothing superimposed), 23040 (a
         slave, also one that follows as a flying saw on a path).
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
         if axis.state not in (*MOVING, S.STOPPING):
             return without_effect(axis.name, command, axis.state)
-        if self._ends_by_itself(cycle):
+        if self._brakes_naturally(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")
         ramp, warning = self._emergency_ramp(command, deceleration, jerk)
-        taken_back = self._take_target_back(command)
+        cancelled = self._cancel_target(command)
         axis.absorb(cycle)
         axis.ptp.stop(cycle, ramp, at_least=True)
         self._stopped(locks=True)
-        return "; ".join(filter(None, (warning, taken_back))) or None
+        return "; ".join(filter(None, (warning, cancelled))) or None
 
-    def _ends_by_itself(self, cycle: int) -> bool:
-        """In the natural brake phase, and nothing on top moves the axis or may do so: external setpoints may come."""
+    def _brakes_naturally(self, cycle: int) -> bool:
+        """In the natural brake phase, with no superimposed motion and no external setpoints enabled."""
         axis = self._axis
         brakes = axis.state == S.DISCRETE_MOTION and axis.ptp.job is not None and axis.ptp.braking(cycle)
         return brakes and axis.external.mode is None and not axis.superposition_moves(cycle)
@@ -107,7 +107,7 @@ class StopCommands:
         return ramp, "; ".join(filter(None, (warning, rescaled))) or None
 
     def _at_least(self, least: float, name: str, given: object, seconds: str) -> tuple[float, str]:
-        """The value given, or that of the start where it is invalid or less, and what to say then."""
+        """The value given, or that of the start if it is invalid or less, and the text for that."""
         value = number(given)
         if value >= least:
             return value, ""

@@ -1,4 +1,4 @@
-"""Questions that the PTP functions ask of a runtime table."""
+"""Properties of a runtime table that the PTP functions need."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def standing(position: float) -> Profile:
 
 
 def reaches(profile: Profile, velocity: float) -> bool:
-    """True when the table holds `velocity` (mm/s, either direction) without acceleration, be it for one instant."""
+    """True when the table holds `velocity` (mm/s, either direction) without acceleration, even for an instant."""
     return any(abs(level - velocity) <= 1e-9 * velocity for level in _levels(profile.rows))
 
 
 def last_leg(profile: Profile) -> Sequence[Segment]:
-    """The rows from the last standstill within the table on: the way back where it stops and returns, else all."""
+    """The rows from the last standstill within the table on: the way back if it stops and returns, else all."""
     rows = profile.rows
     for index in range(len(rows) - 2, 0, -1):
         if rows[index][2] == 0.0 and rows[index][3] == 0.0:
@@ -34,7 +34,7 @@ def peak_velocity(rows: Sequence[Segment]) -> float:
 
 
 def _levels(rows: Sequence[Segment]) -> Iterator[float]:
-    """|v| wherever the acceleration is zero: at the begin of a row, or within it, where v - a²/(2j)."""
+    """|v| wherever the acceleration is zero: at the start of a row, or within it, where v - a²/(2j)."""
     for (t, _, v, a, j), following in pairwise((*rows, rows[-1])):
         if abs(a) <= 1e-9 * abs(v) + 1e-12:
             yield abs(v)

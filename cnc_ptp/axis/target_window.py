@@ -1,10 +1,10 @@
-"""Target window monitoring: does the axis get to where its setpoint has come to rest? (TX1250 2.6, PEH)"""
+"""Target window monitoring: the axis must reach the place where its setpoint has come to rest (TX1250 2.6, PEH)."""
 
 from __future__ import annotations
 
 
 class TargetWindow:
-    """Watches a standing axis from the end of a motion on; says once that it has not come into the window in time."""
+    """Monitors an axis from the end of a motion on; reports once that it has not come into the window in time."""
 
     def __init__(self, *, window: float, cycles: int) -> None:
         """`window` in mm (deg) to each side of the target; `cycles` after which it must be there, 0 = any time."""
@@ -19,7 +19,7 @@ class TargetWindow:
 
     @property
     def watching(self) -> bool:
-        """True from the begin of a motion until the axis is in its window, or is found not to be."""
+        """True from the start of a motion until the axis is in its window, or is found not to be."""
         return self._watching
 
     def watch(self, target: float | None = None) -> None:
@@ -30,11 +30,11 @@ class TargetWindow:
         self.target = target
 
     def forget(self) -> None:
-        """A fault ended the motion: there is no target any more."""
+        """A fault ended the motion: there is no longer a target."""
         self._has_target = self._watching = False
 
     def moves(self) -> None:
-        """The setpoint has not come to its end in this cycle."""
+        """The setpoint still moves in this cycle."""
         self._has_moved = True
         self._standing_since = None
 
@@ -43,7 +43,7 @@ class TargetWindow:
         return actual_position - (set_position if self.target is None else self.target)
 
     def reached(self, set_position: float, actual_position: float) -> bool:
-        """For a standing setpoint: the axis is in the window of its last target."""
+        """For a setpoint at a standstill: the axis is in the window of its last target."""
         return self._has_target and abs(self.error(set_position, actual_position)) <= self._window
 
     def overdue(self, cycle: int, set_position: float, actual_position: float) -> bool:

@@ -1,6 +1,6 @@
-"""The states of an axis and every way from one to another (PLCopen); `Axis.take` alone changes the state.
+"""The states of an axis and all transitions between them (PLCopen); only `Axis.take` changes the state.
 
-docs/ptp.md shows the diagram that is drawn from this table.
+docs/ptp.md shows the diagram drawn from this table.
 """
 
 from __future__ import annotations

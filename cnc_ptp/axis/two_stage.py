@@ -1,4 +1,4 @@
-"""New velocity and new end position: what each of the six orders of the three positions asks for (TX1250 2.4)."""
+"""New velocity and new end position: the six cases, by the order of the three positions (TX1250 2.4)."""
 
 from __future__ import annotations
 

@@ -17,13 +17,13 @@ FULL_WEIGHT = 100.0
 
 
 def feedforward_warning(feedforward: Feedforward, velocity: float, unit: str) -> str | None:
-    """What to tell when feedforward waits at a constant set `velocity` (mm/s, deg/s) for room that is not there."""
+    """The warning when feedforward waits at a constant set `velocity` (mm/s, deg/s) for missing velocity reserve."""
     limit = feedforward.take_wait()
     if limit is None:
         return None
     return (
         f"feedforward waits: at {abs(velocity):g} {unit}/s there is no room up to {limit:g} {unit}/s (P-AXIS-00212) to "
-        f"make up the following error; {feedforward.percent:g} % act, the rest does when the motion is slower"
+        f"make up the following error; {feedforward.percent:g} % is active, the rest follows when the motion is slower"
     )
 
 
@@ -32,7 +32,7 @@ class FeedforwardLoop(Protocol):
 
     @property
     def feedforward(self) -> Feedforward:
-        """That of the gear in work."""
+        """The control loop of the active gear."""
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136."""
@@ -53,13 +53,13 @@ class FeedforwardCommands:
     ) -> str | None:
         """G135/G137 (`enabled`) and G136 (`weight_percent`); what is left out stays. Refusal 23060.
 
-        A warning when nothing is asked for, when a weight above 100 is limited to it (TF5200 feedforward 3), or where
+        A warning when nothing is given, when a weight above 100 is limited to it (TF5200 feedforward 3), or where
         there is no feedforward (P-AXIS-00223).
         """
         if enabled is None and weight_percent is None:
             return f"{self._subject}: set_feedforward without effect, neither enabled nor weight_percent is given"
         if weight_percent is not None and not 0.0 <= weight_percent < inf:
-            reason = f"weight_percent = {weight_percent} is no number of 0 or more (G136)"
+            reason = f"weight_percent = {weight_percent} must be a number of 0 or more (G136)"
             self._refuse("set_feedforward", BAD_WEIGHT, reason, weight_percent=weight_percent)
         self._on = self._on if enabled is None else enabled
         if weight_percent is not None:

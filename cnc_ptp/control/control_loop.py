@@ -15,23 +15,23 @@ from typing import NamedTuple
 
 from cnc_ptp.control.drives import Drive, VirtualDrive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
+from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.control.friction_compensation import FrictionCompensation
-from cnc_ptp.control.lag_monitor import LagMonitor
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
 from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
 LoopRow = tuple[float, float, float, float, float, float, float, float, float, float]
-"""A ControlCycle without its names, which take their time."""
+"""A ControlCycle as a plain tuple, which is faster."""
 Columns = Sequence[list[float]]
 """The values of ControlCycle over many cycles."""
 HISTORY = 16
-"""Setpoints that are kept: 4 cycles of lead, 6 of delay, and their neighbours."""
+"""Number of setpoints kept: 4 cycles of lead, 6 of delay, and their neighbours."""
 
 
 class ControlCycle(NamedTuple):
-    """What one cycle showed and commanded; mm, mm/s (deg, deg/s), Nm (N), friction current in the unit of the drive."""
+    """Values and commands of a cycle; mm, mm/s (deg, deg/s), Nm (N), friction current in the unit of the drive."""
 
     actual_position: float
     actual_velocity: float
@@ -58,7 +58,7 @@ class ControlLoop:
         self.drive = drive
         self._virtual = drive if isinstance(drive, VirtualDrive) else None
         self.kv = parameters.kv
-        self.monitor = LagMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
+        self.monitor = FollowingErrorMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
         self.delay_cycles = parameters.delay_cycles
         scaling = parameters.scaling
         self.feedforward = Feedforward(
@@ -84,7 +84,7 @@ class ControlLoop:
         )
         self._history: deque[MotionState] = deque(maxlen=HISTORY)
         self.offset = 0.0
-        """Between the counting of the encoder and the coordinates of the axis."""
+        """Offset between the position of the encoder and the coordinates of the axis."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
         self._plain = self._plain and not (self._virtual or self._modulo.on or parameters.friction.permitted)
 
@@ -95,7 +95,7 @@ class ControlLoop:
 
     @property
     def encoder(self) -> float:
-        """Position as the encoder counts it, with what its modulo circle is short of, mm (deg)."""
+        """Position as the encoder counts it, with modulo compensation, mm (deg)."""
         position = self.drive.position
         return position + self._modulo.correction(position) if self._modulo.on else position
 
@@ -114,9 +114,9 @@ class ControlLoop:
         self._history = deque(((p + distance, v, a, j) for p, v, a, j in self._history), maxlen=HISTORY)
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
-        """G135 or G137 with the weight of G136: at once at a standstill, in motion softly.
+        """G135 or G137 with the weight of G136: immediately at a standstill, softly in motion.
 
-        Without a closed cycle before, nothing has gone out that could step.
+        Before the first closed cycle nothing has been output that could step.
         """
         self.feedforward.select(on, weight_percent)
         if self.feedforward.at_rest(self._history):
@@ -141,7 +141,7 @@ class ControlLoop:
     def lag_share(
         self, positions: Sequence[float], velocities: Sequence[float], actual_position: float, *, unit: float = 1.0
     ) -> float:
-        """Following error after cycles with these set values as a part of its limit, from 0; 1 and more is too far.
+        """Following error after cycles with these set values as a fraction of its limit; 1 and more is too large.
 
         `velocities` in multiples of `unit`, mm/s or deg/s.
         """
@@ -151,11 +151,11 @@ class ControlLoop:
         return lag / limit if limit else float(lag > 0.0)
 
     def step(self, setpoint: MotionState, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
-        """Closes the loop for one cycle; open, the drive is to have `open_velocity` and nothing is remembered."""
+        """Closes the loop for one cycle; if open, the drive gets `open_velocity` and the history is cleared."""
         return ControlCycle(*self._cycle(setpoint, closed, open_velocity))
 
     def follow(self, setpoints: Sequence[MotionState], closed: bool, *, watched: bool) -> Columns:
-        """`step` for many setpoints, value by value; if `watched`, up to one whose following error is too large."""
+        """`step` for many setpoints, value by value; if `watched`, up to the first excessive following error."""
         if closed and self._plain and not self.feedforward.active:
             return self._plain_cycles(setpoints, watched)
         rows = []
@@ -166,7 +166,7 @@ class ControlLoop:
         return [*map(list, zip(*rows, strict=True))] if rows else [[] for _ in ControlCycle._fields]
 
     def _plain_cycles(self, setpoints: Sequence[MotionState], watched: bool) -> Columns:
-        """Position control with nothing beside it: v = Kv · following error."""
+        """Position control alone: v = Kv · following error."""
         drive, monitor, offset, kv = self.drive, self.monitor, self.offset, self.kv
         step, monitored = drive.step, monitor.on
         columns: tuple[list[float], ...] = [], [], [], [], []
@@ -246,7 +246,7 @@ class ControlLoop:
         additive_velocity: float,
         additive_torque: float,
     ) -> None:
-        """Hands the command over in the way that the drive takes it; a drive's own position loop has the same Kv."""
+        """Passes the command on in the form that the drive takes; a drive's own position loop has the same Kv."""
         if self._interface == "velocity":
             self.drive.step(command, additive_velocity, additive_torque)
         elif self._interface == "torque":
@@ -258,7 +258,7 @@ class ControlLoop:
             self.drive.step(base + shift, additive_velocity, additive_torque)
 
     def _on_the_encoder(self, set_position: float, lag: float) -> float:
-        """The set position for a drive that knows nothing of offset and modulo compensation."""
+        """The set position for a drive, without offset and modulo compensation."""
         return self.drive.position + lag if self._modulo.on or self.offset else set_position
 
     def _open(self, velocity: float) -> None:

@@ -1,4 +1,4 @@
-"""Drive formats both ways: kernel units here, the integers of a telegram or the volts of a DA converter there.
+"""Drive formats: conversion between kernel units and the integers of a telegram or the volts of a DA converter.
 
 Sources: TF5200 feedforward 4.1 (velocity), 4.2 (resolution, torque); spindle 2.2.4, P-AXIS-00128, 00129, 00159.
 """
@@ -15,10 +15,10 @@ DA_VOLTS = 10.0
 
 
 class Digits(NamedTuple):
-    """A quantity as a signed integer of so many bits."""
+    """A quantity as a signed integer of `bits` bits."""
 
     scale: float
-    """Digits a unit; 0.0 puts nothing out."""
+    """Digits per unit; 0.0 outputs nothing."""
     bits: int
 
     def encode(self, value: float) -> int:
@@ -40,10 +40,10 @@ class Digits(NamedTuple):
 
 
 class CounterFormat(NamedTuple):
-    """A position as a counter that runs over: increments modulo 2^bits."""
+    """A position as a counter that overflows: increments modulo 2^bits."""
 
     scale: float
-    """Increments a mm (deg)."""
+    """Increments per mm (deg)."""
     bits: int = 32
 
     def encode(self, position: float) -> int:
@@ -61,12 +61,12 @@ class CounterFormat(NamedTuple):
 
 
 class CounterReader:
-    """Follows a counter over its end: the way since the last value is less than half its range."""
+    """Follows a counter over its overflow: the distance since the last value is less than half its range."""
 
     __slots__ = ("_format", "increments")
 
     def __init__(self, counter: CounterFormat, *, position: float) -> None:
-        """`position` in mm (deg) is where the counter stands now."""
+        """`position` in mm (deg) is that of the present counter value."""
         self._format = counter
         self.increments = round(position * counter.scale)
 
@@ -87,7 +87,7 @@ def da_volts(word: int) -> float:
 
 
 class DriveFormat(NamedTuple):
-    """The formats of one drive, command by command and actual value by actual value."""
+    """The formats of one drive for each command and each actual value."""
 
     velocity: Digits
     position: CounterFormat

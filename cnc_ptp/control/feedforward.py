@@ -1,4 +1,4 @@
-"""Feedforward: what velocity, acceleration and jerk of the setpoint ask of the drive before a following error arises.
+"""Feedforward: commands from velocity, acceleration and jerk of the setpoint, before a following error arises.
 
 The command is held for a cycle, so each value is the mean over the cycle that it is held: v + aT/2 + jT²/6 and
 a + jT/2 (of a drive under torque command v itself, which the NC's velocity controller compares).
@@ -16,15 +16,15 @@ from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
 
 ROUNDING = 1e-9
-"""Part of a factor that is missing: it is reached."""
+"""A factor nearer to its target than this has reached it."""
 EXCESS = 0.03
-"""Part of the axis' acceleration that feedforward and motion may be above it together while it is coupled in or out."""
+"""Part by which feedforward and motion may exceed the axis' acceleration while feedforward is coupled in or out."""
 NO_ROOM = 0.01
-"""Part of the axis' acceleration; what leaves less for the push, near the largest velocity, is no room …"""
+"""Part of the axis' acceleration; if less is left for the push, near the largest velocity, there is no room …"""
 WAITED = 0.5
 """… and seconds of constant velocity without room after which that is worth a warning."""
 DECAYED = 3.0
-"""Time constants after which a lag that was made up does not count any more: e^3 · EXCESS > 1."""
+"""Time constants after which a lag that was made up no longer counts: e^3 · EXCESS > 1."""
 
 
 class Feedforward:
@@ -66,7 +66,7 @@ class Feedforward:
         """`delay_cycles`: by how many cycles the position controller works behind the newest setpoint.
 
         `torque_per_acceleration` in Nm (N) for 1 mm/s² (deg/s²), `kv` in 1/s, `cycle_time` in s. `samples_velocity`:
-        the velocity is not held by a drive, but compared by the NC with the actual velocity at the begin of the cycle.
+        the velocity is not held by a drive, but compared by the NC with the actual velocity at the start of the cycle.
         """
         self.mode = parameters.mode
         behind = float(delay_cycles - parameters.lead_cycles)
@@ -91,17 +91,17 @@ class Feedforward:
 
     @property
     def active(self) -> bool:
-        """True while it puts anything out, also while it is being coupled out."""
+        """True while it outputs anything, also while it is being coupled out."""
         return self.mode != 0 and self._coupling.active
 
     @property
     def percent(self) -> float:
-        """Weight with which it acts now, on its way in and out as well; 0 = off."""
+        """Weight with which it acts now, also while it is coupled in or out; 0 = off."""
         return 100.0 * self._coupling.factor if self.mode else 0.0
 
     @property
     def velocity_part(self) -> float:
-        """Part of a constant velocity that goes out beside the position controller."""
+        """Part of a constant velocity that is output besides the position controller."""
         parts = self._parts
         return self._coupling.factor * (parts.velocity + parts.additive_velocity) if self.mode else 0.0
 
@@ -110,20 +110,20 @@ class Feedforward:
         self._coupling.target = weight_percent / 100.0 if on or self._always_active else 0.0
 
     def settle(self) -> None:
-        """What was selected holds at once: at a standstill nothing can step."""
+        """The selection takes effect immediately: at a standstill nothing can step."""
         self._coupling.settle()
 
     def take_wait(self) -> float | None:
-        """The axis' largest velocity where the selection waits in vain for room up to it; told once."""
+        """The axis' largest velocity if the selection waits in vain for room up to it; reported once."""
         return self._coupling.take_wait()
 
     def at_rest(self, history: deque[MotionState]) -> bool:
-        """No setpoint that it has still to look at moves; `history` ends with the cycle before, newest at its left."""
+        """True if all setpoints in use are at a standstill; `history` ends with the cycle before, newest first."""
         seen = islice(history, self._depth)
         return all(v == 0.0 and a == 0.0 for _, v, a, _ in seen) and not any(map(any, self._prefilter))
 
     def forget(self) -> None:
-        """The loop is open: nothing goes out, what was selected holds from the next closed cycle on."""
+        """The loop is open: nothing is output, the selection takes effect in the next closed cycle."""
         self.velocity = self.additive_velocity = self.additive_torque = 0.0
         self._prefilter.clear()
         self._coupling.forget()
@@ -131,7 +131,7 @@ class Feedforward:
     def update(self, history: deque[MotionState], feedback: float) -> None:
         """The values of this cycle; `history` has the newest setpoint at its left end.
 
-        `feedback` is what the position controller gives in this cycle, mm/s (deg/s).
+        `feedback` is the output of the position controller in this cycle, mm/s (deg/s).
         """
         mean_velocity = self._velocity_at.velocity(history)
         mean_acceleration = self._acceleration_at.acceleration(history)
@@ -189,7 +189,7 @@ def _parts(parameters: FeedforwardParameters, kv: float, torque_per_acceleration
 
 
 def _split(behind: float) -> tuple[int, float]:
-    """Whole cycles and fraction of a cycle; what is a whole number but for rounding has none."""
+    """Whole cycles and fraction of a cycle; a whole number but for rounding has none."""
     whole = floor(behind + 1e-9)
     fraction = behind - whole
     return whole, fraction if fraction > 1e-9 else 0.0
@@ -198,7 +198,7 @@ def _split(behind: float) -> tuple[int, float]:
 class MeanValue:
     """Mean of velocity, acceleration or jerk over the cycle that began `behind` cycles before the newest setpoint.
 
-    A fraction of a cycle takes the end of one setpoint's cycle and the begin of the next one's. Exact for a jerk that
+    A fraction of a cycle takes the end of one setpoint's cycle and the start of the next one's. Exact for a jerk that
     is constant in each cycle. `oldest`: index of the oldest setpoint that it looks at.
     """
 
@@ -255,7 +255,7 @@ class MomentaryVelocity:
 
 
 class CouplingLimits(NamedTuple):
-    """What the axis can do: velocity mm/s (deg/s), acceleration, jerk; an infinite jerk is none that matters."""
+    """Limits of the axis: velocity in mm/s (deg/s), acceleration, jerk; an infinite jerk is no limit."""
 
     velocity: float
     acceleration: float
@@ -265,10 +265,10 @@ class CouplingLimits(NamedTuple):
 class SoftCoupling:
     """Factor of a feedforward that is coupled in and out softly.
 
-    A change of the factor pushes the velocity command: what it changes it by beside the motion itself. The push changes
-    by the axis' jerk, comes down to 0 in time, and command and push together stay within the axis' acceleration - and
-    with them the acceleration of a first-order drive. As a lag is made up, the axis is faster than its setpoint by
-    about push/Kv; its velocity must have room for that. With no room left the factor waits.
+    A change of the factor pushes the velocity command: that is the change of the command besides the motion. The push
+    changes by the axis' jerk, comes down to 0 in time, and command and push together stay within the axis' acceleration
+    - and with them the acceleration of a first-order drive. As a lag is made up, the axis is faster than its setpoint
+    by about push/Kv; its velocity must have room for that. With no room left the factor waits.
 
     An additive torque M counts as a velocity M/(k·Kv), for a velocity controller is faster than a position controller.
     """
@@ -301,12 +301,12 @@ class SoftCoupling:
         return self.factor != 0.0 or self.target != 0.0
 
     def settle(self) -> None:
-        """The factor is what was selected."""
+        """True when the factor is the selected one."""
         self.factor, self._push = self.target, 0.0
         self._waited, self._warned = 0, False
 
     def take_wait(self) -> float | None:
-        """See Feedforward.take_wait; the next one is told after the selection has come into force."""
+        """See Feedforward.take_wait; the next one is reported after the selection has taken effect."""
         if self._warned or self._waited * self._cycle_time < WAITED:
             return None
         self._warned = True
@@ -317,12 +317,12 @@ class SoftCoupling:
         self._waited = self._waited + 1 if waits else 0
 
     def forget(self) -> None:
-        """The loop is open or nothing is put out: what was selected holds at once, nothing moves."""
+        """The loop is open or nothing is output: the selection takes effect immediately, nothing moves."""
         self.settle()
         self._last_command = None
 
     def note(self, command: float) -> None:
-        """The velocity command of this cycle with everything, mm/s (deg/s)."""
+        """The complete velocity command of this cycle, mm/s (deg/s)."""
         self._last_command = command
 
     def step(self, feedback: float, velocity: float, torque_velocity: float, setpoint: MotionState) -> None:
@@ -350,20 +350,20 @@ class SoftCoupling:
         self._push = (self.factor - before) * size / t * direction
 
     def _smooth(self, missing: float, last: float) -> float:
-        """A push that differs by one quantum (jerk · T) from the last one at most and comes down to 0 in such steps.
+        """A push that differs by at most one quantum (jerk · T) from the last one and comes down to 0 in such steps.
 
-        Coming down from n quanta takes a way of n (n + 1) / 2 quanta · T.
+        Coming down from n quanta takes a velocity of n (n + 1) / 2 quanta · T.
         """
         quantum = self._quantum
-        double_way = 2.0 * abs(missing) / self._cycle_time
-        push = copysign(double_way / (0.5 + sqrt(0.25 + double_way / quantum)), missing)
+        double_missing = 2.0 * abs(missing) / self._cycle_time
+        push = copysign(double_missing / (0.5 + sqrt(0.25 + double_missing / quantum)), missing)
         return max(last - quantum, min(last + quantum, push))
 
     def _room(self, by_velocity: float, by_torque: float, drift: float, setpoint: MotionState) -> float:
         """The largest push, mm/s² (deg/s²); without it, the velocity command changes by `drift`.
 
-        A lag that has been made up goes on for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
-        the axis' limit in room/J, by when e^(-Kv·room/J) is left of the push.
+        A lag that has been made up persists for 1/Kv, and the setpoint may accelerate meanwhile: a jerk J takes it to
+        the axis' limit in room/J; by then e^(-Kv·room/J) of the push is left.
         """
         limit, velocity, command = self._limits.acceleration, setpoint[1], self._last_command or 0.0
         room = max(0.0, limit - abs(setpoint[2]))

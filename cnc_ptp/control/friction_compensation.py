@@ -13,7 +13,7 @@ from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.view.control_view import FrictionParameters
 
 COUPLING_TIME = 0.1
-"""Seconds in which the current comes or goes when it is switched in motion."""
+"""Seconds in which the current rises or falls when it is switched in motion."""
 
 
 class FrictionTable:
@@ -75,19 +75,20 @@ class FrictionCompensation:
 
     @property
     def effective(self) -> bool:
-        """P-AXIS-00522 and P-COMP-00041 are set, the table has entries: switched on, it puts something out."""
+        """P-AXIS-00522 and P-COMP-00041 are set, the table has entries: switched on, it outputs a current."""
         return self._active and self._table is not None
 
     def switch(self, on: bool) -> None:
-        """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off. At once at a standstill, else softly or
-        with the next reversal.
+        """COMP ON FRICT, COMP OFF FRICT; with P-COMP-00041 = 0 it stays off.
+
+        Immediately at a standstill, else softly or with the next reversal.
         """
         self.on = on and self._active
         if not self._moving:
             self._factor = float(self.on)
 
     def forget(self) -> None:
-        """The loop is open: no current, and no motion from which the next one could turn back."""
+        """The loop is open: no current, and no previous motion that could reverse."""
         self._direction, self._reversed_at, self.current = 0.0, None, 0.0
         self._moving, self._factor = False, float(self.on)
         for index in range(len(self._delayed)):
@@ -112,14 +113,14 @@ class FrictionCompensation:
         self.current = value
 
     def _couple(self) -> None:
-        """One cycle nearer to on or off; the current would step, if it changed in motion at once."""
+        """One cycle nearer to on or off; in motion an immediate change would make the current step."""
         target = float(self.on)
         self._factor = min(target, self._factor + self._step) if target else max(target, self._factor - self._step)
 
     def _note_direction(self, position: float, velocity: float, history: deque[MotionState]) -> None:
-        """Notes where the axis has turned back: farther out than both its positions around that instant it was not.
+        """Notes where the axis has reversed: at the farther of its two positions around that instant.
 
-        The current changes its sign there, so it may come or go.
+        The current changes its sign there, so it may be switched.
         """
         direction = 1.0 if velocity > 0.0 else -1.0
         if direction != self._direction:
@@ -132,16 +133,16 @@ class FrictionCompensation:
     def _weight(self, position: float, velocity: float, history: deque[MotionState]) -> float:
         weight = 1.0
         if self._reversed_at is not None:
-            way = abs(position - self._reversed_at)
-            if way < self._position_delay:
-                weight = way / self._position_delay
+            distance = abs(position - self._reversed_at)
+            if distance < self._position_delay:
+                weight = distance / self._position_delay
             else:
                 self._reversed_at = None
         cycles = self._cycles_to_reversal(velocity, history)
         return min(weight, cycles / self._lookahead) if cycles else weight
 
     def _cycles_to_reversal(self, velocity: float, history: deque[MotionState]) -> int:
-        """Cycles up to the first one that does not go on in the direction of `velocity`; 0: no reversal in sight."""
+        """Cycles up to the first one that does not move in the direction of `velocity`; 0: no reversal ahead."""
         end = 0
         for cycles in range(1, self._lookahead + 1):
             onward = history[self._behind - cycles][1] * velocity

@@ -20,6 +20,6 @@ class VelocityController:
         return self._gain * (velocity_error + self._integral)
 
     def brake(self, velocity: float) -> float:
-        """Torque that brakes the actual `velocity` (mm/s, deg/s) while the loop is open; nothing is remembered."""
+        """Torque that brakes the actual `velocity` (mm/s, deg/s) while the loop is open; clears the integral."""
         self._integral = 0.0
         return -self._gain * velocity

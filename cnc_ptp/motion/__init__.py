@@ -6,7 +6,7 @@ Units: mm, s, mm/s, mm/s², mm/s³ (deg instead of mm for rotary axes).
 from cnc_ptp.motion.batch import RestToRestBatch, plan_rest_to_rest_batch
 from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.profile import Profile
-from cnc_ptp.motion.ramp import stop_way
+from cnc_ptp.motion.ramp import stopping_distance
 from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest, reachable_velocity
 from cnc_ptp.motion.step_profile import step_stopping_distance, step_to_position, step_to_velocity
 from cnc_ptp.motion.to_position import plan_to_position
@@ -24,5 +24,5 @@ __all__ = [
     "step_stopping_distance",
     "step_to_position",
     "step_to_velocity",
-    "stop_way",
+    "stopping_distance",
 ]

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from cnc_ptp.motion.limits import (
     LARGEST_LIMIT,
     LARGEST_STATE,
-    NEGLIGIBLE_WAY,
+    NEGLIGIBLE_DISTANCE,
     SMALLEST_LIMIT,
     Limits,
     check_limit,
@@ -52,16 +52,16 @@ def plan_rest_to_rest_batch(
     Raises CncError 23001 or 23002 for the first bad value, as `plan_rest_to_rest` does.
     """
     given = (start, target, velocity, acceleration, deceleration, jerk)
-    begin, end, v, up, down, j = np.broadcast_arrays(*(np.atleast_1d(np.asarray(each, np.float64)) for each in given))
+    start, end, v, up, down, j = np.broadcast_arrays(*(np.atleast_1d(np.asarray(each, np.float64)) for each in given))
     for name, bounds in zip(Limits._fields, (v, up, down, j), strict=True):
         good = (bounds >= SMALLEST_LIMIT) & (bounds <= LARGEST_LIMIT)
         if not good.all():
             check_limit(name, float(bounds[~good][0]))
-    for name, places in (("start", begin), ("target", end)):
+    for name, places in (("start", start), ("target", end)):
         good = np.abs(places) <= LARGEST_STATE
         if not good.all():
             check_state(**{name: float(places[~good][0])})
-    return RestToRestBatch(_plan(begin, end, v, up, down, j))
+    return RestToRestBatch(_plan(start, end, v, up, down, j))
 
 
 def _ramp_shapes(v: Floats, bound: Floats, j: Floats) -> tuple[Floats, Floats, Floats]:
@@ -79,11 +79,11 @@ def _reachable(distance: Floats, bound: Floats, j: Floats) -> Floats:
     return np.where(free * j <= bound * bound, free, bounded)
 
 
-def _plan(begin: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats, j: Floats) -> Floats:
-    way = end - begin
-    distance = np.abs(way)
-    distance[distance < NEGLIGIBLE_WAY] = 0.0
-    s = np.copysign(1.0, way)
+def _plan(start: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats, j: Floats) -> Floats:
+    signed_distance = end - start
+    distance = np.abs(signed_distance)
+    distance[distance < NEGLIGIBLE_DISTANCE] = 0.0
+    s = np.copysign(1.0, signed_distance)
     v = velocity
     rise, rise_hold, rise_top = _ramp_shapes(v, up, j)
     fall, fall_hold, fall_top = _ramp_shapes(v, down, j)
@@ -98,26 +98,26 @@ def _plan(begin: Floats, end: Floats, velocity: Floats, up: Floats, down: Floats
         fall[short], fall_hold[short], fall_top[short] = _ramp_shapes(reduced, down[short], j[short])
         needed[short] = 0.5 * reduced * (2.0 * (rise[short] + fall[short]) + rise_hold[short] + fall_hold[short])
     cruise = np.maximum(distance - needed, 0.0)
-    rows = np.zeros((5, 8, len(way)))
+    rows = np.zeros((5, 8, len(signed_distance)))
     cruise /= np.where(v > 0.0, v, 1.0)
     phases = (rise, rise_hold, rise, cruise, fall, fall_hold, fall)
     for phase, d in enumerate(phases):
         np.add(rows[0, phase], d, out=rows[0, phase + 1])
-    _fill(rows, begin, end, s * v, s * j, phases, s * rise_top, s * fall_top)
+    _fill(rows, start, end, s * v, s * j, phases, s * rise_top, s * fall_top)
     return rows
 
 
 def _fill(
-    rows: Floats, begin: Floats, end: Floats, v: Floats, j: Floats, phases: tuple[Floats, ...], up: Floats, down: Floats
+    rows: Floats, start: Floats, end: Floats, v: Floats, j: Floats, phases: tuple[Floats, ...], up: Floats, down: Floats
 ) -> None:
     """Positions up to the cruise from the start, those after it from the target; v, j, up, down are signed."""
     rise, rise_hold, _, _, fall, fall_hold, _ = phases
     _, p, velocity, a, jerk = rows
     low = 0.5 * up * rise
-    p[0] = begin
-    p[1] = begin + j * rise * rise * rise / 6.0
+    p[0] = start
+    p[1] = start + j * rise * rise * rise / 6.0
     p[2] = p[1] + rise_hold * (low + 0.5 * up * rise_hold)
-    p[3] = begin + 0.5 * v * (2.0 * rise + rise_hold)
+    p[3] = start + 0.5 * v * (2.0 * rise + rise_hold)
     p[4] = end - 0.5 * v * (2.0 * fall + fall_hold)
     last = 0.5 * down * fall
     p[6] = end - j * fall * fall * fall / 6.0

@@ -1,4 +1,4 @@
-"""Dynamic limits of a motion and the checks of everything that a planner is given."""
+"""Dynamic limits of a motion, and the checks of all arguments of a planner."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from cnc_ptp.errors import CncError
 SMALLEST_LIMIT = 1e-9
 LARGEST_LIMIT = 1e12
 LARGEST_STATE = 1e12
-NEGLIGIBLE_WAY = 1e-30
-"""mm; a way below this is none (its powers would leave the range of the numbers)."""
+NEGLIGIBLE_DISTANCE = 1e-30
+"""mm; a smaller distance is 0 (its powers would leave the range of the numbers)."""
 
 
 PLACES = 8
-"""Units in the last place of a position that are rounding."""
+"""Units in the last place of a position that count as rounding."""
 
 
 def rounding(*positions: float) -> float:

@@ -4,7 +4,7 @@ Within a segment that starts at t0 with p, v, a and jerk j, with d = t - t0:
 
     p(t) = p + d·(v + d·(a/2 + d·j/6))      v(t) = v + d·(a + d·j/2)      a(t) = a + d·j
 
-The last row of a table is the end state with a = j = 0: after its end a motion goes on with its end velocity.
+The last row of a table is the end state with a = j = 0: after its end a motion continues with its end velocity.
 `Profile.state_at` and `Profile.sample` run the same operations in the same order, so they agree to the bit.
 """
 
@@ -55,7 +55,7 @@ class Profile:
         keep(self, "_columns", None)
 
     def state_at(self, t: float) -> MotionState:
-        """(p, v, a, j) at t seconds after the start; before the start as at 0, after the end on at the end velocity."""
+        """(p, v, a, j) at t seconds after the start; before the start as at 0, after the end with the end velocity."""
         if t < 0.0:
             t = 0.0
         start, p, v, a, j = self.rows[bisect_right(self.starts, t) - 1]

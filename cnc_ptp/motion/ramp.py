@@ -1,8 +1,8 @@
-"""Ramps: the fastest way from a velocity and an acceleration to another velocity with acceleration 0.
+"""Ramps: the fastest transition from a velocity and an acceleration to another velocity with acceleration 0.
 
 Everything here is closed form. Symbols: v, a the state; J the jerk; A+ (`acceleration`) bounds the growth of |v|,
-A- (`deceleration`) its reduction. `v + a|a|/(2J)` is the velocity that remains when a is taken to 0 at once: where it
-lies below the wanted velocity the ramp pushes upwards, otherwise downwards. An acceleration above its bound is left
+A- (`deceleration`) its reduction. `v + a|a|/(2J)` is the velocity that remains when a is taken to 0 immediately: if it
+is below the target velocity the ramp pushes upwards, otherwise downwards. An acceleration above its bound is left
 with full jerk.
 """
 
@@ -14,7 +14,7 @@ from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.profile import Piece
 
 NEGLIGIBLE = 4e-15
-"""Relative velocity difference that is rounding, not motion."""
+"""Relative velocity difference that counts as rounding."""
 
 
 def ramp(v: float, a: float, wanted: float, limits: Limits) -> list[Piece]:
@@ -89,22 +89,22 @@ def _to_standstill(v: float, a: float, limits: Limits) -> tuple[list[Piece], flo
     return [(d, a, j), (max(0.0, -v) / top, top, 0.0), ((top - crossing) / jerk, top, -jerk)], crossing
 
 
-def stop_way(v: float, a: float, deceleration: float, jerk: float) -> float:
-    """Signed way (mm) of the fastest stop from velocity v and acceleration a under A- and J.
+def stopping_distance(v: float, a: float, deceleration: float, jerk: float) -> float:
+    """Signed distance (mm) of the fastest stop from velocity v and acceleration a under A- and J.
 
     With q = vJ + a²/2 (the square of the deceleration peak) and v + a|a|/(2J) >= 0:
-    way = (g(q) + a·q - a³/6)/J², see `brake_term` for g. The opposite case is its mirror image.
+    distance = (g(q) + a·q - a³/6)/J², see `brake_term` for g. The opposite case is its mirror image.
     """
     if v + a * abs(a) / (2.0 * jerk) < 0.0:
-        return -stop_way(-v, -a, deceleration, jerk)
-    way = 0.0
+        return -stopping_distance(-v, -a, deceleration, jerk)
+    distance = 0.0
     if a < -deceleration:
         d = (-deceleration - a) / jerk
-        way = d * (v + d * (0.5 * a + d * (jerk / 6.0)))
+        distance = d * (v + d * (0.5 * a + d * (jerk / 6.0)))
         v += d * (a + d * (0.5 * jerk))
         a = -deceleration
     q = v * jerk + 0.5 * a * a
-    return way + (brake_term(q, deceleration) + a * q - a * a * a / 6.0) / (jerk * jerk)
+    return distance + (brake_term(q, deceleration) + a * q - a * a * a / 6.0) / (jerk * jerk)
 
 
 def brake_term(q: float, deceleration: float) -> float:

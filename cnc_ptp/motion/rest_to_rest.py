@@ -1,6 +1,6 @@
 """Rest to rest: the seven-phase profile of an axis start, closed form.
 
-Source: TX1250 2.1. Where V cannot be reached, it is reduced to the largest velocity that is reachable with
+Source: TX1250 2.1. If V cannot be reached, it is reduced to the largest velocity that is reachable with
 A = min(A+, A-) on both sides; the ramps then use A+ and A-, and a short cruise fills what is left of the distance.
 Near the distance L0 that A+ and A- themselves need for V this would be a jump; there V·L/L0 is more and counts.
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import cbrt, sqrt
 
-from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limit, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limit, check_limits, check_state
 from cnc_ptp.motion.profile import Profile, Segment
 
 
@@ -58,7 +58,7 @@ def rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
     """`plan_rest_to_rest` for values that have been checked."""
     velocity, acceleration, deceleration, jerk = limits
     distance = abs(target - start)
-    if distance < NEGLIGIBLE_WAY:
+    if distance < NEGLIGIBLE_DISTANCE:
         return Profile(((0.0, target, 0.0, 0.0, 0.0),))
     up, up_hold, up_top = _ramp_shape(velocity, acceleration, jerk)
     down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)

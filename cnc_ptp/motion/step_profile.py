@@ -1,14 +1,14 @@
 """Motions without a limit of the jerk: the acceleration steps between A+, 0 and -A-, the jerk is 0. Closed forms.
 
 Forward along a path: v >= 0, and the target is no nearer than the stopping distance v²/(2A-). From v over the peak u to
-rest the distance is (u² - v²)/(2A+) + u²/(2A-), what is left of it is run at u.
+rest the distance is (u² - v²)/(2A+) + u²/(2A-), the rest is travelled at u.
 """
 
 from __future__ import annotations
 
 from math import sqrt
 
-from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limits, check_state
 from cnc_ptp.motion.profile import Piece, Profile, integrate, integrate_back
 
 
@@ -36,7 +36,7 @@ def step_to_position(p: float, v: float, target: float, limits: Limits) -> Profi
     check_limits(limits)
     check_state(position=p, velocity=v, target=target)
     distance = target - p
-    if distance < NEGLIGIBLE_WAY:
+    if distance < NEGLIGIBLE_DISTANCE:
         return Profile(((0.0, target, 0.0, 0.0, 0.0),))
     velocity, acceleration, deceleration, _ = limits
     peak_squared = deceleration * (2.0 * distance * acceleration + v * v) / (acceleration + deceleration)

@@ -17,41 +17,41 @@ from __future__ import annotations
 
 from math import sqrt
 
-from cnc_ptp.motion.limits import NEGLIGIBLE_WAY, Limits, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limits, check_state
 from cnc_ptp.motion.profile import Piece, Profile, Segment, integrate, integrate_back
 from cnc_ptp.motion.quartic import largest_root
-from cnc_ptp.motion.ramp import brake, brake_term, ramp, stop_way
+from cnc_ptp.motion.ramp import brake, brake_term, ramp, stopping_distance
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
 
 WAY_ROUNDING = 1e-13
 PLACE_ROUNDING = 4.5e-16
-"""Part of the stop way, and of each of the two places, that is rounding when an axis that brakes is planned again."""
+"""Part of the stopping distance, and of both positions, that counts as rounding when a braking axis is replanned."""
 
 REST_ROUNDING = 1e-9
-"""Part of the velocity by which the last jerk phase of a stop may seem to miss standstill."""
+"""Part of the velocity by which the last jerk phase of a stop may miss standstill through rounding."""
 
 
 def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits, *, direct: bool = False) -> Profile:
     """Fastest jerk-limited motion from (p, v, a) to standstill exactly at `target` (mm).
 
-    A velocity above V and an acceleration above A+ or A- are left as fast as the limits allow. Where the axis cannot
+    A velocity above V and an acceleration above A+ or A- are left as fast as the limits allow. If the axis cannot
     stop before the target, or moves away from it, it stops and returns (TX1250 2.3); `direct` reverses without the
     standstill in between, which is faster. Raises CncError 23001 (limits) and 23002 (state, target).
     """
     check_limits(limits)
     check_state(position=p, velocity=v, acceleration=a, target=target)
     _, _, deceleration, jerk = limits
-    way = target - p
-    stop = stop_way(v, a, deceleration, jerk)
-    gap = way - stop
-    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_WAY:
+    distance = target - p
+    stop = stopping_distance(v, a, deceleration, jerk)
+    gap = distance - stop
+    if abs(gap) <= WAY_ROUNDING * abs(stop) + PLACE_ROUNDING * (abs(p) + abs(target)) + NEGLIGIBLE_DISTANCE:
         return _table(p, v, target, 1.0, [], ramp(v, a, 0.0, limits))
     s = 1.0 if gap > 0.0 else -1.0
     if _stops_first(s * v, s * a, limits) and not direct:
         return _stop_and_return(p, v, a, target, limits)
     v *= s
     a *= s
-    head, tail = _leave_ramp(v, a, s * way, limits)
+    head, tail = _leave_ramp(v, a, s * distance, limits)
     return _table(p, v, target, s, head, tail)
 
 
@@ -67,7 +67,7 @@ def _stops_first(v: float, a: float, limits: Limits) -> bool:
 def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
     """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target.
 
-    Ways are counted from p, so that the way back keeps its digits far away from zero.
+    Distances are counted from p, so that the way back keeps its digits far away from zero.
     """
     rows, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits))
     back = rest_to_rest(stop, target - p, limits)
@@ -96,7 +96,7 @@ def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail:
     return Profile(rows)
 
 
-def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Piece], list[Piece]]:
+def _leave_ramp(v: float, a: float, distance: float, limits: Limits) -> tuple[list[Piece], list[Piece]]:
     """The pieces of Γ up to the point where it must be left for the target, and the stop ramp from there."""
     velocity, _, deceleration, jerk = limits
     scale = jerk * jerk
@@ -107,30 +107,33 @@ def _leave_ramp(v: float, a: float, way: float, limits: Limits) -> tuple[list[Pi
         if d <= 0.0:
             continue
         if j > 0.0:
-            top = _leave_at_rising_acceleration(x, v, a, a + j * d, way, deceleration, jerk)
+            top = _leave_at_rising_acceleration(x, v, a, a + j * d, distance, deceleration, jerk)
             if top is not None:
                 d = (top - a) / jerk
                 head.append((d, a, j))
                 return head, brake(v + d * (a + d * (0.5 * j)), top, deceleration, jerk)
         elif j == 0.0 and a > 0.0:
-            held = _time_at_constant_acceleration(x, v, a, way, deceleration, jerk)
+            held = _time_at_constant_acceleration(x, v, a, distance, deceleration, jerk)
             if held <= d:
                 head.append((held, a, 0.0))
                 return head, brake(v + held * a, a, deceleration, jerk)
         head.append((d, a, j))
         x += d * (v + d * (0.5 * a + d * (j / 6.0)))
         v += d * (a + d * (0.5 * j))
-    cruise = way - x - brake_term(velocity * jerk, deceleration) / scale
+    cruise = distance - x - brake_term(velocity * jerk, deceleration) / scale
     return head, [(max(0.0, cruise) / velocity, 0.0, 0.0), *brake(velocity, 0.0, deceleration, jerk)]
 
 
-def _time_at_constant_acceleration(x: float, v: float, a: float, way: float, deceleration: float, jerk: float) -> float:
-    """Seconds after which a piece of constant a > 0, begun at x with v, must be left to stop at `way`.
+def _time_at_constant_acceleration(
+    x: float, v: float, a: float, distance: float, deceleration: float, jerk: float
+) -> float:
+    """Seconds after which a piece of constant a > 0, started at x with v, must be left to stop at `distance`.
 
-    Solved for the change of q (and of m = q + a√q, of √q), because beside q it may be small. D is constant at q < 0.
+    Solved for the change of q (and of m = q + a√q, of √q), because compared with q it may be small. D is constant at q
+    < 0.
     """
     q = v * jerk + 0.5 * a * a
-    ahead = jerk * jerk * (way - x) - a * (q - a * a / 6.0)
+    ahead = jerk * jerk * (distance - x) - a * (q - a * a / 6.0)
     before = 0.0
     if q < 0.0:
         ahead += 0.5 * q * (q / a + a)
@@ -154,14 +157,15 @@ def _time_at_constant_acceleration(x: float, v: float, a: float, way: float, dec
 
 
 def _leave_at_rising_acceleration(
-    x: float, v: float, a: float, end: float, way: float, deceleration: float, jerk: float
+    x: float, v: float, a: float, end: float, distance: float, deceleration: float, jerk: float
 ) -> float | None:
-    """Acceleration at which a piece of jerk +J from a to `end`, begun at x with v, is left to stop at `way`, or None.
+    """Acceleration at which a piece of jerk +J from a to `end`, started at x with v, is left to stop at `distance`.
 
-    Within the piece the deceleration peak √q is above A- outside -edge < a < edge, edge² = A-² - c.
+    None if it is not left. Within the piece the deceleration peak √q is above A- outside -edge < a < edge, edge² = A-²
+    - c.
     """
     c = v * jerk - 0.5 * a * a
-    rest = jerk * jerk * (way - x) + a * (c + a * a / 6.0)
+    rest = jerk * jerk * (distance - x) + a * (c + a * a / 6.0)
     low = max(a, -deceleration)
     if c < 0.0:
         low = max(low, sqrt(-c))

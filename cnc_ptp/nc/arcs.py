@@ -18,7 +18,7 @@ CHORD_TOLERANCE = 1e-3
 
 
 class CorrectedCentre(NamedTuple):
-    """Centre moved onto the perpendicular bisector of the chord: `offset` is the way it moved (mm)."""
+    """Centre moved onto the perpendicular bisector of the chord: `offset` is the distance it moved (mm)."""
 
     centre: Point
     radius: float
@@ -41,7 +41,7 @@ def correct_centre(start: Point, target: Point, centre: Point) -> CorrectedCentr
 def centre_from_radius(start: Point, target: Point, radius: float, clockwise: bool) -> tuple[Point, float] | None:
     """Centre and radius of the arc with `radius` (negative: the arc above 180 degrees); None if it is too small.
 
-    The centre lies at h = sqrt(R² - d²/4) beside the chord's midpoint: left of the way for a short
+    The centre lies at h = sqrt(R² - d²/4) from the chord's midpoint: left of the chord for a short
     counter-clockwise arc.
     """
     half = distance(start, target) / 2.0
@@ -74,9 +74,9 @@ def distance(a: Point, b: Point) -> float:
 
 
 def extreme_points(start: tuple[float, ...], move: CircularMove) -> list[tuple[float, ...]]:
-    """Points of the arc between its ends where one axis of the plane turns back, in the order of the path.
+    """Points of the arc between its ends where one axis of the plane reverses, in the order of the path.
 
-    They lie at the multiples of 90 degrees inside the sweep; the axes outside the plane are interpolated linearly.
+    They are at the multiples of 90 degrees inside the sweep; the axes outside the plane are interpolated linearly.
     """
     first, second = move.plane
     begin = math.degrees(math.atan2(start[second] - move.center[1], start[first] - move.center[0]))

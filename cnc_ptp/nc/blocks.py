@@ -1,12 +1,12 @@
-"""One line of text -> one block: known words, one code of a group and one word of a kind a block.
+"""One line of text -> one block: known words, at most one code of a group and one word of a kind per block.
 
-Two ways with the same result: a fast one for lines of nothing but letters with numbers, a careful one for everything
+Two methods with the same result: a fast one for lines of letters with numbers only, a careful one for everything
 else, which also finds the column of an error.
 """
 
 from collections.abc import Sequence
 
-from cnc_ptp.nc import compensation, faults, feedforward
+from cnc_ptp.nc import faults, feedforward, friction_switch
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.hash_commands import hash_block
 from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, normalise, tokens
@@ -30,7 +30,7 @@ _G_BY_TEXT = {
 
 
 def plain_block(file: str, line: int, text: str) -> NcBlock | None:
-    """Fast way for a line of nothing but known letters with numbers and G codes; None if it needs a careful look."""
+    """The fast method, for known letters with numbers and G codes only; None if the line needs the careful one."""
     parts = PLAIN_WORDS.split(text.upper())
     if len(parts) == 1 or "".join(parts[::3]) or not text.isascii():
         return None
@@ -96,7 +96,7 @@ def _integer(token: Token, source: Source, limit: int) -> int:
 
 
 class _BlockWords:
-    """The words of one block as the careful way collects them."""
+    """The words of one block as the careful method collects them."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -177,7 +177,7 @@ class _BlockWords:
     def bracket(self, token: Token) -> None:
         """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
         if token.name[0] in AXIS_LETTERS:
-            self.controls.append(compensation.bracket(token, self.source))
+            self.controls.append(friction_switch.bracket(token, self.source))
             return
         if token.name[0] == "S" and feedforward.is_in(token):
             self.controls.append(feedforward.bracket(token, self.source))

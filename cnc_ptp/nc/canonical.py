@@ -1,12 +1,12 @@
-"""The canonical stream: what an NC program asks for, with every modal state resolved.
+"""The canonical stream: the commands of an NC program with every modal state resolved.
 
 Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
 All types are immutable and cheap to create (one of each per program block).
 
-Functions of a block stand in the order T, D, main spindle (gear first), other spindles, other M, however the line
-orders them; behind them feedforward and compensations. When they go out and who waits for them (before the motion,
+Functions of a block are in the order T, D, main spindle (gear first), other spindles, other M, in whatever order
+the line has them; then feedforward and compensations. When they are output and who waits for them (before the motion,
 after it, at the next G01) is decided at run time by their synchronisation type (P-CHAN-00041, 00043, 00045, 00047,
-00049, 00081), which the language does not know. M00, M01 and the program end stand in `stop` and act when motion and
+00049, 00081), which the language does not know. M00, M01 and the program end are in `stop` and act when motion and
 functions have finished.
 """
 
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 
 class Source(NamedTuple):
-    """Where a block comes from: file, line (1-based), block number (N word, 0 if none) and the line's text."""
+    """The source of a block: file, line (1-based), block number (N word, 0 if none) and the line's text."""
 
     file: str
     line: int
@@ -25,7 +25,7 @@ class Source(NamedTuple):
 STEP, TRAPEZ = "STEP", "TRAPEZ"
 """Slopes (#SLOPE): the acceleration along the path steps, or is a trapezium with limited jerk."""
 SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
-"""By the value of P-CHAN-00071."""
+"""The slope for each value of P-CHAN-00071."""
 
 
 class LinearMove(NamedTuple):
@@ -58,7 +58,7 @@ class CircularMove(NamedTuple):
 
 
 class Dwell(NamedTuple):
-    """G04: the path stands for `seconds`."""
+    """G04: the path dwells for `seconds`."""
 
     seconds: float
 
@@ -66,11 +66,11 @@ class Dwell(NamedTuple):
 class SpindleFunction(NamedTuple):
     """A function of one spindle: `m` is 3 (clockwise), 4 (counter-clockwise), 5 (stop), 19 (positioning) or None.
 
-    With M3 and M4 `speed_rpm` is always given (the programmed or the stored speed), with M5 never, since a speed beside
+    With M3 and M4 `speed_rpm` is always given (the programmed or the stored speed), with M5 never, since a speed with
     M5 is only stored for the next M3 or M4. None is a new speed alone, or, without a speed, G167 alone.
     M19 goes to `position_deg`, in the programmed `direction` ("cw", "ccw", "" for none), with the programmed or the
-    stored speed, without any with that of P-AXIS-00209. `full_override`: G167, the external override does not act.
-    Spindles have here the name that they have at start-up, whatever #MAIN SPINDLE says.
+    stored speed, without any with that of P-AXIS-00209. `full_override`: G167, the external override has no effect.
+    Spindles have the name here that they have at start-up, whatever #MAIN SPINDLE says.
     """
 
     spindle: str
@@ -82,21 +82,21 @@ class SpindleFunction(NamedTuple):
 
 
 class SpindleCommand(NamedTuple):
-    """What a spindle does without speed or position: `command` is "home" (G74) or "reset_limits"."""
+    """A spindle function without speed or position: `command` is "home" (G74) or "reset_limits"."""
 
     spindle: str
     command: str
 
 
 class GearChange(NamedTuple):
-    """The gear stage (1 to 6) in which the functions after it need the spindle; nothing happens where it is in it."""
+    """The gear stage (1 to 6) that the functions after it need; no effect if the spindle is in it."""
 
     spindle: str
     stage: int
 
 
 class SpindleLink(NamedTuple):
-    """Synchronous operation of two spindles begins or ends; functions of the master are in the stream for both.
+    """Synchronous operation of two spindles starts or ends; functions of the master are in the stream for both.
 
     The slave turns `num` / `den` times as fast as the master, and as far.
     """
@@ -121,7 +121,7 @@ class AuxiliaryFunction(NamedTuple):
 
 
 class AxisFeedforward(NamedTuple):
-    """G135 (`on`), G137 (not `on`) and G136 of a block for the channel's axes; None: the selection stays.
+    """G135 (`on`), G137 (not `on`) and G136 of a block for the channel's axes; None: the selection is kept.
 
     `weights`: percent by axis; the axes that are not named keep theirs.
     """
@@ -131,7 +131,7 @@ class AxisFeedforward(NamedTuple):
 
 
 class SpindleFeedforward(NamedTuple):
-    """The same for one spindle; `weight` in percent, None: it stays."""
+    """The same for one spindle; `weight` in percent, None: it is kept."""
 
     spindle: str
     on: bool | None

@@ -12,8 +12,8 @@ def bracketed_controls(
 ) -> tuple[SpindleFeedforward | CompensationSwitch, ...]:
     """The control functions in brackets, in their order; `before`: the block's other functions.
 
-    Raises 20797, 20180 for axes and spindles that the channel has not, 21099 and 21037 for one that is named twice,
-    21202 for spindles that the PLC moves.
+    Raises 20797, 20180 for axes and spindles that the channel does not have, 21099 and 21037 for one that is named
+    twice, 21202 for spindles that the PLC moves.
     """
     spindles = names(channel, state)
     moved = {function.spindle for function in before if isinstance(function, (SpindleFunction, SpindleCommand))}
@@ -42,7 +42,7 @@ def _require_unit(block: NcBlock, control: SpindleFeedforward, spindle: Spindle)
 def _check(
     block: NcBlock, name: str, known: tuple[str, ...], used: set[str], unknown: faults.Fault, twice: faults.Fault
 ) -> None:
-    """Raises for a name that is not `known` or `used` already; notes it."""
+    """Raises for a name that is not `known` or already `used`; notes it."""
     column = column_of(block.source, name)
     if name not in known:
         raise unknown.at(block.source, column, word=name, known=", ".join(known) or "none")

@@ -12,7 +12,7 @@ from cnc_ptp.nc.canonical import Source
 class ProgramError(CncError):
     """A fault in an NC program: nothing of the block was executed.
 
-    `reason` is the bare fault, `message` adds file, line, column and the line's text; `caret` is the line with a mark
+    `reason` is the fault alone, `message` adds file, line, column and the line's text; `caret` is the line with a mark
     below it.
     """
 
@@ -61,7 +61,7 @@ DUPLICATE_AXIS = Fault(20203, "axis {word} twice in one block: {first} and {seco
 # G and M functions
 UNKNOWN_G = Fault(20131, "unknown G function {word}")
 UNKNOWN_M = Fault(20160, "unknown M function {word}")
-SAME_GROUP = Fault(21012, "{first} and {second} belong to one group ({group}) and cannot stand in one block")
+SAME_GROUP = Fault(21012, "{first} and {second} belong to one group ({group}) and cannot be in one block")
 WORD_NOT_USED = Fault(21013, "{word} has no meaning with {g}")
 
 # Structure
@@ -73,7 +73,7 @@ RETURN_IN_MAIN = Fault(21018, "{word} ends a subroutine, but this is the main pr
 UNKNOWN_SUBROUTINE = Fault(21019, "unknown subroutine {name}; known are: {known}")
 CALL_DEPTH = Fault(21020, "call of subroutine {name} at depth {depth}, the limit is {limit}")
 TOO_MANY_BLOCKS = Fault(21043, "the program executes more than {limit} blocks, calls counted each time")
-WORDS_AFTER_CALL = Fault(21542, "'{word}' behind a subroutine call")
+WORDS_AFTER_CALL = Fault(21542, "'{word}' after a subroutine call")
 CALL_AND_END = Fault(21021, "subroutine call and {word} in one block")
 
 # Motion
@@ -84,11 +84,11 @@ DWELL_MISSING = Fault(21023, "G04 without a time")
 DWELL_NEGATIVE = Fault(21030, "dwell time of {value} s is negative")
 DWELL_WITHOUT_SPEED = Fault(21041, "G04 S counts revolutions, but spindle {spindle} has no speed")
 DWELL_TWICE = Fault(20013, "dwell time given directly and by {word}")
-DWELL_NOT_ALONE = Fault(20685, "G04 stands alone in its block, here with {word}")
+DWELL_NOT_ALONE = Fault(20685, "G04 must be alone in its block, not with {word}")
 PLANE_AXIS_MISSING = Fault(21031, "plane {g} needs the axes {needed}; axes of this channel: {known}")
 
 # Arcs
-CENTRE_NOT_IN_PLANE = Fault(21032, "centre word {word} does not lie in the plane {g} ({plane})")
+CENTRE_NOT_IN_PLANE = Fault(21032, "centre word {word} is not in the plane {g} ({plane})")
 ARC_WITHOUT_CENTRE = Fault(21033, "{g} without a centre ({words}) and without a radius (R)")
 CENTRE_AND_RADIUS = Fault(21024, "circle centre ({word}) and radius (R) in one block")
 RADIUS_ZERO = Fault(20036, "the radius of the circle is 0")
@@ -106,14 +106,14 @@ RADII_DIFFER = Fault(
 # Feedforward and compensations
 WEIGHT_RANGE = Fault(21090, "feedforward weight {value} % of {unit} is below 0 %")
 WEIGHTS_WITHOUT_AXIS = Fault(21091, "G136 without an axis: axis words are its weights in percent")
-WEIGHTS_AND_MOTION = Fault(21092, "G136 takes the axis words of its block as weights, {g} cannot stand beside it")
+WEIGHTS_AND_MOTION = Fault(21092, "G136 takes the axis words of its block as weights, {g} cannot be in the same block")
 FEEDFORWARD_ALONE = Fault(
-    21093, "'{word}' beside feedforward in the brackets of spindle {spindle}: G135, G136 and G137 stand there alone"
+    21093, "'{word}' with feedforward in the brackets of spindle {spindle}: G135, G136 and G137 must be alone there"
 )
 WEIGHT_MISSING = Fault(21094, "G136 of spindle {spindle} without a weight in percent, as in G136=80")
 SELECTION_WITH_VALUE = Fault(21095, "{g} of spindle {spindle} takes no value")
 COMP_FIRST = Fault(21096, "the brackets of axis {axis} begin with COMP, not with '{word}'")
-COMP_WORD = Fault(21097, "'{word}' is not available behind COMP of axis {axis}; known are: {known}")
+COMP_WORD = Fault(21097, "'{word}' is not available after COMP of axis {axis}; known are: {known}")
 COMP_INCOMPLETE = Fault(21098, "COMP of axis {axis} does not say {missing}")
 COMP_TWICE = Fault(21099, "COMP of axis {axis} twice in one block")
 

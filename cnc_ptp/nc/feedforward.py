@@ -1,6 +1,6 @@
 """Feedforward in programs: G135 (on), G137 (off), G136 (weights) for the axes, `S[G135 G136=90]` for a spindle.
 
-Source: TF5200 feedforward 3. The weights are percent; they and the selection hold until they are programmed anew.
+Source: TF5200 feedforward 3. The weights are percent; they and the selection are kept until they are programmed again.
 """
 
 import re
@@ -21,9 +21,9 @@ _NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
 
 
 def block_function(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
-    """G135, G136 and G137 of a block as one function for the channel's axes, made where the first of them stands.
+    """G135, G136 and G137 of a block as one function for the channel's axes, made at the first of them.
 
-    With G136 the axis words are weights, so no path function can stand in the block (21092). Raises 21090, 21091 for
+    With G136 the axis words are weights, so no path function can be in the block (21092). Raises 21090, 21091 for
     weights below 0 % and for a G136 without an axis; weights above 100 % are limited where they act, with a warning.
     """
     codes = [other for other in block.codes if other.number in (ON, WEIGHTS, OFF)]
@@ -57,8 +57,8 @@ def is_in(token: Token) -> bool:
 def bracket(token: Token, source: Source) -> SpindleFeedforward:
     """The words in a spindle's brackets: G135 or G137, and G136=weight; nothing else.
 
-    Raises 21093 for other words, 21003 for what is no number, 21012 and 21042 for words that exclude each other or come
-    twice, 21090 for the weight, 21094 for a G136 without and 21095 for a G135 or G137 with a value.
+    Raises 21093 for other words, 21003 for a value that is not a number, 21012 and 21042 for words that exclude each
+    other or come twice, 21090 for the weight, 21094 for a G136 without and 21095 for a G135 or G137 with a value.
     """
     found: dict[int, float] = {}
     for code, value, column in _codes(token, source):
@@ -89,7 +89,7 @@ def _codes(token: Token, source: Source) -> Iterator[tuple[int, float | None, in
 def _fault(
     spindle: str, found: dict[int, float], code: int, value: float | None
 ) -> tuple[faults.Fault, dict[str, Value]] | None:
-    """What is wrong with a word behind the words `found`, and the values for its text."""
+    """The fault of a word after the words `found`, and the values for its text."""
     rival = next((other for other in found if other != WEIGHTS), None)
     if code in found:
         return faults.TWICE, {"word": f"G{code}"}

@@ -1,4 +1,4 @@
-"""Gear stages of the main spindle: which one a speed needs (TF5200 spindle 2.8.2, P-CHAN-00004, 00052 to 00074)."""
+"""Gear stages of the main spindle: selection by speed (TF5200 spindle 2.8.2, P-CHAN-00004, 00052 to 00074)."""
 
 from cnc_ptp.nc import spindle_faults
 from cnc_ptp.nc.canonical import number
@@ -11,7 +11,7 @@ GEAR_M = range(FIRST_M, FIRST_M + 6)
 
 
 def holds(spindle: Spindle, stage: int, speed_rpm: float) -> bool:
-    """Whether the range of `stage` (from 1) has the speed; its limits belong to it, (0, 0) has none.
+    """True if the range of `stage` (from 1) has the speed; its limits belong to it, (0, 0) has none.
 
     Standstill is in every range.
     """
@@ -37,7 +37,7 @@ def stage_for(
     """The stage for a speed: the programmed one, else the active one while it fits, else (automatic) the one found.
 
     `programmed` is 0 without M40 to M45, `speed_rpm` None without a speed; `name` is what the program calls it.
-    Raises ProgramError where speed and stage do not fit.
+    Raises ProgramError if speed and stage do not fit.
     """
     if programmed:
         _require_fit(spindle, programmed, speed_rpm, block, name)

@@ -16,13 +16,13 @@ Run = Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]
 
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*", re.ASCII)
 _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCII)
-"""[NBR] says that spindles are given by number; that is seen anyway."""
+"""[NBR] says that spindles are given by number; that is recognised anyway."""
 _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
-"""NO_OPT says how much may be computed for the use of the jerk; here it is always used in full."""
+"""NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
 
 
 def hash_block(line: str, source: Source, begin: int, skip: int) -> NcBlock | None:
-    """The block of a normalised line with a command; None if no known command stands in it (the tokens say why)."""
+    """The block of a normalised line with a command; None if it has no known command (the tokens say why)."""
     found = _COMMAND.search(line, begin)
     if found is None:
         return None
@@ -117,7 +117,7 @@ def default_slope(channel: Channel, state: ModalState, block: NcBlock, command: 
 
 
 def arguments_fault(block: NcBlock, command: HashCommand, syntax: str) -> faults.ProgramError:
-    """The error for a command that is written otherwise."""
+    """The error for a command with wrong syntax."""
     return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
 
 

@@ -50,8 +50,8 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits holds. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
-    Blocks without function, motion or stop give nothing, as does a move to where the axes stand.
+    corrected, the smaller of both limits counts. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    Blocks without function, motion or stop give nothing, nor does a move to the present position.
     Raises ProgramError; the state is then undefined, so MDI continues with a copy taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
@@ -150,7 +150,7 @@ def _resolve(
 
 
 def _require_speed(state: ModalState, motion: Motion | None) -> None:
-    """M3 without a speed is an error as soon as something is machined, and when the program ends without one."""
+    """M3 without a speed is an error at the first machining motion, and when the program ends without one."""
     rapid = isinstance(motion, LinearMove) and motion.rapid
     if not rapid:
         for error in state.spindle.speedless.values():
@@ -179,7 +179,7 @@ def check(
     """All syntax errors of a program (one a line) and the first modal error, in the order of the lines.
 
     The modal check runs the program from `start` (default 0) up to its first error or the first line with a syntax
-    error, since what comes after that would only be guessed. An error that `check_target` raises comes out as it is,
+    error, since everything after that would be a guess. An error that `check_target` raises comes out as it is,
     unless it is a ProgramError.
     """
     program, errors = parse_all(text, file)

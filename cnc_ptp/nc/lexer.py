@@ -3,7 +3,7 @@
 A word is a letter with a number (`X10`, `G01`, `X=10`), with or without blanks around it. A longer name needs an equals
 sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`) and a position (`S.POS=90`), `LL name` calls
 a subroutine, a bare number belongs to G04.
-`( )` comments nest and end at the line's end at the latest, `;` begins a comment up to the line's end.
+`( )` comments nest and end at the line's end at the latest, `;` starts a comment up to the line's end.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""What a block moves: builders for G00, G01 (straight), G02, G03 (circular) and G04 (dwell), named in the G table.
+"""Motions of a block: builders for G00, G01 (straight), G02, G03 (circular) and G04 (dwell), named in the G table.
 
 Each takes (channel, state, block, code), reads the block's words, updates feed and radius in the state and returns the
 motion with an absolute target, or None if the block goes nowhere. The interpreter sets the position in the state.
@@ -190,7 +190,7 @@ class _Arc:
 
 
 def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Dwell:
-    """G04, alone in its block: seconds as a bare number, by the first main axis or F; revolutions by S."""
+    """G04, alone in its block: seconds as a number without a letter, by the first main axis or F; revolutions by S."""
     times = {word: value for word, value in block.words.items() if word in ("F", "S", *channel.axes[:1])}
     others = [word for word in block.words if word not in times]
     others += [m.name for m in block.m] + [words.name for words in (*block.spindles, *block.controls)]

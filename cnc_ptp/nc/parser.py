@@ -1,8 +1,8 @@
 """Program text -> program: lines become blocks, blocks become the main program and its subroutines.
 
 Structure of a file: subroutines `%L name` ... M29 (M17), the main program `%name` ... M30 (M02); the header of the main
-program may be missing when it comes first. Names are compared without regard to case. What words mean together (feed
-present, arc possible, axis in the machine) is the interpreter's part.
+program may be missing when it comes first. Names are not case-sensitive. The meaning of words together (feed
+present, arc possible, axis in the machine) is checked by the interpreter.
 """
 
 import re
@@ -18,7 +18,7 @@ _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s
 
 
 def parse_program(text: str, file: str, *, mdi: bool = False) -> Program:
-    """Parsed program; raises the first syntax error. With `mdi` no program end is asked for (manual blocks)."""
+    """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks)."""
     program, errors = parse_all(text, file, mdi=mdi)
     if errors:
         raise errors[0]
@@ -85,7 +85,7 @@ class _Reader:
             self.current.blocks.append(block)
 
     def _header(self, source: Source) -> None:
-        """`%name` or `%L name`: begins a section."""
+        """`%name` or `%L name`: starts a section."""
         normalise(source)
         match = _HEADER.match(source.text)
         assert match is not None

@@ -11,11 +11,11 @@ from cnc_ptp.nc.faults import ProgramError
 class GCode(NamedTuple):
     """A row of the G table.
 
-    `group`: of one group only one code may stand in a block. `select` changes the modal state. `motion` makes the code
+    `group`: only one code of a group may be in a block. `select` changes the modal state. `motion` makes the code
     a path function: it builds the motion of a block, and of the blocks after it if `modal`. `words` are the words that
-    this motion uses besides axes and F; `own_words`: it reads all words of its block by itself (dwell). `function`
+    this motion uses besides axes and F; `own_words`: it reads all words of its block itself (dwell). `function`
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
-    `spindle`: the code makes a function of a spindle (G74, G167), whatever it does to the path.
+    `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path.
     """
 
     number: int
@@ -38,7 +38,7 @@ class GCode(NamedTuple):
 class MCode(NamedTuple):
     """A row of the M table: `flow` is "", "M00", "M01", "end" or "return"; `handler` gives the canonical function.
 
-    It is None where the function is made of several words of the block (spindles).
+    It is None if the function is made of several words of the block (spindles).
     """
 
     number: int
@@ -55,8 +55,8 @@ class MCode(NamedTuple):
 class SpindleWords(NamedTuple):
     """Words for one spindle by its name: `S2[M3 REV1000]`, `S2=1000` or `S.POS=90`; speed in rpm, position in deg.
 
-    `m` is 3, 4, 5 or None, beside `positioning` (M19) the direction. `functions` are free M functions for the spindle,
-    `din` says that the words stand outside of brackets.
+    `m` is 3, 4, 5 or None, with `positioning` (M19) the direction. `functions` are free M functions for the spindle,
+    `din` says that the words are outside of brackets.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Spindle(NamedTuple):
     own_name      what programs call it while it is not the main spindle (P-CHAN-00007)
     number        logical axis number, 0 if none
     ranges        (lowest, highest) speed of each gear stage, rpm; (0, 0) for stages without (P-CHAN-00058, 00055)
-    from_top      the search for a gear begins at the highest stage (P-CHAN-00074)
+    from_top      the search for a gear starts at the highest stage (P-CHAN-00074)
     automatic     the speed selects the gear (P-CHAN-00004)
     gear          stage at start-up, from 1
     plc_control   the PLC moves it through the channel's interface (P-CHAN-00069)
@@ -126,8 +126,8 @@ class NcBlock(NamedTuple):
 
     `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `call` the
     subroutine, `flow` what the block does to the order of execution (see MCode), `skip` the bit of its skip level (0:
-    never skipped), `functions` whether it has any M, S, T, D; `error` is set for a line with a syntax error, which is
-    raised when it is reached; `controls` holds brackets with feedforward and COMP.
+    never skipped), `functions` is true if it has any M, S, T, D; `error` is set for a line with a syntax error, which
+    is raised when it is reached; `controls` holds brackets with feedforward and COMP.
     """
 
     source: Source
@@ -164,7 +164,7 @@ class Program(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """What is constant while a program is interpreted: axes, spindles, arc limits (mm, ratio)."""
+    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio)."""
 
     axes: tuple[str, ...]
     axis_index: dict[str, int]
@@ -175,15 +175,15 @@ class Channel(NamedTuple):
 
 @dataclass(slots=True)
 class SpindleModes:
-    """What one block leaves to the next about spindles; by key where there is one for each.
+    """Modal state of spindles from one block to the next; by key if there is one value for each.
 
     main        the main spindle, "" for the one at start-up
     positions   last POS, deg
-    gears       gear stage; that at start-up where there is none
+    gears       gear stage; that at start-up if there is none
     turning     3 or 4 while endless rotation is programmed
     links       coupling groups that were defined (#SET AX LINK), by number
     active      numbers of the groups that are enabled, the last one last
-    speedless   errors of M3 and M4 that still have no speed: it must come before something is machined
+    speedless   errors of M3 and M4 that still have no speed: it must come before the first machining motion
     """
 
     main: str = ""
@@ -209,7 +209,7 @@ class SpindleModes:
 
 @dataclass(slots=True)
 class ModalState:
-    """What one block leaves to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
+    """Modal state from one block to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
 
     `path`, `plane`: numbers of the active G codes; `radius`: last R (mm, signed, 0.0 none); `speeds`: S by spindle;
     `slope`: #SLOPE, "" is that of P-CHAN-00071.
@@ -227,5 +227,5 @@ class ModalState:
     slope: str = ""
 
     def copy(self) -> "ModalState":
-        """An independent copy, so that a refused MDI line can leave the state as it was."""
+        """An independent copy, so that a refused MDI line leaves the state unchanged."""
         return replace(self, speeds=dict(self.speeds), spindle=self.spindle.copy())

@@ -1,16 +1,18 @@
-"""Faults of spindle functions and of commands beginning with #; numbers like in faults.py, own ones from 21061."""
+"""Faults of spindle functions and of commands beginning with #; numbers as in faults.py, our own from 21061."""
 
 from cnc_ptp.nc.faults import Fault
 
 # Words of one spindle
-MAIN_BY_OWN_NAME = Fault(21081, "spindle {word} is the main spindle, as such it is programmed as {main}")
-FREE_M_IN_BRACKET = Fault(21061, "M{number:02d} is no function of a spindle, here in the brackets of spindle {spindle}")
+MAIN_BY_OWN_NAME = Fault(21081, "spindle {word} is the main spindle and is programmed as {main}")
+FREE_M_IN_BRACKET = Fault(
+    21061, "M{number:02d} is not a function of a spindle, but is in the brackets of spindle {spindle}"
+)
 POSITION_ALONE = Fault(21062, "a position of spindle {spindle} (POS) without M19")
-HOMING_NOT_ALONE = Fault(21063, "G74 is the only function of spindle {spindle} in its block, here with {word}")
+HOMING_NOT_ALONE = Fault(21063, "G74 must be the only function of spindle {spindle} in its block, not with {word}")
 HOMING_WITHOUT_SPINDLE = Fault(21064, "G74 without a spindle; it is written G74 {main}1 or {main}[G74]")
 HOMING_OF_AXES = Fault(21065, "G74 homes spindles only, axis {word} has no homing")
 DYNAMICS_NOT_ALONE = Fault(
-    21066, "DEFAULT_DYNAMIC_DATA is the only function of spindle {spindle} in its block, here with {word}"
+    21066, "DEFAULT_DYNAMIC_DATA must be the only function of spindle {spindle} in its block, not with {word}"
 )
 SPEED_ZERO = Fault(21067, "M19 of spindle {spindle} needs a speed above 0, it has {value} rpm")
 PLC_SPINDLE = Fault(21202, "{word} is not available for spindle {spindle}, which the PLC controls (P-CHAN-00069)")
@@ -22,32 +24,32 @@ POSITION_RANGE = Fault(21083, "position {value} deg of spindle {spindle} is not 
 
 # Gears
 NO_GEAR_FOR_SPEED = Fault(
-    21069, "speed {speed} rpm of spindle {spindle} lies in no gear stage (P-CHAN-00058, P-CHAN-00055): {ranges}"
+    21069, "speed {speed} rpm of spindle {spindle} is in no gear stage (P-CHAN-00058, P-CHAN-00055): {ranges}"
 )
 GEAR_TOO_NARROW = Fault(
-    21070, "speed {speed} rpm of spindle {spindle} does not lie in gear stage M{stage}, {low} to {high} rpm"
+    21070, "speed {speed} rpm of spindle {spindle} is not in gear stage M{stage}, {low} to {high} rpm"
 )
 GEAR_NOT_PROGRAMMED = Fault(
     21071,
-    "speed {speed} rpm of spindle {spindle} does not lie in the active gear stage M{stage}, {low} to {high} rpm;"
+    "speed {speed} rpm of spindle {spindle} is not in the active gear stage M{stage}, {low} to {high} rpm;"
     " it needs {fitting} in the block",
 )
-GEAR_UNUSED = Fault(21072, "M{stage} is no gear stage of spindle {spindle} (P-CHAN-00058, P-CHAN-00055): {ranges}")
+GEAR_UNUSED = Fault(21072, "M{stage} is not a gear stage of spindle {spindle} (P-CHAN-00058, P-CHAN-00055): {ranges}")
 GEAR_TWICE = Fault(21073, "gear stages M{first} and M{second} in one block")
 GEAR_IN_BRACKET = Fault(21074, "{word} in brackets: gears are changed in DIN syntax only (M40 to M45 and S)")
 GEAR_AND_HOMING = Fault(20942, "M{stage} and G74 in one block")
 
 # Commands
-COMMAND_NOT_ALONE = Fault(21075, "{command} stands alone in its block, here with '{word}'")
+COMMAND_NOT_ALONE = Fault(21075, "{command} must be alone in its block, not with '{word}'")
 COMMAND_ARGUMENTS = Fault(21076, "{command} is written {syntax}")
 MAIN_SPINDLE_NUMBER = Fault(
     21306, "no spindle of this channel has the logical axis number {number}; known are: {known}"
 )
 MAIN_WITHOUT_NAME = Fault(
-    21082, "spindle {spindle} has no other name (P-CHAN-00007) that it could have while {other} is the main spindle"
+    21082, "spindle {spindle} has no name of its own (P-CHAN-00007) for use while {other} is the main spindle"
 )
 LINK_GROUP = Fault(21077, "coupling group {group} must be a number from {first} to {last}")
-LINK_GROUP_DEFAULT = Fault(21078, "coupling group 0 is defined by P-CHAN-00037 and P-CHAN-00038 and by nothing else")
+LINK_GROUP_DEFAULT = Fault(21078, "coupling group 0 is defined by P-CHAN-00037 and P-CHAN-00038 only")
 LINK_RATIO = Fault(
     21084,
     "ratio {num} / {den} of spindle {spindle}: both must be numbers other than 0, their ratio within"
@@ -55,7 +57,7 @@ LINK_RATIO = Fault(
 )
 LINK_EMPTY = Fault(21079, "coupling group {group} has no coupled pair")
 LINK_NOT_ACTIVE = Fault(21080, "{what} active")
-LINK_ACTIVE = Fault(20472, "coupling group {group} is active and cannot be defined anew")
+LINK_ACTIVE = Fault(20472, "coupling group {group} is active and cannot be redefined")
 LINK_ITSELF = Fault(20475, "spindle {spindle} cannot be its own slave")
 SLAVE_TWICE = Fault(20476, "spindle {spindle} is slave of two masters")
 SLAVE_AND_MASTER = Fault(20477, "spindle {spindle} cannot be slave and master in one coupling group")

@@ -1,8 +1,8 @@
 """Synchronous operation of spindles: coupling groups are defined, enabled and disabled (TF5200 spindle 2.8.3).
 
-#SET AX LINK [group, slave=master, num, den, ...] defines (without a ratio 1 / 1), #ENABLE AX LINK [group] begins,
-#DISABLE AX LINK [group] ends. Group 0 comes from the channel parameters. Definitions stay for later programs, couplings
-end with the program.
+#SET AX LINK [group, slave=master, num, den, ...] defines (without a ratio 1 / 1), #ENABLE AX LINK [group] starts,
+#DISABLE AX LINK [group] ends. Group 0 comes from the channel parameters. Definitions are kept for later programs;
+couplings end with the program.
 """
 
 import re
@@ -31,7 +31,7 @@ class _Command:
         return fault.at(self.block.source, self.command.column, **values)
 
     def syntax(self, syntax: str) -> ProgramError:
-        """The error for a command that is written otherwise."""
+        """The error for a command with wrong syntax."""
         name = f"#{self.command.name}"
         written = f"{name} {syntax}" if syntax else "without arguments"
         return self.fault(spindle_faults.COMMAND_ARGUMENTS, command=name, syntax=written)
@@ -44,7 +44,7 @@ class _Command:
         return int(text)
 
     def called(self, key: str) -> str:
-        """What the program calls a spindle now."""
+        """The name by which the program calls a spindle now."""
         return name_of(self.channel, self.state, key)
 
     def pairs_of(self, arguments: Sequence[str]) -> Pairs:
@@ -138,7 +138,7 @@ class _Command:
 
 
 def define(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
-    """#SET AX LINK [group, slave=master, num, den, ...]: a group with its pairs; an active group stays as it is."""
+    """#SET AX LINK [group, slave=master, num, den, ...]: a group with its pairs; an active group cannot be changed."""
     link = _Command(channel, state, block, command)
     arguments = command.arguments or ()
     if len(arguments) < 2:
@@ -155,7 +155,7 @@ def define(channel: Channel, state: ModalState, block: NcBlock, command: HashCom
 
 
 def enable(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
-    """#ENABLE AX LINK [group]: from now on the slaves get what their masters get; without a number group 0."""
+    """#ENABLE AX LINK [group]: from now on the slaves get the functions of their masters; without a number group 0."""
     link = _Command(channel, state, block, command)
     group = _optional_group(link, 0)
     if group in state.spindle.active:

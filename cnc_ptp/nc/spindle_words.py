@@ -1,4 +1,4 @@
-"""Words in the brackets of a spindle, `S2[M3 REV1000]` -> SpindleWords; what they mean together is checked here too."""
+"""Words in the brackets of a spindle, `S2[M3 REV1000]` -> SpindleWords, with the check of their combination."""
 
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Source, number

@@ -14,7 +14,7 @@ from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
-from cnc_ptp.parameters.units import LARGEST_POSITION
+from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
 DIRECTIONS = {3: "cw", 4: "ccw"}
@@ -24,7 +24,7 @@ FUNCTION_WORDS = frozenset("STD")
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
-    """A table of spindles that have nothing but names; a table stays what it is."""
+    """A table of spindles that have nothing but names; a table is returned unchanged."""
     if isinstance(spindles, SpindleTable):
         return spindles
     return SpindleTable(tuple(Spindle(name, name) for name in spindles), spindles[0] if spindles else "S")
@@ -43,7 +43,7 @@ def current_main(channel: Channel, state: ModalState) -> Spindle:
 
 
 def names(channel: Channel, state: ModalState) -> dict[str, Spindle]:
-    """What programs call the spindles now: the main one by P-CHAN-00053, the others by P-CHAN-00007."""
+    """The present names of the spindles in programs: the main one by P-CHAN-00053, the others by P-CHAN-00007."""
     if not channel.table.spindles:
         return {}
     main = current_main(channel, state)
@@ -52,12 +52,12 @@ def names(channel: Channel, state: ModalState) -> dict[str, Spindle]:
 
 
 def name_of(channel: Channel, state: ModalState, key: str) -> str:
-    """What programs call a spindle now."""
+    """The present name of a spindle in programs."""
     return next(name for name, spindle in names(channel, state).items() if spindle.key == key)
 
 
 def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G74 moves no axis; which spindles it homes, `spindle_functions` says."""
+    """G74 moves no axis; `spindle_functions` says which spindles it homes."""
     for word in block.words:
         if word not in FUNCTION_WORDS:
             fault = spindle_faults.HOMING_OF_AXES if word in channel.axis_index else faults.WORD_NOT_USED
@@ -173,7 +173,7 @@ def _parallel(state: ModalState, function: Function) -> list[Function]:
 
 
 def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> SpindleFunction | SpindleCommand:
-    """The function of a master as its slave has it: speed and position times the ratio, which may turn it round."""
+    """The function of a master as its slave has it: speed and position times the ratio, which may reverse it."""
     if isinstance(function, SpindleCommand):
         return function._replace(spindle=pair.slave)
     ratio, m = pair.num / pair.den, function.m
@@ -201,7 +201,7 @@ def _check_speed(channel: Channel, state: ModalState, block: NcBlock, place: str
 def _check_position(
     channel: Channel, state: ModalState, block: NcBlock, words: SpindleWords, place: str, function: Function
 ) -> None:
-    """Raises ProgramError 21083 for a position beyond the range of the lists, at its word where the block has one."""
+    """Raises ProgramError 21083 for a position beyond the range of the lists, at its word if the block has one."""
     if not isinstance(function, SpindleFunction) or abs(function.position_deg or 0.0) <= LARGEST_POSITION:
         return
     column = column_of(block.source, f"{words.name}.POS" if words.din else place)
@@ -211,7 +211,7 @@ def _check_position(
 
 
 def _note(state: ModalState, key: str, function: SpindleFunction | SpindleCommand) -> None:
-    """Keeps what counts for later blocks: speed, position, rotation."""
+    """Stores what counts for later blocks: speed, position, rotation."""
     if isinstance(function, SpindleCommand):
         state.spindle.turning.pop(key, None)
         return
@@ -273,7 +273,7 @@ class _SpindleBlock:
         self.state.spindle.speedless.pop(self.key, None)
 
     def _check_homing_alone(self) -> None:
-        """In DIN syntax; brackets have been looked at when they were read."""
+        """In DIN syntax; brackets were checked when they were read."""
         rival = next((code for code in self.block.m if code.group in ("spindle", "positioning")), None)
         if self.words.din and rival is not None:
             column = column_of(self.block.source, rival.name)
@@ -294,9 +294,9 @@ class _SpindleBlock:
             raise self._fault(spindle_faults.PLC_SPINDLE, word=word)
 
     def _rotation(self, stage: int) -> SpindleFunction | None:
-        """M3, M4, M5 or a speed; after M40 to M45 alone a turning spindle turns on with the stored speed.
+        """M3, M4, M5 or a speed; after M40 to M45 alone a turning spindle continues with the stored speed.
 
-        M3 and M4 before any speed stand still until it comes (TF5200 spindle p.30).
+        M3 and M4 before any speed wait at standstill until it comes (TF5200 spindle p.30).
         """
         words, m = self.words, self.words.m
         if m == 5:
@@ -333,7 +333,7 @@ class _SpindleBlock:
         return [code.number for code in self.block.m if code.number in gears.GEAR_M]
 
     def _gear_stage(self) -> int:
-        """The stage that the block needs, 0 where gears are of no concern. Raises ProgramError where none fits."""
+        """The stage that the block needs, 0 if it does not matter. Raises ProgramError if none fits."""
         if not self.channel.table.gear_change:
             return 0
         words = self.words
@@ -356,8 +356,8 @@ class _SpindleBlock:
     def _stage(self, programmed: int) -> int:
         """The stage that speed and M40 to M45 ask for, 0 for none.
 
-        M5 turns at no speed of a range: its speed is looked at with the next M3, M4 or S. M19 changes the gear where
-        that is automatic; else any stage will do that reaches its speed.
+        M5 has no speed in a range: its speed is checked with the next M3, M4 or S. M19 changes the gear if that is
+        automatic; else any stage that reaches its speed is sufficient.
         """
         words = self.words
         active = self.state.spindle.gears.get(self.key, self.spindle.gear)

@@ -1,4 +1,4 @@
-"""The language as data: G codes with their modal groups, M codes, words. A new code is a new row and its handler.
+"""The language as data: G codes with their modal groups, M codes, words. A new code needs a new row and its handler.
 
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """

@@ -2,10 +2,10 @@
 
 An element is run through by its path length s (mm). `evaluate(s, v, a, j)` gives each axis its own position and
 derivatives by the chain rule, from the path's velocity v, acceleration a and jerk j. `limits(feed, axes)` gives the
-path's dynamics under which no axis exceeds its own.
+path's dynamics at which no axis exceeds its own limits.
 
-The feed refers to the path of the axes with the indices `path_axes` (X, Y, Z, wherever they stand); further axes travel
-along and arrive together. Where only further axes move, the path is theirs.
+The feed refers to the path of the axes with the indices `path_axes` (X, Y, Z, in any order); further axes travel
+along and arrive together. If only further axes move, the path is theirs.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ CLOSING_TOLERANCE = 1e-4
 """An arc may miss its target by this distance plus this part of its radius."""
 
 NEGLIGIBLE_MM = 1e-9
-"""Motion of the path axes below this is rounding: the path is then that of all axes."""
+"""Smaller motion of the path axes counts as rounding: the path is then that of all axes."""
 
 
 class AxisLimits(NamedTuple):
@@ -65,7 +65,7 @@ class Element(Protocol):
 
 
 class Line:
-    """Straight motion of all axes from `start` to `target` (mm or deg, one value an axis)."""
+    """Straight motion of all axes from `start` to `target` (mm or deg, one value per axis)."""
 
     __slots__ = ("_axes", "length", "start", "target")
 
@@ -73,12 +73,12 @@ class Line:
         _check_points(start, target)
         self.start = tuple(start)
         self.target = tuple(target)
-        ways = [b - a for a, b in zip(self.start, self.target, strict=True)]
-        self.length = hypot(*(way for n, way in enumerate(ways) if n in path_axes))
+        distances = [b - a for a, b in zip(self.start, self.target, strict=True)]
+        self.length = hypot(*(distance for n, distance in enumerate(distances) if n in path_axes))
         if self.length < NEGLIGIBLE_MM:
-            self.length = hypot(*ways)
+            self.length = hypot(*distances)
         scale = 1.0 / self.length if self.length else 0.0
-        self._axes = tuple([(p, way * scale) for p, way in zip(self.start, ways, strict=True)])
+        self._axes = tuple([(p, distance * scale) for p, distance in zip(self.start, distances, strict=True)])
 
     def evaluate(self, s: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
         """State of each axis at path length s: position p0 + k·s, derivatives k·v, k·a, k·j.
@@ -92,8 +92,8 @@ class Line:
     def limits(self, feed: float, axes: Sequence[AxisLimits], override_max: float = 1.0) -> Limits:
         """Path dynamics by projection: each axis gives its limit divided by its share |k| of the path.
 
-        feed           programmed path velocity, mm/s; inf for rapid traverse, where the axes alone decide
-        override_max   largest factor on the feed that will be asked for
+        feed           programmed path velocity, mm/s; inf for rapid traverse, where the axes alone limit
+        override_max   largest factor on the feed that may be commanded
         """
         _check_feed(feed)
         slopes = [abs(k) for _, k in self._axes]
@@ -146,14 +146,14 @@ class Arc:
             )
         sweep = radians(sweep_deg)
         others = [(n, b - a) for n, (a, b) in enumerate(zip(start, target, strict=True)) if n not in self.plane]
-        self.length = hypot(self.radius * sweep, *(way for n, way in others if n in path_axes))
+        self.length = hypot(self.radius * sweep, *(distance for n, distance in others if n in path_axes))
         self._angle = atan2(y, x)
         self._rate = sweep / self.length
-        self._linear = tuple([(n, self.start[n], way / self.length) for n, way in others])
+        self._linear = tuple([(n, self.start[n], distance / self.length) for n, distance in others])
         self._set_drift(x, y, sweep, radius)
 
     def _set_drift(self, x: float, y: float, sweep: float, radius: float) -> None:
-        """Spread what the circle misses at the target (and the rounding of r·cos, r·sin at the start) over the path."""
+        """Spread the closing error at the target (and the rounding of r·cos, r·sin at the start) over the path."""
         first, second = self.plane
         miss_x = self.target[first] - self.center[0] - (x * cos(sweep) - y * sin(sweep))
         miss_y = self.target[second] - self.center[1] - (x * sin(sweep) + y * cos(sweep))
@@ -163,7 +163,7 @@ class Arc:
             raise CncError(
                 22101,
                 f"arc around ({self.center[0]!r}, {self.center[1]!r}) with radius {self.radius:.6g} mm "
-                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm beside its target; the limit is {limit:.6g} mm",
+                f"(programmed {radius:.6g} mm) ends {miss:.6g} mm away from its target; the limit is {limit:.6g} mm",
                 "the motion is refused",
                 miss=miss,
                 limit=limit,
@@ -258,7 +258,7 @@ def _project(slopes: Sequence[float], axes: Sequence[AxisLimits]) -> Limits:
 
 
 def _combine(feed: float, parts: Sequence[Limits]) -> Limits:
-    """The tightest of all limits, under the feed.
+    """The tightest of all limits, within the feed.
 
     A path on which nothing moves gets the largest limits that planners take.
     """

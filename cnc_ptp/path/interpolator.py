@@ -12,7 +12,7 @@ from cnc_ptp.path.geometry import Element
 from cnc_ptp.path.planner import JERK_LIMITED, Planner
 
 PathRow = tuple[float, float, float, float, bool]
-"""One cycle on the path: length s (mm), velocity, acceleration, jerk, element done."""
+"""One cycle on the path: length s (mm), velocity, acceleration, jerk, element finished."""
 
 LARGEST_FACTOR = 1000.0
 LONGEST_DWELL = 1e9
@@ -27,25 +27,25 @@ class PathInterpolator:
         while len(rows) < count:
             rows += interpolator.step(count - len(rows), cycle_time)
             if len(rows) < count and <there is a next element>:
-                interpolator.start(next_element, limits)        # goes on at the exact instant, inside the cycle
+                interpolator.start(next_element, limits)        # continues at the exact instant, inside the cycle
 
-    `step` gives a row (s, v, a, j, done) a cycle. It returns early, without the row of the cycle in which the element
-    ends, and `done` is then true: that cycle belongs to the next element, which `start` begins `remaining_time` before
+    `step` gives a row (s, v, a, j, done) per cycle. It returns early, without the row of the cycle in which the element
+    ends, and `done` is then true: that cycle belongs to the next element, which `start` starts `remaining_time` before
     it. So the time of a program is the sum of its profile durations, not rounded up to cycles. A caller without a next
-    element calls `step` again: from then on it gets rows at rest at the end (done = True), and a later `start` begins
-    at the last of them.
+    element calls `step` again: from then on it gets rows at rest at the end (done = True), and a later `start` acts
+    from the last of them.
 
-    element           the running element, None before the first; `length` is its path length
-    done              the element has ended
+    element           the active element, None before the first; `length` is its path length
+    done              the element has finished
     stopped           `stop` was called and the path stands
     remaining_time    s: when an element has just ended, the time from its end to the cycle that is still to be filled,
                       else 0
     distance_to_go    mm to the end of the element
     state             (s, v, a, j) of the last cycle that was given out
 
-    Commands act from the last cycle given out, in the midst of any phase: the profile is planned anew from its s, v
-    and a, which therefore never step. Times are offset + cycles·cycle_time with an integer count, so long elements
-    gather no rounding.
+    Commands act from the last cycle given out, in any phase: the profile is replanned from its s, v and a,
+    which therefore never step. Times are offset + cycles·cycle_time with an integer count, so long elements
+    accumulate no rounding.
     """
 
     def __init__(self) -> None:
@@ -77,7 +77,7 @@ class PathInterpolator:
 
     @property
     def ends_by_itself(self) -> bool:
-        """The factor acts no more: the element has ended or brakes for its end, or `stop` was called."""
+        """The factor no longer acts: the element has finished or brakes for its end, or `stop` was called."""
         return self.done or self._stopping or (self._limits is not None and self._brakes(self._limits))
 
     @property
@@ -111,7 +111,7 @@ class PathInterpolator:
         self._begin(element.length, profile, reaches_end)
 
     def dwell(self, seconds: float) -> None:
-        """Stand for a time where the path is, with the same exact instants; `step` and `done` as for an element.
+        """Dwell at the present position, with the same exact instants; `step` and `done` as for an element.
 
         Raises CncError 22110 while an element is running and 22112 for a time that is negative or not finite.
         """
@@ -126,7 +126,7 @@ class PathInterpolator:
     def set_velocity_factor(self, factor: float) -> None:
         """Path override: the velocity becomes feed·factor, at most `limits.velocity`; 0 is feed hold.
 
-        It also holds for later elements. Where the element already brakes for its end, the table is kept.
+        It also holds for later elements. If the element already brakes for its end, the table is kept.
         Raises CncError 22113 for a factor outside 0 … 1000.
         """
         if not 0.0 <= factor <= LARGEST_FACTOR:
@@ -137,9 +137,9 @@ class PathInterpolator:
             self._plan_anew()
 
     def stop(self) -> None:
-        """Ramp to rest on the path; where the element already brakes for its end, it rests there.
+        """Ramp to rest on the path; if the element already brakes for its end, it rests there.
 
-        The factor acts no more.
+        The factor no longer acts.
         """
         if not self._stopping:
             self._stopping = True
@@ -171,7 +171,7 @@ class PathInterpolator:
             raise CncError(
                 22110,
                 f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element",
-                "the running one goes on",
+                "the active one continues",
                 distance_to_go=self.distance_to_go,
             )
 
@@ -188,15 +188,15 @@ class PathInterpolator:
         self._next_offset = surplus - self._cycle_time
 
     def _rest(self, count: int) -> list[PathRow]:
-        """Nothing follows: rows at rest, and a later start begins at the last of them."""
+        """Nothing follows: rows at rest, and a later start acts from the last of them."""
         self.remaining_time = self._next_offset = 0.0
         self._profile = _standing(self._length)
         return [(self._length, 0.0, 0.0, 0.0, True)] * count
 
     def _now(self) -> float:
-        """Time of the last cycle given out on the running profile, s.
+        """Time of the last cycle given out on the active profile, s.
 
-        Negative while the element begins only after it.
+        Negative while the element only starts after it.
         """
         return self._offset + self._cycles * self._cycle_time
 
@@ -216,7 +216,7 @@ class PathInterpolator:
         self._offset, self._cycles = min(now, 0.0), 0
 
     def _brakes(self, limits: Limits) -> bool:
-        """In the last cycle given out a stop would end no earlier than the element."""
+        """True if in the last cycle given out a stop would end no earlier than the element."""
         s, v, a, _ = self.state
         to_brake = self._length - s - self._planner.stopping_distance(v, a, limits)
         return self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length

@@ -1,4 +1,4 @@
-"""The motion of a channel's axes: the running path element or dwell, its override and its stop ramp."""
+"""The motion of a channel's axes: the active path element or dwell, its override and its stop ramp."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class PathMotion:
         self._default_slope = channel.slope
         self._element: Line | Arc | None = None
         self._evaluate: Evaluation | None = None
-        """States of the axes on the running element."""
+        """States of the axes on the active element."""
         self.states = standing([a.start_position for a in axes])
         self.velocity = 0.0
         self.distance_to_go = 0.0
@@ -52,7 +52,7 @@ class PathMotion:
 
     @property
     def on_path(self) -> bool:
-        """An element runs (a dwell is none)."""
+        """An element is active (a dwell is none)."""
         return self._element is not None
 
     @property
@@ -62,7 +62,7 @@ class PathMotion:
 
     @property
     def can_be_held(self) -> bool:
-        """An element runs that a feed hold would stop before its end."""
+        """An element is active that a feed hold would stop before its end."""
         return self._element is not None and not self._interpolator.ends_by_itself
 
     @property
@@ -76,14 +76,14 @@ class PathMotion:
         return self.states, self.velocity, self.distance_to_go
 
     def place(self, index: int, position: float) -> None:
-        """An axis stands at `position`, where something else has moved it."""
+        """An axis is at `position`, to which something else has moved it."""
         if position != self.states[index][0]:
             self.states = (*self.states[:index], (position, 0.0, 0.0, 0.0), *self.states[index + 1 :])
 
     def start(self, motion: Motion) -> None:
-        """Begins a motion, directly after another one at its exact end inside a cycle.
+        """Starts a motion, directly after another one at its exact end inside a cycle.
 
-        Raises CncError (22101–22112, 23001) for what cannot be moved; then nothing is begun.
+        Raises CncError (22101–22112, 23001) for impossible motions; then nothing is started.
         """
         if isinstance(motion, Dwell):
             self._interpolator.dwell(motion.seconds)
@@ -107,7 +107,7 @@ class PathMotion:
         return Arc(start, motion.target, motion.center, motion.plane, motion.radius, motion.sweep, self._path_axes)
 
     def follow(self, count: int) -> list[PathPoint]:
-        """The next `count` cycles of the running motion; fewer when it ends before."""
+        """The next `count` cycles of the active motion; fewer when it ends before."""
         rows = self._interpolator.step(count, self._cycle_time)
         element, evaluate = self._element, self._evaluate
         if element is None or evaluate is None:
@@ -118,7 +118,7 @@ class PathMotion:
         return points
 
     def stand(self) -> None:
-        """A cycle passes in which no motion runs."""
+        """A cycle passes in which no motion is active."""
         self._interpolator.step(1, self._cycle_time)
 
     def set_factor(self, factor: float) -> None:
@@ -126,11 +126,11 @@ class PathMotion:
         self._interpolator.set_velocity_factor(factor)
 
     def stop(self) -> None:
-        """Ramps down on the path; `follow` goes on until `stopped` or the end of the element."""
+        """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
         self._interpolator.stop()
 
     def finish(self) -> None:
-        """The motion is through: the axes stand exactly at its target, or where its stop ramp has brought them."""
+        """The motion has finished: the axes stand exactly at its target, or at the end of its stop ramp."""
         element = self._element
         self.states = standing(element.target if element and self._interpolator.done else self.position)
         self._element = None
@@ -147,7 +147,7 @@ class PathMotion:
 def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:
     """States of the axes on an element; without a limit of the jerk none is fed forward (P-AXIS-00337).
 
-    On a line the axes have none then by themselves.
+    On a line the axes then have none anyway.
     """
     if not steps or isinstance(element, Line):
         return element.evaluate
@@ -159,16 +159,16 @@ def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:
 
 
 def path_axes(channel: ChannelParameters) -> frozenset[int]:
-    """Indices of the axes whose path the feed is for: X, Y and Z in whatever order, or all where there are none."""
+    """Indices of the axes whose path the feed is for: X, Y and Z in any order, or all if there are none."""
     cartesian = frozenset(n for n, axis in enumerate(channel.axes) if axis.name in CARTESIAN)
     return cartesian or frozenset(range(len(channel.axes)))
 
 
 def begins_element(before: float, now: float) -> bool:
-    """From the distances to go (mm) of two cycles: within an element they only fall, but for rounding."""
+    """From the distances to go (mm) of two cycles: within an element they only decrease, but for rounding."""
     return now > before + NEGLIGIBLE_MM
 
 
 def standing(position: Sequence[float]) -> AxisStates:
-    """States of axes that stand at `position` (mm)."""
+    """States of axes at a standstill at `position` (mm)."""
     return tuple([(value, 0.0, 0.0, 0.0) for value in position])

@@ -1,4 +1,4 @@
-"""How the velocity along the path changes: with limited jerk, or with steps of the acceleration (P-CHAN-00071)."""
+"""Planners of the path velocity: with limited jerk, or with steps of the acceleration (P-CHAN-00071)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cnc_ptp.motion import (
     step_stopping_distance,
     step_to_position,
     step_to_velocity,
-    stop_way,
+    stopping_distance,
 )
 
 
@@ -35,7 +35,7 @@ JERK_LIMITED = Planner(
     from_rest=plan_rest_to_rest,
     to_position=plan_to_position,
     to_rest=lambda s, v, a, limits: plan_to_velocity(s, v, a, 0.0, limits),
-    stopping_distance=lambda v, a, limits: stop_way(v, a, limits.deceleration, limits.jerk),
+    stopping_distance=lambda v, a, limits: stopping_distance(v, a, limits.deceleration, limits.jerk),
 )
 STEPS = Planner(
     from_rest=lambda start, target, limits: step_to_position(start, 0.0, target, limits),
@@ -43,4 +43,4 @@ STEPS = Planner(
     to_rest=lambda s, v, a, limits: step_to_velocity(s, v, 0.0, limits),
     stopping_distance=lambda v, a, limits: step_stopping_distance(v, limits.deceleration),
 )
-"""The acceleration steps, so the one before does not count."""
+"""The acceleration steps, so the previous one does not count."""

@@ -5,7 +5,7 @@
     asynchronous   a = a_max for n < n1, then a_max·n1 / n, from n2 on a_max·n1·n2 / n²
 
 with the floor a_min everywhere. Units: °/s and °/s². Every piece is a quotient P(u) / Q(u) of two polynomials, so the
-motion dn/dt = ±a(n) has a power series of one and the same recursion: Q(u)·u' = ±P(u).
+power series of the motion dn/dt = ±a(n) has the same recursion for all: Q(u)·u' = ±P(u).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ ORDER = 12
 TRUNCATION = 1e-14
 """… which ends where that power would be worth more than this part of the speed."""
 
-Leg = tuple[float, tuple[float, ...]]
-"""A part of a ramp: duration in s, speed as ascending powers of the time since its begin."""
+RampPart = tuple[float, tuple[float, ...]]
+"""A part of a ramp: duration in s, speed as ascending powers of the time since its start."""
 
 
 class CurvePiece(NamedTuple):
@@ -57,7 +57,7 @@ class AccelerationCurve:
     """a(n) for 0 <= n <= top speed; above it the acceleration stays as it is there."""
 
     def __init__(self, parameters: CurveParameters, *, top_speed: float, most: float = inf) -> None:
-        """`top_speed` in °/s; `most` in °/s²: what the tool stands, below the floor too."""
+        """`top_speed` in °/s; `most` in °/s²: the limit of the tool, also below the floor."""
         pieces = [
             piece for raw in raw_pieces(parameters, top_speed) for piece in bounded(raw, parameters.minimum, most)
         ]
@@ -74,13 +74,13 @@ class AccelerationCurve:
             return next(piece for piece in self.pieces if speed < piece.high)
         return next(piece for piece in reversed(self.pieces) if piece.low < speed)
 
-    def legs(self, speed: float, target: float) -> Iterator[Leg]:
-        """The ramp from one amount of speed to another, both >= 0."""
+    def parts(self, speed: float, target: float) -> Iterator[RampPart]:
+        """The ramp from one magnitude of speed to another, both >= 0."""
         sign = 1.0 if target > speed else -1.0
         while speed != target:
             piece = self._piece(speed, grows=target > speed)
             border = min(piece.high, target) if sign > 0.0 else max(piece.low, target)
-            duration, powers = leg_to(piece, speed, border, sign)
+            duration, powers = part_to(piece, speed, border, sign)
             yield duration, powers
             reached = value(powers, duration)
             passed = (border - reached) * sign <= abs(border) * 1e-15
@@ -120,8 +120,8 @@ def bounded(piece: CurvePiece, least: float, most: float) -> Iterator[CurvePiece
             yield part if held == middle else CurvePiece(low, high, (held,))
 
 
-def leg_to(piece: CurvePiece, speed: float, border: float, sign: float) -> Leg:
-    """The longest leg from `speed` towards `border` that the power series carries."""
+def part_to(piece: CurvePiece, speed: float, border: float, sign: float) -> RampPart:
+    """The longest part from `speed` towards `border` that the power series carries."""
     if piece.constant:
         rate = sign * piece.numerator[0]
         return (border - speed) / rate, (speed, rate)

@@ -1,7 +1,8 @@
 """Synchronous operation of spindles: a slave carries out the commands of its master (TF5200 spindle 2.8.3).
 
 The setpoints are not coupled cycle by cycle: commands are passed on, and each spindle moves within its own limits. Only
-the PLC sees all spindles, so it says whether a coupling may be: no master is a slave, so that no circle can arise.
+the PLC sees all spindles, so it decides whether a coupling is permitted: no master is a slave, so that no circle can
+arise.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class CouplingCommands:
         if master not in self._spindles:
             known = ", ".join(self._spindles)
             spindle.refuse(
-                "couple", UNKNOWN_MASTER, f"'{master}' is no spindle of the machine ({known})", master=master
+                "couple", UNKNOWN_MASTER, f"'{master}' is not a spindle of the machine ({known})", master=master
             )
         for name, value in (("factor_num", factor_num), ("factor_den", factor_den)):
             if value == 0.0:
@@ -68,7 +69,7 @@ class CouplingCommands:
         self.wanted, self._wanted_ratio, self.owner = master, ratio, owner
 
     def do_coupling_answer(self, cycle: int, *, granted: bool, reason: str) -> None:
-        """The PLC: the coupling that was asked for begins, or not and why (24024)."""
+        """The PLC: the requested coupling starts, or does not and why (24024)."""
         master, self.wanted = self.wanted, ""
         if granted and master:
             self.master, self._ratio = master, self._wanted_ratio
@@ -77,21 +78,21 @@ class CouplingCommands:
             self._spindle.report_warning(cycle, COUPLING_CHAIN, text)
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
-        """The spindle goes on as it is, on its own; a channel ends its own couplings only. Refused with 24023."""
+        """The spindle continues unchanged on its own; a channel ends its own couplings only. Refused with 24023."""
         if owner and owner != self.owner:
-            return f"spindle {self._spindle.name}: decouple without effect, it was not '{owner}' who has coupled it"
+            return f"spindle {self._spindle.name}: decouple without effect, it was not coupled by '{owner}'"
         if not (self.master or self.wanted):
             if owner:
-                return f"spindle {self._spindle.name}: decouple without effect, the spindle is not coupled any more"
+                return f"spindle {self._spindle.name}: decouple without effect, the spindle is no longer coupled"
             self._spindle.refuse("decouple", NOT_COUPLED, "the spindle is not coupled")
         self.master = self.wanted = ""
         return None
 
     def of_slave(self, arguments: Mapping[str, Any]) -> dict[str, Any]:
-        """Arguments of the master's command, as they are for this spindle."""
+        """Arguments of the master's command, converted for this spindle."""
         return scaled(arguments, self._ratio)
 
 
 def can_follow(spindle: Spindle) -> bool:
-    """False for a slave that is in error or has no power: it does nothing that its master does."""
+    """False for a slave that is in error or has no power: it carries out no command of its master."""
     return spindle.state not in (S.ERROR_STOP, S.DISABLED)

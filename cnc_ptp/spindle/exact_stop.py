@@ -17,7 +17,7 @@ class ExactStop:
         self._since: int | None = None
         self.reached = False
         self.left_at = inf
-        """First cycle in which a position that was reached was there no more; infinite until then."""
+        """First cycle in which a position that was reached was lost again; infinite until then."""
 
     @property
     def settles(self) -> bool:
@@ -25,11 +25,11 @@ class ExactStop:
         return self._since is not None
 
     def forget(self) -> None:
-        """Another target, or none."""
+        """Starts anew for another target, or none."""
         self._since, self.reached, self.left_at = None, False, inf
 
     def note(self, cycle: int, *, in_position: bool, at_rest: bool) -> bool:
-        """Whether the position is reached; asked in every cycle from the end of the setpoint on."""
+        """True once the position is reached; to be called in every cycle from the end of the setpoint on."""
         if self.reached and not in_position:
             self.reached, self.left_at = False, cycle
         if not self.reached:

@@ -6,7 +6,7 @@ from math import ceil, floor
 
 TURN = 360.0
 PATIENCE = 2.0 * TURN
-"""° of the setpoint in which the zero pulse must have come."""
+"""° of the setpoint within which the zero pulse must come."""
 
 
 class ZeroPulse:
@@ -22,7 +22,7 @@ class ZeroPulse:
         self._last = None
 
     def passed(self, encoder: float) -> float | None:
-        """The place of the mark that was passed since the cycle before, None if there was none."""
+        """Position of the mark that was passed since the previous cycle, None if there was none."""
         last, self._last = self._last, encoder
         if last is None or last == encoder:
             return None
@@ -35,6 +35,6 @@ class ZeroPulse:
 
 
 def nearest_shift(position: float, reference: float) -> float:
-    """What is to be added to coordinates so that `position` is `reference` modulo one turn; at most half a turn."""
+    """The shift to be added to coordinates so that `position` is `reference` modulo one turn; at most half a turn."""
     shift = (reference - position) % TURN
     return shift - TURN if shift > 0.5 * TURN else shift

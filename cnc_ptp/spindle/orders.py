@@ -1,6 +1,6 @@
-"""Who commands a spindle: order of arrival, work for one source at a time, acknowledgements to the PLC.
+"""Commands of a spindle in order of arrival, for one source at a time, with acknowledgements to the PLC.
 
-A channel gives its name as `source`, the PLC's external commanding "plc"; commands of people and scenarios have none.
+A channel gives its name as `source`, the PLC's external commanding "plc"; commands of users and scenarios have none.
 A homing is finished first: the state graphs lead from it to a rotation through standstill only.
 Source: TF5200 spindle 2.1 (several channels), 2.2.1.1 (sequential in order of arrival, acknowledgements), 2.3, 2.7.
 """
@@ -17,7 +17,7 @@ from cnc_ptp.spindle.spindle import Spindle
 
 PLC = "plc"
 MOTION = frozenset({"start", "set_speed", "stop", "orient", "home", "select_gear"})
-"""Commands that make the spindle work for somebody."""
+"""Commands that make the spindle work for their source."""
 AWAITED = {
     S.HOMING: "the homing is finished",
     S.DISCRETE_MOTION: "the positioning is finished",
@@ -32,54 +32,54 @@ class Order(NamedTuple):
     arguments: Mapping[str, Any]
     source: str
     number: int = 0
-    """By which its outcome is asked for."""
+    """Identifies the order when its outcome is queried."""
     master_source: str | None = None
-    """Of a slave's order: who has commanded its master, empty for people. None for the spindle's own orders."""
+    """Of a slave's order: who has commanded its master, empty for users. None for the spindle's own orders."""
 
     @property
     def commander(self) -> str:
-        """Who has commanded the spindle, itself or as a slave; empty for people."""
+        """Who has commanded the spindle, directly or through its master; empty for users."""
         return self.source if self.master_source is None else self.master_source
 
 
 class Orders:
-    """Commands that wait, and for whom the spindle is at work."""
+    """Commands that wait, and the source for which the spindle works."""
 
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
         spindle.when_faulted = self.clear
         self.waiting: deque[Order] = deque()
         self.source = ""
-        """For whom the spindle is at work: until its speed, position, reference or gear is there."""
+        """The source for which the spindle works, until its speed, position, reference or gear is reached."""
         self.commander = ""
-        """Who has commanded the spindle last, itself or as a slave; empty for people."""
+        """Who has commanded the spindle last, directly or through its master; empty for users."""
         self.obeys_master = False
-        """What the spindle does was told to its master."""
+        """The active command was given to the master of the spindle."""
         self.taken = 0
-        """Commands of the PLC so far."""
+        """Number of commands of the PLC so far."""
 
     @property
     def acknowledged(self) -> int:
-        """Commands of the PLC that are done, or that a stop, a reset or an error has overtaken."""
+        """Number of commands of the PLC that are finished, or aborted by a stop, a reset or an error."""
         open_orders = sum(order.source == PLC for order in self.waiting)
         return self.taken - open_orders - (self.source == PLC)
 
     def check(self, command: str, source: str, master: str) -> None:
-        """Raises 24012 while the spindle is at work for another source, 24022 for a slave.
+        """Raises 24012 while the spindle works for another source, 24022 for a slave.
 
-        What comes from the PLC waits for its turn, a stop not even that; nor does that of whose rotation a gear change
-        has interrupted.
+        Commands of the PLC wait for their turn, except a stop; nor does a stop wait of the source whose rotation a gear
+        change has interrupted.
         """
         if master and command != "stop":
             reason = f"the spindle is a slave of {master}; command {master} or decouple the spindle"
             self._spindle.refuse(command, SLAVE_LOCKED, reason, master=master)
         stops_its_own = command == "stop" and source == self.commander
         if source and source != PLC and self.source and source != self.source and not stops_its_own:
-            reason = f"the spindle is at work for '{self.source}', '{source}' must wait until that is done"
+            reason = f"the spindle works for '{self.source}', '{source}' must wait until that is finished"
             self._spindle.refuse(command, AT_WORK, reason, owner=self.source, source=source)
 
     def must_wait(self, command: str, source: str) -> bool:
-        """For what is finished first; those of the PLC for whatever is active. A stop never waits."""
+        """True if something must finish first; commands of the PLC wait for all that is active, a stop never waits."""
         if command == "stop":
             return False
         if self._finished_before(command) or (self.waiting and source != PLC and self.waiting[0].source != PLC):
@@ -95,7 +95,7 @@ class Orders:
         return AWAITED.get(self._spindle.state, "the spindle stands")
 
     def _finished_before(self, command: str) -> bool:
-        """A gear change before all commands, a homing before all that act, a positioning before a homing."""
+        """A gear change precedes all commands, a homing all that move the spindle, a positioning a homing."""
         state = self._spindle.state
         if self._spindle.work.changes_gear:
             return True
@@ -106,7 +106,7 @@ class Orders:
         self._spindle.unsettled = True
 
     def begin(self, source: str) -> None:
-        """The spindle works for `source` from now on; a rotation to go on after a gear change keeps its commander."""
+        """The spindle works for `source` from now on; a rotation after a gear change keeps its commander."""
         procedure = self._spindle.work.procedure
         self.source = source
         if procedure is None or not procedure.resume:
@@ -123,30 +123,30 @@ class Orders:
         return self.waiting.popleft()
 
     def forget(self, source: str) -> None:
-        """What waits for `source`, itself or as a slave's, is not carried out."""
+        """Drops waiting commands of `source`, given directly or through the master."""
         self.waiting = deque(order for order in self.waiting if order.commander != source)
 
     def obey(self, order: Order) -> None:
-        """The spindle does what its master was told."""
+        """True while the spindle carries out a command of its master."""
         self.commander, self.obeys_master = order.commander, True
 
     def forget_master(self) -> None:
-        """What waits because the master was told so is not carried out."""
+        """Drops waiting commands that came through the master."""
         self.waiting = deque(order for order in self.waiting if order.master_source is None)
 
     def leave_master(self, owner: str) -> None:
-        """The coupling is over: what goes on because the master was told so is in the hands of who has coupled."""
+        """The coupling has ended: whoever has coupled is responsible for a motion that came through the master."""
         self.forget_master()
         if self.obeys_master:
             self.commander, self.obeys_master = owner, False
 
     def clear(self) -> None:
-        """A stop, a reset or an error: nothing that waits is carried out."""
+        """A stop, a reset or an error: drops all waiting commands."""
         self.waiting.clear()
         self.source = ""
 
     def watch(self) -> None:
-        """Ends the work for a source when it is done."""
+        """Ends the work for a source when it is finished."""
         spindle = self._spindle
         if not self.source or spindle.work.procedure is not None:
             return

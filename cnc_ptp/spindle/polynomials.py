@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 HALVINGS = 200
-"""More than a bisection of doubles can need."""
+"""More steps than a bisection of doubles can need."""
 
 
 def value(coefficients: Sequence[float], x: float) -> float:
@@ -20,7 +20,7 @@ def value(coefficients: Sequence[float], x: float) -> float:
 def roots_between(coefficients: Sequence[float], low: float, high: float) -> list[float]:
     """Real roots in the open interval at which the sign changes, ascending.
 
-    The roots of the derivative cut the interval into pieces without a turn; each of them has one root at most.
+    The roots of the derivative cut the interval into monotonic pieces; each of them has one root at most.
     """
     if len(coefficients) < 2:
         return []
@@ -48,7 +48,7 @@ def bisect(coefficients: Sequence[float], low: float, high: float) -> float:
 
 
 def crossing(coefficients: Sequence[float], level: float, end: float) -> float:
-    """Where a polynomial without a turn in 0 … end comes to `level`: Newton's method, kept inside by bisection."""
+    """Where a polynomial, monotonic in 0 … end, reaches `level`: Newton's method, kept inside by bisection."""
     shifted = [coefficients[0] - level, *coefficients[1:]]
     derivative = [k * coefficient for k, coefficient in enumerate(shifted)][1:]
     rises = value(shifted, end) > 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from cnc_ptp.parameters.units import DEG_S_PER_RPM, LARGEST_POSITION
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM, LARGEST_POSITION
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.spindle.faults import (
     BAD_POSITION,
@@ -23,7 +23,7 @@ from cnc_ptp.spindle.rotation_commands import check_direction, check_speed
 from cnc_ptp.spindle.spindle import Spindle
 
 NEEDS_REFERENCE = (
-    "the spindle has no reference point and does not home by itself (P-AXIS-00015 0x100); home it first (G74)"
+    "the spindle has no reference point and does not home automatically (P-AXIS-00015 0x100); home it first (G74)"
 )
 
 
@@ -62,7 +62,7 @@ class PositionCommands:
         return self._slower(cycle, speed)
 
     def _slower(self, cycle: int, speed: float) -> str | None:
-        """What people hear of a positioning speed in °/s that tool or control limit do not permit."""
+        """The warning for a positioning speed in °/s that tool or control limit do not permit."""
         limits = self._spindle.limits
         used = limits.max_positioning_speed
         if speed <= used:
@@ -95,16 +95,16 @@ class PositionCommands:
         self._procedures.start(cycle, Procedure("home", deque([Step.SEARCH, Step.HALT])))
 
     def do_select_gear(self, cycle: int, *, stage: int, resume: bool = True) -> str | None:
-        """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear and says `gear_changed`.
+        """M40 … M45: to the change position in rapid traverse, then the PLC changes the gear (`gear_changed`).
 
-        An endless rotation goes on after that, unless `resume` is False: who commands says how it goes on.
-        Nothing happens for the gear in use. Refused with 24003 and 24014; 24007 as for `orient`.
+        An endless rotation resumes after that, unless `resume` is False: then the commander decides how to continue.
+        No effect for the gear in use. Refused with 24003 and 24014; 24007 as for `orient`.
         """
         spindle = self._spindle
         spindle.require_ready("select_gear")
         if stage not in spindle.parameters.gears:
             known = ", ".join(map(str, spindle.parameters.gears))
-            reason = f"gear {stage} has no record getriebe[i]; there are {known}"
+            reason = f"gear {stage} has no record getriebe[i]; known are: {known}"
             spindle.refuse("select_gear", NO_SUCH_GEAR, reason, gear=stage)
         if stage == spindle.gear.stage:
             return f"spindle {spindle.name}: gear {stage} is selected already"
@@ -118,7 +118,7 @@ class PositionCommands:
         return self._slower(cycle, procedure.speed)
 
     def do_gear_changed(self, cycle: int) -> str | None:
-        """The PLC has changed the gear; an endless rotation before goes on. Refused with 24015."""
+        """The PLC has changed the gear; a previous endless rotation resumes. Refused with 24015."""
         spindle = self._spindle
         if not spindle.work.gear_request:
             spindle.refuse("gear_changed", NO_GEAR_CHANGE, "no gear change waits for its acknowledgement")
@@ -127,7 +127,7 @@ class PositionCommands:
             return None
         if abs(procedure.resume) > spindle.gear.max_speed:
             rpm, limit = abs(procedure.resume) / DEG_S_PER_RPM, spindle.gear.max_speed / DEG_S_PER_RPM
-            above = f"speed {rpm:g} rpm of before is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
+            above = f"the previous speed {rpm:g} rpm is above the maximum {limit:g} rpm of gear {spindle.gear.stage}"
             return spindle.warn(cycle, SPEED_LIMITED, f"{above} (P-AXIS-00212); the spindle stays at rest")
         spindle.rotate(cycle, procedure.resume)
         return None

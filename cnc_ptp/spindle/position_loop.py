@@ -1,10 +1,10 @@
-"""Position loop of a spindle: closed, opened at the control limit or by velocity control, or open for good.
+"""Position loop of a spindle: closed, opened at the control limit or by velocity control, or always open.
 
 TF5200 spindle 2.2.4 (open position loop), 2.4.2 (control limit), P-AXIS-00265 and 00266 (velocity control). In the open
 loop the speed setpoint goes to the drive. The loop of a controlled spindle whose drive sends its position is open in
 rotation and closed while it is positioned, homed or held; it closes and opens without a step of the command. Above the
-control limit the actual values are simulated: position controller and feedforward go on with an ideal drive, so that
-the drive of the spindle notices nothing of the limit; at constant speed the following error is speed / Kv without
+control limit the actual values are simulated: position controller and feedforward continue with an ideal drive, so that
+the limit has no effect on the real drive; at constant speed the following error is speed / Kv without
 feedforward. Units: °, °/s.
 """
 
@@ -21,16 +21,16 @@ from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 
 ROUNDING = 1e-12
-"""Part of the control limit by which a speed that was cut to it may be above."""
+"""Part of the control limit by which a speed limited to it may exceed it by rounding."""
 Cycles = tuple[list[float], list[float], list[float], list[int], list[float]]
 """Actual positions, actual speeds, following errors, drive outputs."""
 
 
 class SimulatedActuals:
-    """Actual values where the measuring system has failed: of an ideal drive under the same position controller."""
+    """Simulated actual values above the control limit: of an ideal drive under the same position controller."""
 
     def __init__(self, position: float, speed: float, *, kv: float, feedforward: float) -> None:
-        """Begins with the last measured values; `feedforward` is the part of the set speed that goes out beside Kv."""
+        """Starts with the last measured values; `feedforward` is the part of the set speed output besides Kv."""
         self.position, self.speed = position, speed
         self._kv, self._feedforward = kv, feedforward
 
@@ -42,7 +42,7 @@ class SimulatedActuals:
 
 
 class PositionLoop:
-    """The control loop of the gear in work, where it is closed and where it is not; actual values, cycle by cycle."""
+    """The control loop of the active gear, closed or open, and the actual values, cycle by cycle."""
 
     def __init__(self, parameters: SpindleParameters, gear: GearParameters, drive: Drive, *, cycle_time: float) -> None:
         """`cycle_time` in s."""
@@ -50,7 +50,7 @@ class PositionLoop:
         self._cycle_time = cycle_time
         self._simulated: SimulatedActuals | None = None
         self._feedforward = 0.0
-        """Part of the set speed that went out beside the position controller."""
+        """Part of the set speed that was output besides the position controller."""
         self._positions = False
         """A controlled spindle is positioned, homed or held."""
         self._commanded_speed = 0.0
@@ -85,7 +85,7 @@ class PositionLoop:
         self.control.select_feedforward(on, weight_percent)
 
     def count_from(self, position: float) -> None:
-        """The spindle stands at `position`, whatever the encoder shows."""
+        """The spindle is at `position`, whatever the encoder shows."""
         self.control.count_from(position)
         self._last_position = None
 
@@ -136,7 +136,7 @@ class PositionLoop:
         return self.position + self.lag(speed)
 
     def open(self) -> float | None:
-        """A controlled spindle is not positioned any more: the speed it was commanded to; None if the loop was open."""
+        """A controlled spindle is no longer positioned: the speed it was commanded to; None if the loop was open."""
         closed, self._positions = self._positions, False
         return self._commanded_speed if closed else None
 
@@ -151,8 +151,8 @@ class PositionLoop:
         return True
 
     def comes_back(self, set_speed: float) -> bool:
-        """True when the speed has come below the control limit: the measuring system counts again, from where the
-        simulated one has come to.
+        """True when the speed has come below the control limit: the measuring system is used again, from the
+        simulated position on.
         """
         if self._simulated is None or abs(set_speed) > self._control_limit:
             return False
@@ -161,7 +161,7 @@ class PositionLoop:
         return True
 
     def waits_to_close(self, set_speed: float, wanted_speed: float) -> bool:
-        """Under velocity control that is needed no more; only the drive must slow down yet."""
+        """Under velocity control that is no longer needed; only the drive must still slow down."""
         return (
             self.velocity_control
             and abs(wanted_speed) <= self._parameters.velocity_control_on
@@ -169,7 +169,7 @@ class PositionLoop:
         )
 
     def leaves_velocity_control(self, set_speed: float, wanted_speed: float) -> bool:
-        """True when no speed above P-AXIS-00265 is wanted and the spindle is down to P-AXIS-00266."""
+        """True when no speed above P-AXIS-00265 is commanded and the spindle is down to P-AXIS-00266."""
         if not self.waits_to_close(set_speed, wanted_speed):
             return False
         limit = self._parameters.velocity_control_off
@@ -188,7 +188,7 @@ class PositionLoop:
         return self.control.position if measured else set_position
 
     def actual_speed(self, set_speed: float) -> float:
-        """By what the drive sends; asked once a cycle, because an open loop takes it from two positions."""
+        """From the actual values of the drive; once per cycle, because an open loop computes it from two positions."""
         if self._simulated is not None:
             return self._simulated.speed
         if not self.measures_speed or self.control.virtual:
@@ -200,7 +200,7 @@ class PositionLoop:
 
     @property
     def undisturbed_speed(self) -> float:
-        """Up to this amount of speed nothing opens or closes the loop, at none while it is open only for a while."""
+        """Largest magnitude of speed at which nothing opens or closes the loop; none while it is open temporarily."""
         if self.velocity_control or self.beyond_limit:
             return -inf
         return inf if self._parameters.open_loop else self._control_limit
@@ -210,7 +210,7 @@ class PositionLoop:
         return self.control.monitor.on and on and self.closed
 
     def cycles(self, setpoints: Sequence[MotionState], *, on: bool, watched: bool) -> Cycles:
-        """Many cycles through which the loop stays as it is; if `watched`, up to a following error too large.
+        """Many cycles in which the loop neither opens nor closes; if `watched`, up to an excessive following error.
 
         The same as actual_position, actual_speed and command, cycle by cycle.
         """
@@ -247,7 +247,7 @@ class PositionLoop:
     def command(self, setpoint: MotionState, *, on: bool) -> None:
         """Moves the drive for one cycle. `on` is False without power.
 
-        In the open loop a controlled spindle turns as fast as the digits say that go out (spindle 2.2.4).
+        In the open loop a controlled spindle turns as fast as the output digits say (spindle 2.2.4).
         """
         speed = setpoint[1] if on else 0.0
         if self._parameters.open_loop:

@@ -17,7 +17,7 @@ class PowerCommands:
     def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """Enables or disables the spindle; one that moves stops on its ramp with an error first (24011).
 
-        While the PLC changes the gear an enable counts after that; no rotation goes on then. The enable itself moves
+        While the PLC changes the gear an enable counts after that; no rotation resumes then. The enable itself moves
         nothing.
         """
         spindle = self._spindle
@@ -46,7 +46,7 @@ class PowerCommands:
                 spindle.place(cycle, spindle.loop.position)
 
     def do_reset(self, cycle: int) -> None:
-        """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle, whatever it does."""
+        """Leaves ErrorStop at standstill (24004 while turning); otherwise stops the spindle in any state."""
         spindle = self._spindle
         if spindle.state == S.DISABLED:
             spindle.end_procedure()

@@ -1,4 +1,4 @@
-"""What a job of a spindle is, and the one in work."""
+"""Procedures of a spindle: their steps, and the active one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Step(Enum):
 
 @dataclass(slots=True)
 class Procedure:
-    """`name` of the command; the rest as the steps need it."""
+    """A job of several steps: `name` of the command; the rest as the steps need it."""
 
     name: str
     steps: deque[Step] = field(default_factory=deque)
@@ -36,7 +36,7 @@ class Procedure:
     resume: float = 0.0
     """Speed of endless rotation that the gear change has interrupted, °/s."""
     number: int = 0
-    """Of the order for which it is done."""
+    """Number of the order that it carries out."""
 
     @property
     def homes(self) -> bool:
@@ -46,7 +46,7 @@ class Procedure:
 
 @dataclass(slots=True)
 class Work:
-    """The job in work of one spindle, and what became of the last one."""
+    """The active job of one spindle, and the outcome of the last one."""
 
     procedure: Procedure | None = None
     done: bool = True
@@ -64,7 +64,7 @@ class Work:
         return self.procedure is not None and self.procedure.stage != 0
 
     def finish(self) -> None:
-        """The job in work is done."""
+        """The active job has finished."""
         if self.procedure is not None:
             self.last_done = self.procedure.number
         self.procedure, self.done = None, True
@@ -73,6 +73,6 @@ class Work:
         self.procedure, self.done = None, False
 
     def forget_rotation(self) -> None:
-        """The endless rotation that a gear change has interrupted does not go on after it."""
+        """The endless rotation that a gear change has interrupted does not resume after it."""
         if self.procedure is not None:
             self.procedure.resume = 0.0

@@ -1,26 +1,26 @@
 """Jobs of a spindle that take several steps: positioning, homing, stop with homing, gear change.
 
-The steps of a job are fixed when it begins, from what is known then (is the loop open, is there a reference?); each
-cycle asks whether the step in work is done. TF5200 spindle 2.3 (state graphs), 2.7, 2.8.2.
+The steps of a job are fixed when it starts, by the state at that time (open loop, reference); each
+cycle checks whether the active step is finished. TF5200 spindle 2.3 (state graphs), 2.7, 2.8.2.
 """
 
 from __future__ import annotations
 
 from math import copysign
 
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
-from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stop_way
+from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stopping_distance
 from cnc_ptp.spindle.procedure import DIRECTIONS, Procedure, Step
 from cnc_ptp.spindle.spindle import Spindle
 
 
 class Procedures:
-    """Carries the job of one spindle out, step by step."""
+    """Carries out the job of one spindle, step by step."""
 
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
@@ -30,10 +30,10 @@ class Procedures:
         self._turns = 1.0
         """Direction in which the target is reached."""
 
-    # begin
+    # start
 
     def start(self, cycle: int, procedure: Procedure) -> None:
-        """Begins a job; what it needs before its first own step is put in front."""
+        """Starts a job, with the steps that it needs before its first own one."""
         spindle = self._spindle
         spindle.take_tool(cycle)
         spindle.end_procedure()
@@ -50,7 +50,7 @@ class Procedures:
 
     @property
     def _loop_stays_open(self) -> bool:
-        """The loop is open for another reason than the control limit, which ends by itself on the way down."""
+        """The loop is open for another reason than the control limit, which ends automatically on the ramp down."""
         parameters, loop = self._spindle.parameters, self._spindle.loop
         return loop.velocity_control or (parameters.open_loop and parameters.has_position and not loop.closed)
 
@@ -79,7 +79,7 @@ class Procedures:
 
     @property
     def _procedure_speed(self) -> float:
-        """Of the motion after the approach, without override."""
+        """Limits of the motion after the approach, without override."""
         procedure = self._current()
         return self._homing_speed if procedure.homes else self._spindle.limits.positioning(procedure.speed).speed
 
@@ -112,7 +112,7 @@ class Procedures:
         spindle.follow(cycle, table)
 
     def _direction(self, position: float, speed: float, procedure: Procedure, turn: float) -> float:
-        """The given one, else the only one permitted, else the current one in rotation and the shortest from rest."""
+        """The given direction, else the only one permitted, else that of the rotation, or the shortest from rest."""
         if procedure.direction in DIRECTIONS:
             return DIRECTIONS[procedure.direction]
         if self._spindle.parameters.preferred_direction:
@@ -120,7 +120,9 @@ class Procedures:
         if speed and procedure.direction != "shortest":
             return copysign(1.0, speed)
         limits = self._spindle.limits.positioning(0.0)
-        return shortest_direction(position + copysign(stop_way(abs(speed), limits), speed), procedure.goal, turn)
+        return shortest_direction(
+            position + copysign(stopping_distance(abs(speed), limits), speed), procedure.goal, turn
+        )
 
     def _halt(self, cycle: int) -> None:
         spindle = self._spindle
@@ -132,10 +134,10 @@ class Procedures:
     def _shift(self, cycle: int) -> None:
         self._spindle.take(T.CHANGE_GEAR)
 
-    # on the way
+    # cycle by cycle
 
     def replan(self, cycle: int) -> bool:
-        """Another override in a positioning; False where the spindle brakes for its target already."""
+        """Another override in a positioning; False if the spindle already brakes for its target."""
         spindle, procedure = self._spindle, self._current()
         if procedure.steps[0] is not Step.POSITION or spindle.target is None:
             return True
@@ -148,7 +150,7 @@ class Procedures:
         return True
 
     def advance(self, cycle: int, actual_speed: float) -> None:
-        """Is the step in work done? Then the next one begins in this cycle, or the job is over."""
+        """When the active step has finished, the next one starts in this cycle, or the job ends."""
         procedure = self._current()
         step = procedure.steps[0]
         if step is Step.APPROACH:
@@ -226,7 +228,7 @@ class Procedures:
             spindle.fault(cycle, POSITION_MISSED, f"{since} {self._missed(away, actual_speed)}")
 
     def _too_long(self, cycles: float) -> bool:
-        """The position has been missing for so many cycles, and is not about to be reached."""
+        """True if the position has been missing for too many `cycles` and is not about to be reached."""
         spindle = self._spindle
         patience = spindle.parameters.target_time / spindle.cycle_time
         return patience > 0.0 and cycles >= patience and not spindle.exact_stop.settles
@@ -240,7 +242,7 @@ class Procedures:
         return f"still turns at {abs(actual_speed) / DEG_S_PER_RPM:g} rpm, more than the {limit}"
 
     def _shifted(self, cycle: int) -> bool:
-        """Only the PLC says so; an error when it does not."""
+        """Only the PLC ends this step; an error if it does not in time."""
         spindle = self._spindle
         patience = spindle.parameters.gear_change_time
         if patience and (cycle - self._since) * spindle.cycle_time >= patience:
@@ -258,7 +260,7 @@ class Procedures:
             spindle.mode = SpindleMode.STOP
 
     def gear_changed(self, cycle: int) -> Procedure:
-        """The PLC has acknowledged: the parameters of the new gear count; returns the job that is over."""
+        """The PLC has acknowledged: the parameters of the new gear count; returns the finished job."""
         procedure = self._current()
         self._spindle.use_gear(cycle, procedure.stage)
         self._spindle.target = None

@@ -10,14 +10,14 @@ OPPOSITE = {"cw": "ccw", "ccw": "cw"}
 
 
 def is_permitted(ratio: float) -> bool:
-    """Whether a slave can follow by this ratio."""
+    """True if a slave can follow by this ratio."""
     return SMALLEST_RATIO <= abs(ratio) <= LARGEST_RATIO
 
 
 def scaled(arguments: Mapping[str, Any], ratio: float) -> dict[str, Any]:
     """Arguments of a master's command as its slave has them: speed and position times the ratio.
 
-    A negative ratio turns the direction of rotation round.
+    A negative ratio reverses the direction of rotation.
     """
     of_slave = dict(arguments)
     for name, factor in (("speed_rpm", abs(ratio)), ("position_deg", ratio)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -26,11 +26,11 @@ LIMIT_RANGES = {
     "min_speed_rpm": (0.0, 2e6 / DEG_S_PER_RPM, "P-TOOL-00013"),
     "max_acceleration": (1.0, 1e8, "P-TOOL-00015"),
 }
-"""What a tool may say: rpm, °/s²."""
+"""Permitted range of tool limits: rpm, °/s²."""
 
 
 class RotationCommands:
-    """`start`, `set_speed`, `stop`, override, limits of the tool, and what happens at the program's end."""
+    """`start`, `set_speed`, `stop`, override, limits of the tool, and the stop at the program end."""
 
     def __init__(self, spindle: Spindle, procedures: Procedures) -> None:
         self._spindle = spindle
@@ -57,7 +57,7 @@ class RotationCommands:
         return self._limited(cycle, speed_rpm)
 
     def _limited(self, cycle: int, speed_rpm: float) -> str | None:
-        """What people hear of a speed that the tool does not take."""
+        """The warning for a speed that the tool does not permit."""
         limits, speed = self._spindle.limits, speed_rpm * DEG_S_PER_RPM
         used = abs(limits.endless(speed))
         if used == speed:
@@ -98,7 +98,7 @@ class RotationCommands:
         return self._override_changed(cycle, f"override {percent} %")
 
     def do_suppress_override(self, cycle: int, *, enabled: bool) -> str | None:
-        """G167: the override does not act (100 %) until it is switched off again."""
+        """G167: the override has no effect (100 %) until G167 is switched off again."""
         if enabled == self._spindle.override_suppressed:
             return None
         self._spindle.override_suppressed = enabled
@@ -109,7 +109,7 @@ class RotationCommands:
         if spindle.state == S.CONTINUOUS_MOTION:
             spindle.apply_speed(cycle)
         elif spindle.state == S.DISCRETE_MOTION and not self._procedures.replan(cycle):
-            return f"spindle {spindle.name}: {what} does not change the positioning in work (brake phase)"
+            return f"spindle {spindle.name}: {what} does not change the active positioning (brake phase)"
         return None
 
     def do_set_limits(
@@ -120,7 +120,7 @@ class RotationCommands:
         min_speed_rpm: float | None = None,
         max_acceleration: float | None = None,
     ) -> None:
-        """Limits of a tool (P-TOOL-00013 … 00015), from standstill on; what is left out is free. Refused: 24018."""
+        """Limits of a tool (P-TOOL-00013 … 00015), from standstill on; the rest is unlimited. Refused: 24018."""
         spindle = self._spindle
         given = {"max_speed_rpm": max_speed_rpm, "min_speed_rpm": min_speed_rpm, "max_acceleration": max_acceleration}
         for name, value in given.items():

@@ -1,4 +1,4 @@
-"""What all functions of a spindle share: its state, its setpoints, its limits, refusals and faults."""
+"""The core of a spindle: its state, its setpoints, its limits, refusals and faults."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Report = Callable[[int, int, str], None]
 
 
 class Spindle:
-    """The setpoint side of a spindle. Commands (one class a group) change it, the unit around it computes cycles.
+    """The setpoint side of a spindle. Commands (one class per group) change it, the unit around it computes cycles.
 
     Speeds are in °/s, + = M03. Every fault ends in ErrorStop on the ramp of endless rotation.
     """
@@ -70,23 +70,23 @@ class Spindle:
         self.programmed_speed = 0.0
         """As commanded, °/s: with sign in endless rotation, without in positioning."""
         self.wanted_speed = 0.0
-        """What the actual speed is compared with: the programmed one under override and limits."""
+        """Speed with which the actual speed is compared: the programmed one under override and limits."""
         self.target: float | None = None
-        """Where positioning is to end, or has ended."""
+        """Target of the positioning, also after its end."""
         self.exact_stop = ExactStop(time=parameters.settling_time, cycle_time=cycle_time)
         self.speed_was_reached = True
         self.speed_lost_at = -inf
-        """First cycle in which a speed that was reached was there no more."""
+        """First cycle in which a speed that was reached was lost again."""
         self.unsettled = True
-        """Something may happen in the next cycles besides following the setpoint."""
+        """In the next cycles more may happen than following the setpoint."""
         self.work = Work()
         self.when_faulted: Callable[[], None] = lambda: None
-        """Told of every fault at once."""
+        """Called immediately at every fault."""
         self.report_error = report_error
         self.report_warning = report_warning
 
     def warn(self, cycle: int, number: int, reason: str) -> str:
-        """Tells a warning as an event; returns it as the record of a command shows it."""
+        """Reports a warning as an event; returns it as the record of a command shows it."""
         text = f"spindle {self.name}: {reason}"
         self.report_warning(cycle, number, text)
         return warning_text(number, text)
@@ -94,7 +94,7 @@ class Spindle:
     # setpoints
 
     def motion(self, cycle: int) -> Motion:
-        """Set position, speed and acceleration at `cycle`, as they stand before a command that acts there."""
+        """Set position, speed and acceleration at `cycle`, before a command that acts there."""
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
 
@@ -105,15 +105,15 @@ class Spindle:
         if not self.finished(first_cycle):
             return [(p + shift, v, a, 0.0) for p, v, a in self._table.states_at(times)]
         end = self._table.segments[-1]
-        start, (position, speed) = end.start, end.way
+        start, (position, speed) = end.start, end.position
         return [(position + (t - start) * speed + shift, speed, 0.0, 0.0) for t in times]
 
     def finished(self, cycle: int) -> bool:
-        """The table has come to its end speed."""
+        """True when the table has reached its end speed."""
         return (cycle - self._origin) * self.cycle_time >= self._table.duration
 
     def cycles_since_end(self, cycle: int) -> float:
-        """Cycles since the table has come to its end speed."""
+        """Cycles since the table has reached its end speed."""
         return cycle - self._origin - self._table.duration / self.cycle_time
 
     def cycles_without_speed(self, cycle: int) -> float:
@@ -121,7 +121,7 @@ class Spindle:
         return min(self.cycles_since_end(cycle), cycle - self.speed_lost_at)
 
     def note_speed(self, cycle: int, reached: bool) -> None:
-        """Whether the actual speed is there; a rotation can lose it again."""
+        """Notes whether the actual speed is reached; a rotation can lose it again."""
         if reached:
             self.speed_was_reached = True
         elif self.speed_was_reached and self.state == S.CONTINUOUS_MOTION:
@@ -139,7 +139,7 @@ class Spindle:
         self.follow(cycle, plan_speed(position, before, speed, self.limits.ramp))
 
     def shift_coordinates(self, distance: float) -> None:
-        """Set and actual position are counted from elsewhere; nothing moves."""
+        """Shifts the coordinates of set and actual position; nothing moves."""
         self._shift += distance
         self.loop.shift(distance)
         if self.target is not None:
@@ -154,7 +154,7 @@ class Spindle:
         return 1.0 if self.override_suppressed else self.override_percent / 100.0
 
     def take(self, transition: Transition) -> None:
-        """Changes the state; nothing else does. That only the table's ways are taken is checked by every test."""
+        """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
         self.state = transition.target
 
     # endless rotation
@@ -170,7 +170,7 @@ class Spindle:
         self.apply_speed(cycle)
 
     def apply_speed(self, cycle: int) -> None:
-        """The ramp of endless rotation to the programmed speed under the override of now."""
+        """The ramp of endless rotation to the programmed speed under the present override."""
         self.wanted_speed = self.limits.endless(self.programmed_speed * self.override)
         if abs(self.wanted_speed) > self.parameters.velocity_control_on and not self.parameters.open_loop:
             self.loop.velocity_control = True
@@ -181,7 +181,7 @@ class Spindle:
         self.speed_was_reached, self.speed_lost_at = False, -inf
 
     def stop(self, cycle: int) -> None:
-        """Down to speed 0 at once; an active job is given up."""
+        """Down to speed 0 immediately; an active job is aborted."""
         self._brake(cycle)
         self.take(T.STOP)
 
@@ -207,7 +207,7 @@ class Spindle:
             self.limits = self._limits()
 
     def use_gear(self, cycle: int, stage: int) -> None:
-        """Parameters of another gear; the spindle stands where the encoder shows it."""
+        """Parameters of another gear; the position of the spindle is that of the encoder."""
         actual = self.loop.position
         self.gear = self.parameters.gears[stage]
         self.loop.use_gear(self.gear, self._make_drive(self.gear, self.loop.control.drive.position))
@@ -225,11 +225,11 @@ class Spindle:
 
     @property
     def holds_position(self) -> bool:
-        """A positioning has come to its end, and nothing else was commanded since."""
+        """A positioning has finished, and nothing else was commanded since."""
         return self.work.done and self.target is not None and self.state == S.STANDSTILL
 
     def note_position(self, cycle: int, away: float, speed: float) -> bool:
-        """Exact stop at a standing setpoint, `away` in ° from it."""
+        """Exact stop while the setpoint is at a standstill; `away` is the distance from it in °."""
         gear = self.gear
         return self.exact_stop.note(
             cycle, in_position=abs(away) <= gear.position_window, at_rest=abs(speed) <= gear.zero_speed
@@ -238,13 +238,13 @@ class Spindle:
     # position loop
 
     def _open_loop(self, cycle: int) -> None:
-        """The speed of a controlled spindle goes on from what the position controller has commanded."""
+        """The speed of a controlled spindle continues from the command of the position controller."""
         speed = self.loop.open()
         if speed is not None:
             self.follow(cycle, plan_speed(self.loop.position, speed, speed, self.limits.ramp))
 
     def watch_loop(self, cycle: int, speed: float) -> None:
-        """Opens and closes the position loop where the speed asks for it; the closed loop goes on without a jump."""
+        """Opens and closes the position loop when the speed requires it; the closed loop continues without a jump."""
         if self.loop.passes_limit(speed):
             self.referenced = False
             self.reference_lost = True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from cnc_ptp.motion.profile import MotionState
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
@@ -17,7 +17,7 @@ from cnc_ptp.spindle.rotation_commands import RotationCommands
 from cnc_ptp.spindle.spindle import Spindle
 
 SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
-"""States that do not end by themselves."""
+"""States that do not end without a command."""
 (
     POSITION_CONTROL,
     VELOCITY_CONTROL,
@@ -33,7 +33,7 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
 
 
 class SpindleCycles:
-    """Computes the cycles of one spindle; blocks in which nothing can happen take a shorter way."""
+    """Computes the cycles of one spindle; blocks in which nothing can happen are computed faster."""
 
     def __init__(self, spindle: Spindle, procedures: Procedures, orders: Orders, rotation: RotationCommands) -> None:
         self._spindle = spindle
@@ -41,12 +41,12 @@ class SpindleCycles:
         self._orders = orders
         self._rotation = rotation
         self._patience = spindle.parameters.speed_time / spindle.cycle_time
-        """P-MACH-00050 in cycles, 0 for ever."""
+        """P-MACH-00050 in cycles, 0: no monitoring."""
         self._position_patience = spindle.parameters.target_time / spindle.cycle_time
-        """P-MACH-00014 in cycles, 0 for ever."""
+        """P-MACH-00014 in cycles, 0: no monitoring."""
 
     def block(self, first_cycle: int, count: int) -> SpindleBlock:
-        """A block with all that has a value per cycle."""
+        """A block with all values per cycle."""
         long = not any(0.0 < patience < count for patience in (self._patience, self._position_patience))
         if long and self._undisturbed(first_cycle, first_cycle + count - 1):
             block = self._undisturbed_cycles(first_cycle, count)
@@ -113,7 +113,7 @@ class SpindleCycles:
         return not spindle.error_id and spindle.loop.watches(on=spindle.state != S.DISABLED)
 
     def _speed_reached(self, actual_speed: float) -> bool:
-        """P-AXIS-00217: within the tolerance band around the wanted speed; for speed 0 the zero limit P-AXIS-00216.
+        """P-AXIS-00217: within the tolerance band around the commanded speed; for speed 0 the zero limit P-AXIS-00216.
 
         A spindle that override 0 holds has not reached its speed.
         """
@@ -126,12 +126,12 @@ class SpindleCycles:
 
     @property
     def _awaits_speed(self) -> bool:
-        """The speed of the rotation is still to come, or 0 after a stop."""
+        """The speed of the rotation, or 0 after a stop, is monitored."""
         spindle = self._spindle
         return not spindle.speed_was_reached and spindle.state in (S.CONTINUOUS_MOTION, S.STANDSTILL)
 
     def _watch_speed(self, cycle: int, reached: bool) -> None:
-        """Time monitoring: an error when the speed does not come, or does not come back (P-MACH-00050)."""
+        """Time monitoring: an error when the speed is not reached, or not reached again (P-MACH-00050)."""
         spindle = self._spindle
         spindle.note_speed(cycle, reached)
         if not self._awaits_speed:
@@ -142,7 +142,7 @@ class SpindleCycles:
             return
         wanted = spindle.wanted_speed / DEG_S_PER_RPM
         seconds = f"{spindle.parameters.speed_time:g} s"
-        missing = f"was not reached {seconds} after the setpoint got there"
+        missing = f"was not reached {seconds} after the setpoint"
         if spindle.speed_lost_at > -inf:
             missing = f"was lost and has not come back for {seconds}"
         limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
@@ -171,7 +171,7 @@ class SpindleCycles:
         return bits
 
     def _note_settled(self, cycle: int) -> None:
-        """Whether only commands and the following error can change anything from the next cycle on."""
+        """True if only commands and the following error can change anything from the next cycle on."""
         spindle = self._spindle
         spindle.unsettled = not (
             spindle.state in SETTLED
@@ -184,7 +184,7 @@ class SpindleCycles:
             and not spindle.loop.waits_to_close(spindle.motion(cycle)[1], spindle.wanted_speed)
         )
 
-    # cycles in which the spindle does nothing but go on
+    # cycles in which the spindle only continues
 
     def _undisturbed(self, first_cycle: int, last_cycle: int) -> bool:
         """True when only the following error can change state, mode or loop in these cycles."""
@@ -201,7 +201,7 @@ class SpindleCycles:
         return limit == inf or all(abs(spindle.motion(cycle)[1]) <= limit for cycle in (first_cycle, last_cycle))
 
     def _patience_ends(self, last_cycle: int) -> bool:
-        """The time for a missing speed (P-MACH-00050) or position (P-MACH-00014) is over until `last_cycle`."""
+        """The time for a missing speed (P-MACH-00050) or position (P-MACH-00014) ends by `last_cycle`."""
         spindle = self._spindle
         late = bool(self._patience) and spindle.cycles_without_speed(last_cycle) >= self._patience
         away_for = last_cycle - spindle.exact_stop.left_at
@@ -209,7 +209,7 @@ class SpindleCycles:
         return (late and self._awaits_speed) or lost
 
     def _undisturbed_cycles(self, first_cycle: int, count: int) -> SpindleBlock:
-        """A block of such cycles, the same as `_cycle` makes; up to a following error too large."""
+        """A block of such cycles, the same as `_cycle` makes; up to an excessive following error."""
         spindle = self._spindle
         gear, state = spindle.gear, spindle.state
         motions = spindle.motions(first_cycle, count)
@@ -254,7 +254,7 @@ class SpindleCycles:
         return block
 
     def _speeds_reached(self, actual_speeds: list[float]) -> list[bool]:
-        """`_speed_reached` of many cycles with the same wanted speed."""
+        """`_speed_reached` of many cycles with the same commanded speed."""
         wanted = self._spindle.wanted_speed
         if wanted == 0.0:
             return [self._speed_reached(speed) for speed in actual_speeds]
@@ -262,7 +262,7 @@ class SpindleCycles:
         return [abs(speed - wanted) <= band for speed in actual_speeds]
 
     def _positions_reached(self, first_cycle: int, actuals: list[float], actual_speeds: list[float]) -> list[bool]:
-        """Exact stop after a positioning, cycle by cycle; a position that is left is to be watched."""
+        """Exact stop after a positioning, cycle by cycle; a position that is left is monitored."""
         spindle, target = self._spindle, self._spindle.target
         if target is None or not spindle.holds_position:
             return [False] * len(actuals)

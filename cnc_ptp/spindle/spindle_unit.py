@@ -1,4 +1,4 @@
-"""The spindle unit: takes commands in their order, closes the position loop, makes blocks."""
+"""Spindle unit: takes commands in their order, closes the position loop, computes cycle blocks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, fee
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
@@ -30,8 +30,8 @@ from cnc_ptp.spindle.spindle_cycles import SpindleCycles
 class SpindleUnit(Unit):
     """One spindle with its functions (cnc_ptp.spindle), position loop and drive.
 
-    States (PLCopen): Disabled, Standstill, ContinuousMotion (M03, M04), Stopping (M05), DiscreteMotion (M19, way to the
-    change position), Homing (G74, automatic homing), ErrorStop. Speeds inside are °/s, + = M03.
+    States (PLCopen): Disabled, Standstill, ContinuousMotion (M03, M04), Stopping (M05), DiscreteMotion (M19, motion to
+    the change position), Homing (G74, automatic homing), ErrorStop. Speeds inside are °/s, + = M03.
     """
 
     kind: ClassVar[str] = "spindle"
@@ -90,7 +90,7 @@ class SpindleUnit(Unit):
         return self._coupling.master or None
 
     def waits_for(self) -> str:
-        """See Unit: the PLC, an override above 0, or a speed that does not come."""
+        """See Unit: the PLC, an override above 0, or a speed that is not reached."""
         block = self._last_block
         if block is None:
             return ""
@@ -98,14 +98,14 @@ class SpindleUnit(Unit):
             return f"spindle {self.name} waits for the PLC to change to gear {block.gear_request}"
         reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
         if reason and open_orders:
-            return f"spindle {self.name} still has {open_orders} of the PLC's commands to do: {reason}"
+            return f"spindle {self.name} still has {open_orders} of the PLC's commands to carry out: {reason}"
         held = reason and block.state[-1] == S.DISCRETE_MOTION
         return f"spindle {self.name} is held by override 0" if held else ""
 
     # commands
 
     def command(self, command: Command, cycle: int) -> CommandRecord:
-        """As every unit; the source of a refused command finds the refusal in the next block."""
+        """See Unit; the source of a refused command finds the refusal in the next block."""
         record = super().command(command, cycle)
         source = command.arguments.get("source") or command.arguments.get("owner")
         if not record.accepted and source and command.command != "upstream_lost":
@@ -145,7 +145,7 @@ class SpindleUnit(Unit):
         return message
 
     def _waiting(self, order: Order) -> str | None:
-        """PLC and people hear what their order waits for; in a program it is the order of things."""
+        """The warning that tells PLC and users what their order waits for; a program waits without one."""
         if order.source not in ("", PLC):
             return None
         text = f"spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
@@ -171,7 +171,7 @@ class SpindleUnit(Unit):
         return message
 
     def _tell_overtaken(self, cycle: int, by: str) -> None:
-        """For whom the PLC changes the gear hears that nothing goes on afterwards."""
+        """Notifies the source of the gear change that the rotation does not resume afterwards."""
         source = self._orders.source
         if not source or not self.spindle.work.gear_request:
             return
@@ -180,18 +180,20 @@ class SpindleUnit(Unit):
         self._refused.append(Refusal(source, GEAR_CHANGE_OVERTAKEN, text))
 
     def _tell_lost_homings(self, cycle: int, by: str) -> None:
-        """A homing whose zero pulse has not come, and those that wait, do not take place: nobody waits for them."""
+        """Reports a homing without zero pulse so far, and waiting ones, as aborted: nobody waits for them."""
         spindle, procedure = self.spindle, self.spindle.work.procedure
         numbers = [procedure.number] if procedure is not None and procedure.homes else []
         numbers += [order.number for order in self._orders.waiting if order.command == "home"]
-        reference = "the reference point of before counts" if spindle.referenced else "there is no reference point"
+        reference = (
+            "the previous reference point remains valid" if spindle.referenced else "there is no reference point"
+        )
         for number in numbers:
-            text = f"{by} before the zero pulse, homing (order {number}) is given up; {reference}"
+            text = f"{by} before the zero pulse, homing (order {number}) is aborted; {reference}"
             self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
 
     @staticmethod
     def _has_effect(command: str, *, new_procedure: bool, turned: bool) -> bool:
-        """False for the gear in use and a speed at rest: they take the spindle away from nobody."""
+        """False for the gear in use and a speed at a standstill: they take the spindle from no source."""
         if command == "select_gear":
             return new_procedure
         return command != "set_speed" or turned
@@ -211,7 +213,7 @@ class SpindleUnit(Unit):
                     self._refused.append(Refusal(order.source, error.number, error.message))
 
     def outcome(self, number: int) -> bool | None:
-        """Of a positioning or homing: None while it waits or is in work, then whether it came to its end."""
+        """Outcome of a positioning or homing: None while it waits or is active, then whether it finished."""
         procedure = self.spindle.work.procedure
         in_work = procedure is not None and procedure.number == number
         if in_work or any(order.number == number for order in self._orders.waiting):
@@ -219,12 +221,12 @@ class SpindleUnit(Unit):
         return self.spindle.work.last_done == number
 
     def refusal(self, number: int) -> CncError | None:
-        """Why the last order that was refused in its turn was so, if it is this one."""
+        """The reason why this order was refused at its turn, if it was the last one so refused."""
         refused, error = self._turned_down
         return error if refused == number else None
 
     def do_power(self, cycle: int, *, enabled: bool) -> str | None:
-        """As PowerCommands.do_power; without power nothing waits, and slaves of a spindle in a gear change stop too."""
+        """See PowerCommands.do_power; without power nothing waits; slaves of a spindle in a gear change stop too."""
         if not enabled:
             self._tell_overtaken(cycle, "power off")
             self._orders.clear()
@@ -233,14 +235,14 @@ class SpindleUnit(Unit):
         return self._power.do_power(cycle, enabled=enabled)
 
     def do_reset(self, cycle: int) -> None:
-        """As PowerCommands.do_reset; what waits is forgotten, and slaves stop too."""
+        """See PowerCommands.do_reset; waiting commands are dropped, and slaves stop too."""
         self._tell_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
         self._orders.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
-        """As CouplingCommands.do_decouple; what waits because the master was told so is forgotten."""
+        """See CouplingCommands.do_decouple; waiting commands that came through the master are dropped."""
         message = self._coupling.do_decouple(cycle, owner=owner)
         if message is None:
             self._orders.leave_master(self._coupling.owner)
@@ -262,7 +264,7 @@ class SpindleUnit(Unit):
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> SpindleBlock:
-        """Computes one block; a slave carries out first what its master does from this block on."""
+        """Computes one block; a slave first carries out the commands of its master for this block."""
         first_cycle, count = tick
         master = inputs.get(self._coupling.master)
         if isinstance(master, SpindleBlock):
@@ -282,7 +284,7 @@ class SpindleUnit(Unit):
         return block
 
     def _follow(self, cycle: int, master: SpindleBlock) -> None:
-        """Carries out what the master does; after an error of the master and without its power nothing waits."""
+        """Carries out the commands of the master; after an error of the master and without its power nothing waits."""
         spindle = self.spindle
         for command in master.commands:
             if can_follow(spindle):
@@ -297,7 +299,7 @@ class SpindleUnit(Unit):
             spindle.fault(cycle, MASTER_IN_ERROR, reason)
 
     def _stays_behind(self, cycle: int, command: Command) -> None:
-        """A slave without power: who has commanded its master hears of it."""
+        """A slave without power: whoever has commanded its master is notified."""
         reason = f"cannot carry out '{command.command}' of its master {self._coupling.master}"
         text = f"spindle {self.name}: {reason}: the spindle is in Disabled; give it power first; nothing was changed"
         self._report(Severity.ERROR, cycle, SLAVE_CANNOT, text)
@@ -305,7 +307,7 @@ class SpindleUnit(Unit):
             self._refused.append(Refusal(command.arguments["source"], SLAVE_CANNOT, text))
 
     def _do_as_master(self, cycle: int, command: Command) -> None:
-        """During a gear change of the slave the command waits; a stop forgets what waits."""
+        """During a gear change of the slave the command waits; a stop drops what waits."""
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
         source = arguments.pop("source", "")
         order = Order(name, arguments, "", master_source=source)
@@ -318,7 +320,7 @@ class SpindleUnit(Unit):
         self._act_as_slave(cycle, order)
 
     def _act_as_slave(self, cycle: int, order: Order) -> None:
-        """What the slave cannot do is an error."""
+        """A command that the slave cannot carry out is an error."""
         self._orders.obey(order)
         try:
             self._group_handler(order.command)(cycle, **order.arguments)
@@ -329,7 +331,7 @@ class SpindleUnit(Unit):
 
 
 def why_it_stays(block: SpindleBlock) -> str:
-    """Why a spindle that is to move does not get there; empty while it goes on by itself."""
+    """The reason why a commanded spindle cannot finish without help; empty while it can."""
     if held_by_override(block):
         return "it is held by override 0"
     steady = block.state[-1] == S.CONTINUOUS_MOTION and block.set_acceleration_deg_s2[-1] == 0.0

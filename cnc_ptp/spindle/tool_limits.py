@@ -1,4 +1,4 @@
-"""What a spindle may do: limits of the gear, narrowed by those of the tool (TF5200 spindle 2.8.5)."""
+"""Limits of a spindle: those of the gear, narrowed by those of the tool (TF5200 spindle 2.8.5)."""
 
 from __future__ import annotations
 
@@ -44,6 +44,6 @@ class SpindleLimits:
         return copysign(min(max(abs(speed), self.min_speed), self.max_speed), speed)
 
     def positioning(self, speed: float) -> PositioningLimits:
-        """Limits of a positioning at `speed`; the minimum of the tool does not count there."""
+        """Limits of a positioning at `speed`; the minimum of the tool is not applied there."""
         used = min(speed, self.max_positioning_speed)
         return PositioningLimits(used, self.acceleration, self.deceleration, self.ramp)

@@ -1,6 +1,6 @@
-"""The states of a spindle and every way from one to another (PLCopen); `Spindle.take` alone changes the state.
+"""The states of a spindle and all transitions between them (PLCopen); only `Spindle.take` changes the state.
 
-docs/spindles.md shows the diagram that is drawn from this table.
+docs/spindles.md shows the diagram drawn from this table.
 """
 
 from __future__ import annotations

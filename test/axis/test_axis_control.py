@@ -345,7 +345,7 @@ def test_feedforward_without_room_is_a_warning_with_number_and_text() -> None:
     assert [event.severity for event in bench.events] == [Severity.WARNING]
     assert bench.event_texts() == [
         "P-ERR-23061 axis x: feedforward waits: at 500 mm/s there is no room up to 500 mm/s (P-AXIS-00212) to make up the "
-        f"following error; {bench.last.feedforward_percent[-1]:g} % act, the rest does when the motion is slower"
+        f"following error; {bench.last.feedforward_percent[-1]:g} % is active, the rest follows when the motion is slower"
     ]
 
 

@@ -150,7 +150,7 @@ def test_it_stands_at_the_soft_limit_and_says_so(velocity: float, limit: float, 
     assert max(abs(p) for p in positions) <= abs(limit) * (1.0 + 1e-12)
     name, parameter = ("positive", "P-AXIS-00178") if velocity > 0.0 else ("negative", "P-AXIS-00177")
     assert bench.event_texts() == [
-        f"P-ERR-23070 axis x: the jog has come to the {name} soft limit {limit} mm ({parameter}); the axis stands"
+        f"P-ERR-23070 axis x: the jog has reached the {name} soft limit {limit} mm ({parameter}); the axis stands"
     ]
     assert [event.severity for event in bench.events] == [1]
     assert_axis_smooth(bench, acceleration=A, jerk=J)
@@ -239,7 +239,7 @@ def test_a_compensation_comes_to_rest_after_the_jog_has_come_to_the_limit(sign: 
     name, parameter = ("positive", "P-AXIS-00178") if sign > 0.0 else ("negative", "P-AXIS-00177")
     (text,) = bench.event_texts()
     assert text == (
-        f"P-ERR-23070 axis x: the jog has come to the {name} soft limit {sign * 1000.0} mm ({parameter}); the axis "
+        f"P-ERR-23070 axis x: the jog has reached the {name} soft limit {sign * 1000.0} mm ({parameter}); the axis "
         f"stands at {motion(bench)[-1][0]:g} mm"
     )
     assert bench.accepted("jog", velocity=sign * 20.0) == "" and bench.accepted("stop") == ""
@@ -269,8 +269,8 @@ def test_a_jog_below_external_setpoints_ends_once_at_the_limit() -> None:
     bench.accepted("external_enable", mode="relative")
     bench.run(2500)
     assert bench.event_texts() == [
-        "P-ERR-23070 axis x: the jog has come to the positive soft limit 300.0 mm (P-AXIS-00178); external "
-        "setpoints have the axis now"
+        "P-ERR-23070 axis x: the jog has reached the positive soft limit 300.0 mm (P-AXIS-00178); external "
+        "setpoints move the axis now"
     ]
     assert bench.state == S.CONTINUOUS_MOTION and motion(bench)[-1] == (300.0, 0.0, 0.0)
     assert bench.last.status_bits[-1] & (StatusBit.HAS_JOB | StatusBit.EXT_SETPOINT) == StatusBit.EXT_SETPOINT
@@ -373,7 +373,7 @@ def test_a_scenario_runs_as_long_as_its_jog() -> None:
     forgotten = "[{at: 0, to: c, do: jog, velocity: -90}]"
     aborted = MachineBench(scenario=forgotten, machine=PTP).run()
     assert aborted.errors() == [
-        "P-ERR-22014 plc plc: axis c drives on without an end, but the scenario is through; everything is stopped and the "
+        "P-ERR-22014 plc plc: axis c moves endlessly, but the scenario is finished; everything is stopped and the "
         "run ends"
     ]
     endless = MachineBench(scenario=forgotten, machine=PTP).run(20.0)

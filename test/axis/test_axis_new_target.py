@@ -167,7 +167,7 @@ def test_another_stop_takes_it_back(again: str) -> None:
         each.run(50)
     bench.accepted("new_target", target=0.0)
     bench.run(50)
-    assert bench.accepted(again) == f"axis x: {again} takes the new target back; the axis stops"
+    assert bench.accepted(again) == f"axis x: {again} cancels the waiting new target; the axis stops"
     bench.run(1000)
     undisturbed.run(1050)
     assert bench.columns() == undisturbed.columns() and bench.state == S.STANDSTILL

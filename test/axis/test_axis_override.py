@@ -23,7 +23,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 
 JOB = StatusBit.HAS_JOB
-IDLE = "axis x: override {} % does not change the motion in work ({})"
+IDLE = "axis x: override {} % does not change the active motion ({})"
 OUT_OF_REACH = "brake phase or level out of reach"
 
 # ---------------------------------------------------------------- override
@@ -126,7 +126,7 @@ def test_override_in_the_brake_phase_counts_for_the_next_start_only(kind: int, p
         each.run(700)
     warning = bench.accepted("set_override", percent=percent)
     assert warning == (
-        f"axis x: override {percent} % does not change the motion in work (brake phase or level out of reach)"
+        f"axis x: override {percent} % does not change the active motion (brake phase or level out of reach)"
     )
     bench.run(100)
     bench.accepted("set_override", percent=50.0)
@@ -174,7 +174,7 @@ def test_a_level_out_of_reach_keeps_the_old_table_or_takes_the_highest_that_is_l
         assert 400.0 < max(bench.column("set_velocity")) < V
         assert time_of_arrival(bench) < time_of_arrival(undisturbed)
     else:
-        reason = "does not change the motion in work (brake phase or level out of reach)"
+        reason = "does not change the active motion (brake phase or level out of reach)"
         assert warning == f"axis x: override 100.0 % {reason}"
         assert bench.column("set_position") == undisturbed.column("set_position")
     assert bench.column("set_position")[-1] == 1000.0

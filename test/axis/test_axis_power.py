@@ -210,7 +210,7 @@ def test_a_channel_that_lets_the_axis_go_while_it_moves() -> None:
     on_path(bench)
     bench.run(500)
     assert bench.event_texts() == [
-        "P-ERR-23009 axis x: the channel let the axis go while it moved; the axis stops on its own ramp (ErrorStop)"
+        "P-ERR-23009 axis x: the channel released the axis while it moved; the axis stops on its own ramp (ErrorStop)"
     ]
     assert_axis_smooth(bench.blocks[2:], acceleration=5000.0, jerk=50_000.0)
 

@@ -60,7 +60,10 @@ REFUSALS: Texts = {
         "the axis is in {state}, it must be in Standstill or jogging",
     ),
     **refused(
-        23027, (*MOVES, "jog"), EXTERNAL, "external setpoints are enabled; a PTP start beside them is not permitted"
+        23027,
+        (*MOVES, "jog"),
+        EXTERNAL,
+        "external setpoints are enabled; a PTP start is not permitted at the same time",
     ),
     **refused(23005, STOPS, ("on_path",), "the channel path moves the axis; use feed_hold or reset of the channel"),
     **refused(
@@ -73,7 +76,7 @@ REFUSALS: Texts = {
         23014,
         REDIRECTIONS,
         (*AT_REST, "external", "on_path", *IN_ERROR),
-        "no positioning is in work (the axis is in {state}); start one",
+        "no positioning is active (the axis is in {state}); start one",
     ),
     **refused(23005, REDIRECTIONS, ("powered_off_in_motion",), "the enable was removed"),
     **refused(23015, REDIRECTIONS, ("compensating",), "a position compensation is active"),
@@ -81,7 +84,7 @@ REFUSALS: Texts = {
         23021,
         ("compensation_start",),
         (*AT_REST, "external", "on_path", *IN_ERROR),
-        "no basic motion is in work (the axis is in {state})",
+        "no basic motion is active (the axis is in {state})",
     ),
     **refused(
         23020,
@@ -108,14 +111,14 @@ REFUSALS: Texts = {
         23026,
         ENABLES[:1],
         ("on_path",),
-        "absolute setpoints beside the path of a channel are not permitted; use relative",
+        "absolute setpoints are not permitted on the path of a channel; use relative",
     ),
     **refused(23005, ENABLES, ("stopping", "waiting"), "the axis is in {state}"),
     **refused(
         23026,
         ENABLES[:1],
         (*PTP_MOTION[:-1], *JOGGING),
-        "absolute setpoints beside a PTP motion are not permitted; use relative",
+        "absolute setpoints are not permitted during a PTP motion; use relative",
     ),
     **refused(
         23025,
@@ -126,7 +129,7 @@ REFUSALS: Texts = {
     **refused(23025, ENABLES[1:], ("external",), "external setpoints are enabled as absolute; relative does not match"),
     **refused(23008, ("reset",), ("error_ramp",), "the axis still moves on its error ramp; wait for standstill"),
 }
-OVERRIDE_IDLE = "override 60.0 % does not change the motion in work"
+OVERRIDE_IDLE = "override 60.0 % does not change the active motion"
 IGNORED = "P-WARN-23031 axis x: external_setpoints ignored: external setpoints are not enabled"
 WARNINGS: Texts = {
     **warned(
@@ -137,7 +140,7 @@ WARNINGS: Texts = {
     **warned(("power off",), ("disabled", "powered_off_in_motion"), "power is off already"),
     **warned(STOPS, (*AT_REST, *IN_ERROR), "{command} without effect in {state}"),
     **warned(STOPS[:2], ("stopping", "powered_off_in_motion"), "{command} without effect in {state}"),
-    **warned(STOPS, ("waiting",), "{command} takes the new target back; the axis stops"),
+    **warned(STOPS, ("waiting",), "{command} cancels the waiting new target; the axis stops"),
     **warned(("set_override",), ("halting", "jog_ended", *STOPPED), f"{OVERRIDE_IDLE} (the axis stops)"),
     **warned(("set_override",), ("braking",), f"{OVERRIDE_IDLE} (brake phase or level out of reach)"),
     **warned(REDIRECTIONS, ("stopping", "waiting"), "{command} waits for the end of the stop"),

@@ -94,7 +94,7 @@ def test_override_does_not_change_a_stop() -> None:
         each.accepted("stop")
         each.run(50)
     assert bench.accepted("set_override", percent=10.0) == (
-        "axis x: override 10.0 % does not change the motion in work (the axis stops)"
+        "axis x: override 10.0 % does not change the active motion (the axis stops)"
     )
     for each in (bench, undisturbed):
         each.run(1000)
@@ -136,7 +136,7 @@ def test_after_a_halt_a_start_is_possible_and_a_new_target_is_not() -> None:
     bench = started(3000.0, 700)
     bench.accepted("halt")
     run_to_standstill(bench)
-    assert "no positioning is in work (the axis is in Standstill)" in bench.refused("new_target", target=0.0)
+    assert "no positioning is active (the axis is in Standstill)" in bench.refused("new_target", target=0.0)
     start(bench, 0.0)
     run_to_standstill(bench)
     assert bench.column("set_position")[-1] == 0.0
@@ -292,7 +292,7 @@ def test_an_emergency_stop_takes_a_waiting_target_back_and_makes_the_ramp_strong
     bench.accepted("stop")
     bench.accepted("new_target", target=0.0)
     bench.run(200)
-    taken_back = "axis x: emergency_stop takes the new target back; the axis stops"
+    taken_back = "axis x: emergency_stop cancels the waiting new target; the axis stops"
     p, v, a = motion(bench)[-1]
     p, v = p + v * CYCLE_TIME + 0.5 * a * CYCLE_TIME**2, v + a * CYCLE_TIME
     assert bench.accepted("emergency_stop", deceleration=40_000.0, jerk=1e7) == taken_back
@@ -309,7 +309,7 @@ def test_what_was_corrected_is_told_with_the_target_that_was_taken_back() -> Non
     bench.accepted("new_target", target=0.0)
     assert bench.accepted("emergency_stop", deceleration=4000.0, jerk=1e6) == (
         WARNING + correction("deceleration", 4000.0, A) + "; "
-        "axis x: emergency_stop takes the new target back; the axis stops"
+        "axis x: emergency_stop cancels the waiting new target; the axis stops"
     )
 
 

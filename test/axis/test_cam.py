@@ -215,7 +215,7 @@ def test_slave_offset_that_does_not_fit_is_told_and_nothing_begins() -> None:
     cam = coupling(COSINE, slave_offset=7.0)
     with pytest.raises(CncError) as caught:
         cam.follow(7.5, sweep(180.0, 0.0, 0.01))
-    text = "the cam table has the slave at 107 with its slave_offset, the axis is at 7.5"
+    text = "the cam table puts the slave at 107 with its slave_offset, the axis is at 7.5"
     assert (caught.value.number, caught.value.message) == (23053, text)
     assert cam.follow(107.0, sweep(180.0, 0.0, 0.01))[0][0] == 107.0
 

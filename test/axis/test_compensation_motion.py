@@ -130,7 +130,7 @@ def test_a_length_beyond_the_target_is_cut_to_the_rest_of_the_way() -> None:
     """At 1000 ms the axis is at 1500 mm, 8500 mm before its target: those 8500 mm are used, over 4.25 s."""
     bench = moving_axis()
     assert compensate(bench, length=20_000.0, difference=100.0) == (
-        "P-WARN-23023 axis x: compensation_start: length 20000 mm is more than the rest of the way; 8500 mm is used"
+        "P-WARN-23023 axis x: compensation_start: length 20000 mm is more than the distance to go; 8500 mm is used"
     )
     settle(bench)
     t = np.arange(4001) * CYCLE_TIME  # up to the begin of the basic motion's brake phase
@@ -146,7 +146,7 @@ def test_a_length_beyond_the_target_is_cut_to_the_rest_of_the_way() -> None:
 def test_both_cuts_in_one_warning() -> None:
     bench = moving_axis(target=3000.0)
     assert compensate(bench, difference=1e4) == (
-        "P-WARN-23023 axis x: compensation_start: length 4000 mm is more than the rest of the way; 1500 mm is used; "
+        "P-WARN-23023 axis x: compensation_start: length 4000 mm is more than the distance to go; 1500 mm is used; "
         "difference 10000 mm cannot be reached over 1500 mm; 93.75 mm is used"  # T = 0.75 s: T²/0.006
     )
 

@@ -241,31 +241,31 @@ def test_a_soft_limit_on_the_way_stops_the_axis() -> None:
 
 def test_no_motion() -> None:
     bench = axis_bench()
-    assert refusal(bench) == "23021 no basic motion is in work (the axis is in Standstill)"
+    assert refusal(bench) == "23021 no basic motion is active (the axis is in Standstill)"
     assert_untouched(bench, axis_bench(), 100)
 
 
 def test_disabled() -> None:
-    assert refusal(axis_bench(powered_at_start=False)) == "23021 no basic motion is in work (the axis is in Disabled)"
+    assert refusal(axis_bench(powered_at_start=False)) == "23021 no basic motion is active (the axis is in Disabled)"
 
 
 def test_after_the_motion() -> None:
     bench = settle(moving_axis(target=100.0))
-    assert refusal(bench) == "23021 no basic motion is in work (the axis is in Standstill)"
+    assert refusal(bench) == "23021 no basic motion is active (the axis is in Standstill)"
 
 
 def test_error_stop() -> None:
     bench = moving_axis()
     bench.accepted("upstream_lost", source="plc")
     bench.run(10)
-    assert refusal(bench) == "23021 no basic motion is in work (the axis is in ErrorStop)"
+    assert refusal(bench) == "23021 no basic motion is active (the axis is in ErrorStop)"
 
 
 def test_external_setpoints_alone_are_no_basic_motion() -> None:
     bench = axis_bench()
     bench.accepted("external_enable", mode="absolute")
     bench.run(10)
-    assert refusal(bench) == "23021 no basic motion is in work (the axis is in ContinuousMotion)"
+    assert refusal(bench) == "23021 no basic motion is active (the axis is in ContinuousMotion)"
 
 
 @pytest.mark.parametrize("command", ["stop", "halt"])

@@ -75,7 +75,7 @@ def test_enable_on_the_path_of_a_channel() -> None:
 def test_only_relative_beside_a_ptp_motion() -> None:
     bench, twin = moving_axis(), moving_axis()
     assert refusal(bench, "external_enable", mode="absolute") == (
-        "23026 absolute setpoints beside a PTP motion are not permitted; use relative"
+        "23026 absolute setpoints are not permitted during a PTP motion; use relative"
     )
     for each in (bench, twin):
         each.run(1000)
@@ -126,7 +126,7 @@ def test_a_target_beyond_the_soft_limits(mode: str, target: float, text: str) ->
 def test_no_ptp_start_beside_external_setpoints(command: str, arguments: dict[str, float], mode: str) -> None:
     bench = external_axis(mode)
     assert refusal(bench, command, **arguments) == (
-        "23027 external setpoints are enabled; a PTP start beside them is not permitted"
+        "23027 external setpoints are enabled; a PTP start is not permitted at the same time"
     )
 
 
@@ -149,10 +149,10 @@ FIELDS = "cycle, position, velocity, acceleration, direction"
         ([[20, 0.0, 0.0, 0.0]], f"a setpoint needs {FIELDS}; [20, 0.0, 0.0, 0.0] has 4 values"),
         ([[]], f"a setpoint needs {FIELDS}; [] has 0 values"),
         ([[20, 0, 0, 0, 1, 1]], f"a setpoint needs {FIELDS}; [20, 0, 0, 0, 1, 1] has 6 values"),
-        ([20], f"a setpoint needs {FIELDS}; 20 is no list of them"),
-        ([None], f"a setpoint needs {FIELDS}; None is no list of them"),
-        (["abcde"], f"a setpoint needs {FIELDS}; 'abcde' is no list of them"),
-        ([{"cycle": 1}], f"a setpoint needs {FIELDS}; {{'cycle': 1}} is no list of them"),
+        ([20], f"a setpoint needs {FIELDS}; 20 is not a list of them"),
+        ([None], f"a setpoint needs {FIELDS}; None is not a list of them"),
+        (["abcde"], f"a setpoint needs {FIELDS}; 'abcde' is not a list of them"),
+        ([{"cycle": 1}], f"a setpoint needs {FIELDS}; {{'cycle': 1}} is not a list of them"),
         ([[20, float("nan"), 0, 0, 1]], "position = nan is not a number within ±1e+12"),
         ([[20, 0, float("inf"), 0, 1]], "velocity = inf is not a number within ±1e+12"),
         ([[20, 0, 0, float("-inf"), 1]], "acceleration = -inf is not a number within ±1e+12"),
@@ -163,8 +163,8 @@ FIELDS = "cycle, position, velocity, acceleration, direction"
         ([[20, 0, None, 0, 1]], "velocity = None is not a number within ±1e+12"),
         ([[20.5, 0, 0, 0, 1]], "cycle = 20.5 is not a whole number from 0 on"),
         ([[-1, 0, 0, 0, 1]], "cycle = -1 is not a whole number from 0 on"),
-        ([[20, 0, 0, 0, 2]], "setpoint of cycle 20: direction = 2 is none of -1, 0, 1"),
-        ([[20, 0, 0, 0, 0.5]], "setpoint of cycle 20: direction = 0.5 is none of -1, 0, 1"),
+        ([[20, 0, 0, 0, 2]], "setpoint of cycle 20: direction = 2 is not one of -1, 0, 1"),
+        ([[20, 0, 0, 0, 0.5]], "setpoint of cycle 20: direction = 0.5 is not one of -1, 0, 1"),
         ([[20, 0, 0, 0, 1], [20, 0, 0, 0, 1]], "setpoint of cycle 20: comes after cycle 20; cycles must ascend"),
         ([[20, 0, 0, 0, 1], [19, 0, 0, 0, 1]], "setpoint of cycle 19: comes after cycle 20; cycles must ascend"),
         (
@@ -291,7 +291,7 @@ def test_the_sum_above_the_maximum(sign: float) -> None:
     feed(bench, generator(sign * 300.0, first_cycle=1000, velocity=1000.0, a=40_000.0), 200)
     (text,) = bench.event_texts()
     assert text == (
-        "P-ERR-23036 axis x: the superposed motions would add up to 2240 mm/s, above the maximum 2210.0 mm/s "
+        "P-ERR-23036 axis x: the superimposed motions would add up to 2240 mm/s, above the maximum 2210.0 mm/s "
         "(P-AXIS-00212); the axis stops on its own ramp (ErrorStop)"
     )
     assert_stops_on_its_ramp(bench, 1007)
@@ -345,7 +345,7 @@ def test_a_first_setpoint_that_is_too_far(mode: str) -> None:
     bench.run(50)
     assert not column(bench, "set_position").any()
     assert bench.event_texts() == [
-        "P-ERR-23033 axis x: external setpoint -10.001 mm is 10.001 mm away, farther than the axis gets at 10000.0 mm/s "
+        "P-ERR-23033 axis x: external setpoint -10.001 mm is 10.001 mm away, more than the axis can move in a cycle at 10000.0 mm/s "
         "(P-AXIS-00212); the axis stops on its own ramp (ErrorStop)"
     ]
     assert bench.column("state")[12] == S.ERROR_STOP

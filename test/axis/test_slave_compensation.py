@@ -292,7 +292,7 @@ def test_a_slave_whose_master_becomes_faster_never_gets_above_its_maximum() -> N
     bench.do("x", "new_velocity_and_target", velocity=2100.0, target=20_000.0, activation_position=0.0)
     bench.settle()
     text = bench.errors()[0]
-    assert text.startswith("P-ERR-23036 axis y: the superposed motions would add up to 220")
+    assert text.startswith("P-ERR-23036 axis y: the superimposed motions would add up to 220")
     v = bench.values("y", "set_velocity")
     assert 2190.0 < np.abs(v).max() <= 2200.0
     assert (np.abs(np.diff(v)) <= 7000.0 * 0.001 * (1.0 + 1e-9)).all()

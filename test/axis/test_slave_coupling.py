@@ -327,10 +327,10 @@ def test_a_start_in_the_same_block_counts_in_the_order_of_the_commands() -> None
     records = bench.send_all([couple("y", 1.0), start(), couple("z", 1.0), couple("c", 1.0, "y")])
     assert [record.accepted for record in records] == [True, True, False, False]
     assert records[2].message == (
-        "axis z: couple refused: the master x moves; both axes must stand; nothing was changed"
+        "axis z: couple refused: the master x moves; both axes must be at a standstill; nothing was changed"
     )
     assert records[3].message == (
-        "axis c: couple refused: the master y moves; both axes must stand; nothing was changed"
+        "axis c: couple refused: the master y moves; both axes must be at a standstill; nothing was changed"
     )
 
 
@@ -389,7 +389,7 @@ def test_factors_that_multiply_out_of_all_range_are_an_error_and_no_crash(factor
     bench.send_all([start()])
     bench.run(0.1)
     assert bench.errors()[:2] == [
-        "P-ERR-23002 axis z: its setpoints as a slave of y are out of all range; the axis stops on its own ramp (ErrorStop)",
+        "P-ERR-23002 axis z: its setpoints as a slave of y are out of range; the axis stops on its own ramp (ErrorStop)",
         "P-ERR-23056 axis x: axis z of its group has error 23002; the axis stops on its own ramp (ErrorStop)",
     ]
     assert set(bench.column("z", "set_position")) == set(bench.column("c", "set_position")) == {0.0}
@@ -406,7 +406,7 @@ LOCKED = {
         {"deceleration": 20_000.0, "jerk": 500_000.0},
         "23040 axis y: emergency_stop refused: the axis is a slave of x; stop x or decouple the axis",
     ),
-    "new_target": ({"target": 5.0}, "23014 axis y: new_target refused: no positioning is in work (the axis is in SynchronizedMotion); start one"),
+    "new_target": ({"target": 5.0}, "23014 axis y: new_target refused: no positioning is active (the axis is in SynchronizedMotion); start one"),
     "external_enable": ({"mode": "relative"}, "23030 axis y: external_enable refused: x is the master of the axis"),
     "couple": ({"master": "z", "factor": 1.0}, "23044 axis y: couple refused: the axis is in SynchronizedMotion, it must be in Standstill"),
 }  # fmt: skip

@@ -132,7 +132,7 @@ def test_flying_saw_that_cannot_be_is_told_and_the_axis_stays_free(
         bench.run(0.69)  # 900 mm
     saw(bench, **changes)
     events = [(event.severity, event.error_id, event.text) for event in bench.events]
-    assert events == [(1, 23051, f"axis y: cannot follow x: {reason}; the axis stands, it is not coupled")]
+    assert events == [(1, 23051, f"axis y: cannot follow x: {reason}; the axis stands and is not coupled")]
     assert bench.state("y") == S.STANDSTILL
     assert bench.values("y").tolist() == [0.0] * bench.cycle
     bench.run(0.02)
@@ -175,7 +175,7 @@ def test_cam_with_slave_offset_is_told_when_the_slave_stands_elsewhere() -> None
     bench = SlaveBench()
     bench.do("y", "couple_cam", master="x", table=COSINE, slave_offset=7.0)
     text = (
-        "axis y: cannot follow x: the cam table has the slave at 7 with its slave_offset, the axis is at 0; "
+        "axis y: cannot follow x: the cam table puts the slave at 7 with its slave_offset, the axis is at 0; "
         "the axis stands, it is not coupled"
     )
     assert [(event.error_id, event.text) for event in bench.events] == [(23053, text)]

@@ -152,9 +152,11 @@ REFUSALS: Texts = {
         23014,
         REDIRECTIONS,
         (*SLAVES, *IN_ERROR, "master"),
-        "no positioning is in work (the axis is in {state}); start one",
+        "no positioning is active (the axis is in {state}); start one",
     ),
-    **refused(23021, ("compensation_start",), ("slave", "held_slave"), "the basic motion of the slave stands"),
+    **refused(
+        23021, ("compensation_start",), ("slave", "held_slave"), "the basic motion of the slave is at a standstill"
+    ),
     **refused(
         23019,
         ("compensation_start",),
@@ -162,7 +164,7 @@ REFUSALS: Texts = {
         "a position compensation is active; it cannot be started again",
     ),
     **refused(
-        23021, ("compensation_start",), (*IN_ERROR, "master"), "no basic motion is in work (the axis is in {state})"
+        23021, ("compensation_start",), (*IN_ERROR, "master"), "no basic motion is active (the axis is in {state})"
     ),
     **refused(
         23020, ("compensation_start",), ("stopping_pseudo_master",), "the axis is stopping or in its brake phase"
@@ -174,7 +176,7 @@ REFUSALS: Texts = {
         23026,
         ENABLES[:1],
         ("pseudo_master", "held_pseudo_master", "pseudo_master_with_target", "moving_master"),
-        "absolute setpoints beside a PTP motion are not permitted; use relative",
+        "absolute setpoints are not permitted during a PTP motion; use relative",
     ),
     **refused(23008, ("reset",), ("slave_on_its_ramp",), "the axis still moves on its error ramp; wait for standstill"),
     **refused(

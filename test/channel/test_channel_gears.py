@@ -158,7 +158,7 @@ def test_a_speed_beyond_every_gear_is_refused_before_anything_moves() -> None:
         0.1
     )
     assert bench.refusals() == [
-        "P-ERR-21069 test.nc line 3 column 1 'S8000 M3': speed 8000 rpm of spindle S lies in no gear stage "
+        "P-ERR-21069 test.nc line 3 column 1 'S8000 M3': speed 8000 rpm of spindle S is in no gear stage "
         "(P-CHAN-00058, P-CHAN-00055): M40 50 to 560 rpm, M41 400 to 800 rpm, M42 700 to 3500 rpm, "
         "M43 3501 to 4000 rpm, M44 3800 to 5500 rpm, M45 5400 to 7000 rpm"
     ]
@@ -220,7 +220,7 @@ def test_a_tool_without_a_record_is_told() -> None:
     assert [(event.error_id, event.text, event.line) for event in bench.events if event.error_id == 22027] == [
         (
             22027,
-            "channel channel: D7 in line 3 has no record wz[7] in the machine file, nothing of the tool counts. "
+            "channel channel: D7 in line 3 has no record wz[7] in the machine file, no data of the tool apply. "
             "Known: D1, D2",
             3,
         )

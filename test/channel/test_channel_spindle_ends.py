@@ -254,7 +254,7 @@ def test_a_slave_that_others_have_decoupled_gets_its_functions_itself() -> None:
     given = [command for command, _ in told(bench, "t") if command != "coupling_answer"]
     assert given == ["couple", "decouple", "stop"]
     assert stands(bench, "s", "t") and notes(bench) == [
-        "channel channel: spindle t does not follow s any more, others have decoupled it; the program goes on"
+        "channel channel: spindle t no longer follows s, others have decoupled it; the program continues"
     ]
 
 
@@ -277,7 +277,7 @@ def test_a_coupling_belongs_to_the_channel_that_was_first() -> None:
     couplings = [(cycle, block.master) for block in bench.blocks["t"] for cycle in [block.first_cycle]]
     assert {master for cycle, master in couplings if 100 < cycle < 2000} == {"s"} and couplings[-1][1] == ""
     refusals = [record.message for record in bench.records if record.command == "decouple"]
-    assert "spindle t: decouple without effect, it was not 'second' who has coupled it" in refusals
+    assert "spindle t: decouple without effect, it was not coupled by 'second'" in refusals
     assert bench.column("t", "set_speed_rpm")[1900] == 600.0 and stands(bench, "s", "t")
 
 

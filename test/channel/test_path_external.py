@@ -127,7 +127,7 @@ def test_a_program_is_done_when_the_channel_knows_where_its_axes_are() -> None:
     assert [b.done for b in alone.blocks["channel"]].index(True) == active.index(False) - 1
 
 
-NOT_AT_END = "axis x was moved away from the end of the path before"
+NOT_AT_END = "axis x was moved away from the end of the previous path"
 
 
 def test_a_start_before_that_is_refused() -> None:
@@ -137,7 +137,7 @@ def test_a_start_before_that_is_refused() -> None:
     while bench.last("channel").path_active:
         bench.run(0.01)
     assert bench.refused("channel", "start") == (
-        f"P-ERR-22004 channel channel: start refused: {NOT_AT_END}; try again when the program is done; "
+        f"P-ERR-22004 channel channel: start refused: {NOT_AT_END}; try again when the program is finished; "
         "nothing was changed"
     )
     bench.run(0.02)
@@ -260,7 +260,7 @@ def test_a_jump(cycle: int) -> None:
     bench.accepted("x", "external_enable", mode="relative")
     assert bench.give("x", "external_setpoints", setpoints=[[cycle, 3.0, 0.0, 0.0, 1]]).accepted
     bench.run(0.5)
-    text = "external setpoint 3.0 mm is 3 mm away, farther than the axis gets at 500.0 mm/s (P-AXIS-00212)"
+    text = "external setpoint 3.0 mm is 3 mm away, more than the axis can move in a cycle at 500.0 mm/s (P-AXIS-00212)"
     assert_stops(bench, text, 23033)
 
 
@@ -284,7 +284,7 @@ def test_the_sum_above_the_largest_velocity() -> None:
     event = next(event for event in bench.events if event.severity == 2)
     speed = event.text.split("up to ")[1].split(" mm/s")[0]
     assert 65.0 < float(speed) < 66.0 or speed == "65"
-    limit = f"the superposed motions would add up to {speed} mm/s, above the maximum 65.0 mm/s (P-AXIS-00212)"
+    limit = f"the superimposed motions would add up to {speed} mm/s, above the maximum 65.0 mm/s (P-AXIS-00212)"
     assert_stops(bench, limit, 23036)
 
 

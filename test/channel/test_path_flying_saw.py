@@ -163,7 +163,7 @@ REFUSED = {
     "compensation_start": (
         {"length": 10.0, "difference": 1.0, "process_velocity": 10.0, "velocity_increase": 5.0},
         "23021",
-        "no basic motion is in work (the axis is in SynchronizedMotion)",
+        "no basic motion is active (the axis is in SynchronizedMotion)",
     ),
 }
 
@@ -199,7 +199,7 @@ def test_a_saw_that_comes_too_late_is_a_fault() -> None:
     bench.run(0.5)
     reason = bench.errors()[0].split("on top of the path: ")[1]
     assert bench.errors() == [
-        f"P-ERR-23051 axis x: cannot follow z on top of the path: {reason}",
+        f"P-ERR-23051 axis x: cannot follow z in addition to the path: {reason}",
         f"P-ERR-22012 channel channel: x is in error P-ERR-23051{PATH_STOPS}",
         "P-ERR-23056 axis z: axis x of its group has error 23051" + OWN_RAMP,
     ]

@@ -292,7 +292,7 @@ def test_a_warning_is_told_once_whether_command_or_event_tells_it():
         ("stop", "axis x: stop without effect in Standstill", True),
         ("stop", "axis x: stop without effect in Disabled", True),
         ("stop", "axis y: stop without effect in Standstill", False),
-        ("stop", "axis x: stop takes the new target back; the axis stops", False),
+        ("stop", "axis x: stop cancels the waiting new target; the axis stops", False),
         ("halt", "axis x: halt without effect in Standstill", False),
     ],
 )

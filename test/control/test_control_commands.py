@@ -84,7 +84,9 @@ def test_a_weight_beyond_its_range_is_refused(percent: float, subject: str) -> N
     commands.do_set_feedforward(0, enabled=True, weight_percent=60.0)
     with pytest.raises(CncError) as caught:
         commands.do_set_feedforward(0, enabled=False, weight_percent=percent)
-    text = f"set_feedforward refused: weight_percent = {percent} is no number of 0 or more (G136); nothing was changed"
+    text = (
+        f"set_feedforward refused: weight_percent = {percent} must be a number of 0 or more (G136); nothing was changed"
+    )
     assert str(caught.value) == f"P-ERR-23060 {subject}: {text}"
     assert share(loop) == pytest.approx(0.6)
 

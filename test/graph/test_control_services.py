@@ -30,9 +30,7 @@ def test_feedforward_of_an_axis(client):
         ('{"enabled": false, "weight_percent": 80.0}', True),
         ('{"enabled": true}', True),
     ]
-    text = (
-        "axis x: set_feedforward refused: weight_percent = -0.5 is no number of 0 or more (G136); nothing was changed"
-    )
+    text = "axis x: set_feedforward refused: weight_percent = -0.5 must be a number of 0 or more (G136); nothing was changed"
     client.refused("x", "set_feedforward", 23060, text, enabled=True, weight_percent=-0.5)
 
 

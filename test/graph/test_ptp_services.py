@@ -68,7 +68,7 @@ def test_new_target_and_new_velocity(client):
     client.wait_last("x", lambda block: block.set_velocity[-1] == 1000.0, "the new velocity")
     client.done("x", "new_target", target=0.0)
     stands_at(client, "x", 0.0)
-    text = "axis x: new_target refused: no positioning is in work (the axis is in Standstill); start one"
+    text = "axis x: new_target refused: no positioning is active (the axis is in Standstill); start one"
     client.refused("x", "new_target", 23014, f"{text}; nothing was changed", target=5.0)
 
 

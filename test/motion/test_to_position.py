@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from motion_checker import assert_motions
 from motion_problems import Problem
 
-from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_to_position, plan_to_velocity, stop_way, to_position
+from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_to_position, plan_to_velocity, stopping_distance, to_position
 
 LIMITS = Limits(2000.0, 5000.0, 5000.0, 50000.0)
 
@@ -191,5 +191,5 @@ def test_a_brake_that_is_planned_again_steps_by_a_few_units_in_the_last_place():
     """A gap of 4e-15 of the place was once taken for rounding: 0.8 nm at 100 m. Now it is a motion of its own."""
     limits = Limits(100.0, 1000.0, 1000.0, 10000.0)
     for gap in (3e-10, -3e-10):
-        problem = Problem(1e5, 50.0, 0.0, 1e5 + stop_way(50.0, 0.0, 1000.0, 10000.0) + gap, limits, True)
+        problem = Problem(1e5, 50.0, 0.0, 1e5 + stopping_distance(50.0, 0.0, 1000.0, 10000.0) + gap, limits, True)
         assert_motions([problem], [problem.plan()])

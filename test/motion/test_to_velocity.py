@@ -7,7 +7,7 @@ import random
 import pytest
 import ruckig
 
-from cnc_ptp.motion import Limits, plan_to_velocity, stop_way
+from cnc_ptp.motion import Limits, plan_to_velocity, stopping_distance
 
 LIMITS = Limits(2000.0, 5000.0, 10000.0, 50000.0)
 
@@ -109,7 +109,7 @@ def test_stop_way_is_the_way_of_the_stop_ramp(draw_limits, draw_start):
         a *= draw.choice([1.0, 1.0, 3.0])
         profile = plan_to_velocity(0.0, v, a, 0.0, limits)
         largest = max(abs(row[1]) for row in profile.rows)
-        way = stop_way(v, a, limits.deceleration, limits.jerk)
+        way = stopping_distance(v, a, limits.deceleration, limits.jerk)
         assert way == pytest.approx(profile.end[0], rel=1e-9, abs=1e-9 * largest)
 
 

@@ -103,7 +103,7 @@ def test_automatic_selection_keeps_the_gear_or_takes_the_first_that_fits(
     for speed in speeds:
         fitting = [n for n, (low, high) in enumerate(ranges, start=1) if high and low <= speed <= high]
         if not fitting:
-            with pytest.raises(ProgramError, match=f"speed {speed} rpm of spindle S lies in no gear stage"):
+            with pytest.raises(ProgramError, match=f"speed {speed} rpm of spindle S is in no gear stage"):
                 next(blocks)
             return
         if active not in fitting:

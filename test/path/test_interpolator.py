@@ -342,10 +342,10 @@ def test_refusals():
     interpolator.step(1, T)
     assert refused(lambda: interpolator.start(line_of(10.0), LIMITS)) == (
         "P-ERR-22110 the next element was started 9.99999 mm before the end of the running path element; "
-        "the running one goes on"
+        "the active one continues"
     )
     assert refused(lambda: interpolator.dwell(1.0)) == (
-        "P-ERR-22110 a dwell was started 9.99999 mm before the end of the running path element; the running one goes on"
+        "P-ERR-22110 a dwell was started 9.99999 mm before the end of the running path element; the active one continues"
     )
 
 

@@ -99,7 +99,7 @@ def test_numbers_survive_to_the_bit(cycles: list[int], values: tuple[float, ...]
         (HEADER + "1,0,inf,0,1\n", "2 velocity = inf is not a number within ±1e+12"),
         (HEADER + "1,0,0,-1e13,1\n", "2 acceleration = -10000000000000.0 is not a number within ±1e+12"),
         (HEADER + "-1,0,0,0,1\n", "2 cycle = -1 is not a whole number from 0 on"),
-        (HEADER + "7,0,0,0,2\n", "2 setpoint of cycle 7: direction = 2 is none of -1, 0, 1"),
+        (HEADER + "7,0,0,0,2\n", "2 setpoint of cycle 7: direction = 2 is not one of -1, 0, 1"),
         (
             HEADER + "0,0,0,0,1\n1234567,0,0,0,1\n1234567,0,0,0,1\n",
             "4 cycle 1234567 comes after cycle 1234567; cycles must ascend",
@@ -185,14 +185,14 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     ("setpoints", "reason"),
     [
         ("5", "setpoints = 5 is not a rows"),
-        ("[5]", f"a setpoint needs {COLUMNS}; 5 is no list of them"),
+        ("[5]", f"a setpoint needs {COLUMNS}; 5 is not a list of them"),
         ("[[]]", f"a setpoint needs {COLUMNS}; [] has 0 values"),
         ("[[a, 0, 0, 0, 1]]", "cycle = 'a' is not a number within ±1e+12"),
         ("[[5, .nan, 0, 0, 1]]", "position = nan is not a number within ±1e+12"),
         ("[[5, 0, 0, 0, 1], [5, 0, 0, 0, 1]]", "setpoint of cycle 5: comes after cycle 5; cycles must ascend"),
         (
             "[{1: 2, 2: 3, 3: 4, 4: 5, 5: 6}]",
-            f"a setpoint needs {COLUMNS}; {{1: 2, 2: 3, 3: 4, 4: 5, 5: 6}} is no list of them",
+            f"a setpoint needs {COLUMNS}; {{1: 2, 2: 3, 3: 4, 4: 5, 5: 6}} is not a list of them",
         ),
     ],
 )
@@ -326,7 +326,7 @@ def test_a_bad_file_is_told_before_anything_runs(tmp_path: Path) -> None:
     path = write(tmp_path, MOVE, a=HEADER + "0,0,0,0,9\n")
     done = call("simulate", ROOT / "config" / "ptp.yaml", "--scenario", path, "--record", tmp_path / "r.mcap")
     assert done.exit_code == 2
-    assert "setpoint file a.csv:2: setpoint of cycle 0: direction = 9 is none of -1, 0, 1" in done.output.replace(
+    assert "setpoint file a.csv:2: setpoint of cycle 0: direction = 9 is not one of -1, 0, 1" in done.output.replace(
         "\n", " "
     )
     assert not (tmp_path / "r.mcap").exists()

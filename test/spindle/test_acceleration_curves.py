@@ -121,7 +121,10 @@ def test_seeded_ramps_mirror_each_other_and_join_without_a_step() -> None:
         for segment, following in zip(there.segments, there.segments[1:], strict=False):
             before = there.state_at(math.nextafter(following.start, 0.0))
             assert before[1] == pytest.approx(following.speed[0], rel=1e-11, abs=1e-8)
-            assert before[0] == pytest.approx(following.way[0], rel=1e-12, abs=1e-6) and segment.start < following.start
+            assert (
+                before[0] == pytest.approx(following.position[0], rel=1e-12, abs=1e-6)
+                and segment.start < following.start
+            )
 
 
 def test_a_polynomial_without_coefficients_is_constant() -> None:

@@ -16,7 +16,7 @@ from cnc_ptp.spindle.positioning import (
     next_target,
     plan_positioning,
     shortest_direction,
-    stop_way,
+    stopping_distance,
 )
 from cnc_ptp.spindle.speed_ramp import ConstantRamp
 from cnc_ptp.spindle.speed_table import SpeedTable
@@ -83,7 +83,7 @@ def test_a_fast_spindle_comes_down_along_its_curve_first() -> None:
     target = next_target(0.0, 40_000.0, 90.0, 360.0, 1.0, bound)
     table = plan_positioning(0.0, 40_000.0, target, 1.0, bound)
     assert table is not None and table.end == (target, 0.0, 0.0)
-    assert 0.0 <= target - stop_way(40_000.0, bound) < 360.0
+    assert 0.0 <= target - stopping_distance(40_000.0, bound) < 360.0
     assert table.state_at(0.1)[2] == pytest.approx(-curve.acceleration(table.state_at(0.1)[1]), rel=1e-9)
 
 

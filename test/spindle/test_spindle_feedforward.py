@@ -137,5 +137,5 @@ def test_feedforward_without_room_is_told_in_the_unit_of_rotary_axes(monkeypatch
     spindle.run(30)
     assert spindle.event_texts() == [
         "P-ERR-23061 spindle s: feedforward waits: at 0 deg/s there is no room up to 36000 deg/s (P-AXIS-00212) to make "
-        "up the following error; 0 % act, the rest does when the motion is slower"
+        "up the following error; 0 % is active, the rest follows when the motion is slower"
     ]

@@ -106,7 +106,7 @@ def test_a_rotation_that_is_too_fast_for_the_new_gear_does_not_go_on() -> None:
     each.accepted("select_gear", stage=2)
     each.run(1700)
     assert each.accepted("gear_changed") == (
-        "P-WARN-24029 spindle s: speed 9000 rpm of before is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); the spindle stays at rest"
+        "P-WARN-24029 spindle s: the previous speed 9000 rpm is above the maximum 6000 rpm of gear 2 (P-AXIS-00212); the spindle stays at rest"
     )
     each.run(100)
     assert each.state == S.STANDSTILL and each.column("gear")[-1] == 2
@@ -301,7 +301,7 @@ def test_a_run_that_waits_for_the_gear_for_ever_is_aborted() -> None:
     )
     run = MachineBench(scenario=scenario, machine=replace(machine, spindles={"s": spindle})).run()
     assert run.errors()[0] == (
-        "P-ERR-22014 plc plc: spindle s waits for the PLC to change to gear 2, but the scenario is through; everything is "
+        "P-ERR-22014 plc plc: spindle s waits for the PLC to change to gear 2, but the scenario is finished; everything is "
         "stopped and the run ends"
     )
 

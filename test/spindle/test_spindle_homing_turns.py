@@ -18,13 +18,11 @@ from cnc_ptp.protocol.spindle_states import SpindleBit
 
 WAITS = "P-WARN-24030 spindle s: {} waits until {}"
 HOMED, IN_TURN = "the homing is finished", "the orders before it are carried out"
-NO_REFERENCE, OLD_REFERENCE = "there is no reference point", "the reference point of before counts"
+NO_REFERENCE, OLD_REFERENCE = "there is no reference point", "the previous reference point remains valid"
 
 
 def given_up(by: str, number: int, reference: str = NO_REFERENCE, spindle: str = "s") -> str:
-    return (
-        f"P-ERR-24028 spindle {spindle}: {by} before the zero pulse, homing (order {number}) is given up; {reference}"
-    )
+    return f"P-ERR-24028 spindle {spindle}: {by} before the zero pulse, homing (order {number}) is aborted; {reference}"
 
 
 def unreferenced(**changes: Any) -> UnitBench:

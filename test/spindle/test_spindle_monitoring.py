@@ -21,7 +21,7 @@ def test_a_speed_that_is_not_reached_in_time() -> None:
     bench.run(1000)
     assert bench.events[0].cycle == math.ceil((1000.0 * RPM / UP + 0.25) * 1000.0 - 1e-6)
     assert bench.event_texts() == [
-        "P-ERR-24013 spindle s: speed 1000 rpm was not reached 0.25 s after the setpoint got there (P-AXIS-00217, "
+        "P-ERR-24013 spindle s: speed 1000 rpm was not reached 0.25 s after the setpoint (P-AXIS-00217, "
         "P-MACH-00050); the spindle stops on its ramp (ErrorStop)"
     ]
     assert bench.state == S.ERROR_STOP and not any(bench.column("speed_reached")[:400])
@@ -54,7 +54,7 @@ def test_a_spindle_that_does_not_come_to_rest_in_time(zero_rpm: float) -> None:
         return
     assert bench.events[0].cycle == math.ceil((600.0 * RPM / DOWN + 0.25) * 1000.0 - 1e-6) + 600
     assert bench.event_texts() == [
-        "P-ERR-24013 spindle s: speed 0 rpm was not reached 0.25 s after the setpoint got there (P-AXIS-00216, "
+        "P-ERR-24013 spindle s: speed 0 rpm was not reached 0.25 s after the setpoint (P-AXIS-00216, "
         "P-MACH-00050); the spindle stops on its ramp (ErrorStop)"
     ]
     assert bench.state == S.ERROR_STOP

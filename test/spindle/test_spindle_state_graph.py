@@ -19,7 +19,7 @@ from cnc_ptp.protocol.spindle_states import SpindleBit, SpindleMode
 
 LIMIT = 1000.0 * RPM
 NO_REFERENCE = (
-    "the spindle has no reference point and does not home by itself (P-AXIS-00015 0x100); home it first (G74)"
+    "the spindle has no reference point and does not home automatically (P-AXIS-00015 0x100); home it first (G74)"
 )
 
 

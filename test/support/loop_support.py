@@ -31,7 +31,7 @@ INERTIA = 6.0e-4
 VEL, ACC, JERK, ADD_VEL, ADD_ACC, ADD_JERK = 0x001, 0x002, 0x004, 0x101, 0x202, 0x804
 """Values of P-AXIS-00223 as the manual has them."""
 
-State = tuple[float, float, float, float]
+MotionState = tuple[float, float, float, float]
 Phase = tuple[int, float]
 """Cycles, jerk."""
 
@@ -146,9 +146,9 @@ def loop_with(mode: int, *, on: bool = True, time_constant: float = TA, **change
     return make_loop(parameters, first_order(time_constant))
 
 
-def motion(phases: Iterable[Phase], start: float = 0.0) -> list[State]:
+def motion(phases: Iterable[Phase], start: float = 0.0) -> list[MotionState]:
     """Setpoints of phases of constant jerk, each state in closed form from the begin of its phase."""
-    states: list[State] = []
+    states: list[MotionState] = []
     x, v, a = start, 0.0, 0.0
     for cycles, j in phases:
         for t in (n * T for n in range(cycles)):
@@ -165,7 +165,7 @@ def trapezoid(jerk: float, rise: int, hold: int, cruise: int, rest: int = 300, s
     return [(rise, j), (hold, 0.0), (rise, -j), (cruise, 0.0), (rise, -j), (hold, 0.0), (rise, j), (rest, 0.0)]
 
 
-def run(loop: ControlLoop, setpoints: Sequence[State], *, closed: bool = True) -> list[ControlCycle]:
+def run(loop: ControlLoop, setpoints: Sequence[MotionState], *, closed: bool = True) -> list[ControlCycle]:
     return [loop.step(setpoint, closed) for setpoint in setpoints]
 
 

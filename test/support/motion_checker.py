@@ -15,7 +15,7 @@ import numpy as np
 from motion_problems import Problem
 
 from cnc_ptp.motion import Profile
-from cnc_ptp.motion.limits import NEGLIGIBLE_WAY
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE
 
 RELATIVE = 1e-9
 Array = Any
@@ -61,7 +61,7 @@ def steps(motions: Motions) -> Array:
         RELATIVE * most_a + ulp * motions.jerk,
     )
     found = [
-        (np.abs(end - begin[:, 1:]) / (most + NEGLIGIBLE_WAY)).max(axis=1)
+        (np.abs(end - begin[:, 1:]) / (most + NEGLIGIBLE_DISTANCE)).max(axis=1)
         for end, begin, most in zip(reached, (motions.p, motions.v, motions.a), allowed, strict=True)
     ]
     return np.array(found, dtype=float)

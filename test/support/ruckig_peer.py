@@ -7,7 +7,7 @@ import math
 import ruckig
 from motion_problems import Problem
 
-from cnc_ptp.motion import Limits, stop_way
+from cnc_ptp.motion import Limits, stopping_distance
 
 BRAKE_MARGIN = 2.2e-14
 """What Ruckig shortens its first ramp by where a start is above the limits, in its unit of time."""
@@ -73,7 +73,7 @@ class RuckigPeer:
         """
         way = problem.target - problem.position
         _, v, a, _, limits, direct = problem
-        stop = stop_way(v, a, limits.deceleration, limits.jerk)
+        stop = stopping_distance(v, a, limits.deceleration, limits.jerk)
         s = math.copysign(1.0, way - stop)
         v, a = s * v, s * a
         if v >= 0.0 and (a >= 0.0 or v >= a * a / (2.0 * limits.jerk)):

@@ -279,7 +279,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23035,
         of_x("set_override_type", type=5),
-        "axis x: set_override_type refused: type = 5 is none of 1, 2, 3, 4; nothing was changed",
+        "axis x: set_override_type refused: type = 5 is not one of 1, 2, 3, 4; nothing was changed",
         {"type": 5},
     ),
     (
@@ -291,7 +291,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23014,
         of_x("new_target", target=5.0),
-        "axis x: new_target refused: no positioning is in work (the axis is in Standstill); start one; nothing was "
+        "axis x: new_target refused: no positioning is active (the axis is in Standstill); start one; nothing was "
         "changed",
         {"state": "Standstill"},
     ),
@@ -351,14 +351,14 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23021,
         of_x("compensation_start", **COMPENSATION),
-        "axis x: compensation_start refused: no basic motion is in work (the axis is in Standstill); nothing was "
+        "axis x: compensation_start refused: no basic motion is active (the axis is in Standstill); nothing was "
         "changed",
         {"state": "Standstill"},
     ),
     (
         23021,
         of_y(slave, "compensation_start", **COMPENSATION),
-        "axis y: compensation_start refused: the basic motion of the slave stands; nothing was changed",
+        "axis y: compensation_start refused: the basic motion of the slave is at a standstill; nothing was changed",
         {},
     ),
     (
@@ -378,28 +378,28 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23026,
         of_unit(moving_axis, "external_enable", mode="absolute"),
-        "axis x: external_enable refused: absolute setpoints beside a PTP motion are not permitted; use relative; "
+        "axis x: external_enable refused: absolute setpoints are not permitted during a PTP motion; use relative; "
         "nothing was changed",
         {},
     ),
     (
         23026,
         of_path("external_enable", mode="absolute"),
-        "axis x: external_enable refused: absolute setpoints beside the path of a channel are not permitted; use "
+        "axis x: external_enable refused: absolute setpoints are not permitted on the path of a channel; use "
         "relative; nothing was changed",
         {},
     ),
     (
         23026,
         of_path("external_enable", mode="relative", target=12.5),
-        "axis x: external_enable refused: a target (12.5) beside the path of a channel is not permitted; leave it out; "
+        "axis x: external_enable refused: a target (12.5) is not permitted on the path of a channel; leave it out; "
         "nothing was changed",
         {"target": 12.5},
     ),
     (
         23027,
         of_unit(external, "move_absolute", **MOVE),
-        "axis x: move_absolute refused: external setpoints are enabled; a PTP start beside them is not permitted; "
+        "axis x: move_absolute refused: external setpoints are enabled; a PTP start is not permitted at the same time; "
         "nothing was changed",
         {},
     ),
@@ -481,7 +481,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23045,
         lambda: moving_slave().send("z", "couple", master="x", factor=1.0),
-        "axis z: couple refused: the master x moves; both axes must stand; nothing was changed",
+        "axis z: couple refused: the master x moves; both axes must be at a standstill; nothing was changed",
         {"master": "x"},
     ),
     (
@@ -562,7 +562,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23060,
         of_x("set_feedforward", weight_percent=-0.5),
-        "axis x: set_feedforward refused: weight_percent = -0.5 is no number of 0 or more (G136); nothing was changed",
+        "axis x: set_feedforward refused: weight_percent = -0.5 must be a number of 0 or more (G136); nothing was changed",
         {"weight_percent": -0.5},
     ),
     (

@@ -187,7 +187,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         at_work,
         "start",
         {**START, "source": "two"},
-        "spindle s: start refused: the spindle is at work for 'one', 'two' must wait until that is done; nothing was "
+        "spindle s: start refused: the spindle works for 'one', 'two' must wait until that is finished; nothing was "
         "changed",
         {"owner": "one", "source": "two"},
     ),
@@ -205,7 +205,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         standing(automatic_homing=False, referenced_at_start=False),
         "orient",
         {"position_deg": 0.0},
-        "spindle s: orient refused: the spindle has no reference point and does not home by itself (P-AXIS-00015 "
+        "spindle s: orient refused: the spindle has no reference point and does not home automatically (P-AXIS-00015 "
         "0x100); home it first (G74); the spindle is in ErrorStop",
         {},
     ),
@@ -242,7 +242,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         gears,
         "select_gear",
         {"stage": 3},
-        "spindle s: select_gear refused: gear 3 has no record getriebe[i]; there are 1, 2; nothing was changed",
+        "spindle s: select_gear refused: gear 3 has no record getriebe[i]; known are: 1, 2; nothing was changed",
         {"gear": 3},
     ),
     (
@@ -267,7 +267,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         among_others,
         "couple",
         {"master": "x"},
-        "spindle s: couple refused: 'x' is no spindle of the machine (s, t, u); nothing was changed",
+        "spindle s: couple refused: 'x' is not a spindle of the machine (s, t, u); nothing was changed",
         {"master": "x"},
     ),
     (
@@ -316,7 +316,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         spindle_bench,
         "set_feedforward",
         {"weight_percent": -1.0},
-        "spindle s: set_feedforward refused: weight_percent = -1.0 is no number of 0 or more (G136); nothing was "
+        "spindle s: set_feedforward refused: weight_percent = -1.0 must be a number of 0 or more (G136); nothing was "
         "changed",
         {"weight_percent": -1.0},
     ),

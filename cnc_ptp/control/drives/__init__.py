@@ -1,4 +1,4 @@
-"""Drives and mechanics behind one small interface; all that are here are simulated."""
+"""Drives and mechanics behind one small interface; all of them are simulated."""
 
 from cnc_ptp.control.drives.cascaded import CascadedDrive, TorqueCommandedDrive
 from cnc_ptp.control.drives.choice import make_drive

@@ -1,24 +1,24 @@
-"""The simulated drive with its mechanics: velocity controller, current loop, inertia, friction that holds, backlash."""
+"""The simulated drive with its mechanics: velocity controller, current loop, inertia, static friction, backlash."""
 
 from __future__ import annotations
 
 from math import copysign, exp, inf
 
-from cnc_ptp.control.drives.transitions import transition
+from cnc_ptp.control.drives.exact_steps import transition
 from cnc_ptp.parameters.view.control_view import PlantParameters
 
 FINEST = 6
-"""A cycle is halved at most so often where friction or the torque limit changes its kind."""
+"""Maximum number of times that a cycle is halved when friction or the torque limit changes its state."""
 UNEVEN = 0.02
-"""A step may carry at most this part of the Stribeck friction away; a longer one is halved."""
+"""A step may remove at most this part of the Stribeck friction; a longer one is halved."""
 BEND = 0.1
 """Stribeck velocities by which the velocity may leave the tangent of its beginning in a step near zero."""
 FAR = 5.5
-"""Stribeck velocities above which the Stribeck part is none (e^-30) and zero is not near."""
+"""Stribeck velocities above which the Stribeck part is 0 (e^-30) and zero is not near."""
 NEGLIGIBLE = 1e-12
-"""mm/s or deg/s that are none."""
+"""mm/s or deg/s; a smaller velocity is 0."""
 STRONGEST = 1e12
-"""mm/s² or deg/s²; where an unstable loop without torque limit ends before its numbers do."""
+"""mm/s² or deg/s²; bounds an unstable loop without torque limit before numbers overflow."""
 
 
 class CascadedDrive:
@@ -26,14 +26,14 @@ class CascadedDrive:
 
     w' = (u - w) / Tf; torque = k (Kp (w + u_add - v + 1/Tn ∫(w + u_add - v) dt)) + M_add, limited, behind a lag Ti;
     k v' = torque - friction. Friction is (C + (S - C) e^(-(v/vs)²)) against the motion plus a viscous part; a standing
-    axis stands until the torque exceeds S. The integral stands still while the torque is limited. The load follows the
-    motor behind a play.
+    axis stands until the torque exceeds S. The integral is frozen while the torque is limited. The load follows the
+    motor with a play.
 
     A cycle is one exact step of the linear part under held inputs (parameters/view/plant_model.py); the Stribeck part
-    counts with the mean of its values at begin and end. Where it changes much in a step, where the velocity passes
-    zero, where the axis breaks away or the torque limit begins or ends, the cycle is halved, again and again to 1/64.
+    counts with the mean of its values at start and end. If it changes much in a step, if the velocity passes zero, if
+    the axis breaks away or the torque limit begins or ends, the cycle is halved, again and again to 1/64.
     `torque` is the mean over the cycle, as FirstOrderDrive has it: within a cycle the torque swings by the step of the
-    command, so its value at the end of one is none to go by. Source: TF5200 feedforward, figure 2; friction, figure 1.
+    command, so its value at the end of one is not meaningful. Source: TF5200 feedforward, figure 2; friction, figure 1.
     """
 
     __slots__ = (
@@ -89,7 +89,7 @@ class CascadedDrive:
         self._direction = 0.0 if self._dry else 1.0
         """+1, -1: the motor slides, 0: friction holds it."""
         self._motor_position = self.load_position = plant.start_position
-        """Where motor and load are, mm (deg), behind whatever the encoder shows."""
+        """Positions of motor and load, mm (deg), without the resolution of the encoder."""
         self.position = plant.start_position
         self.step(0.0)  # stands; shows the position as the encoder does
 
@@ -148,12 +148,12 @@ class CascadedDrive:
         self.position = round(position / increment) * increment if increment else position
 
     def _come_to_rest(self) -> None:
-        """Without friction everything dies away for ever; what cannot be seen any more is over."""
+        """Without friction a decay never ends; values too small to be seen become 0."""
         if abs(self._setpoint) < NEGLIGIBLE and abs(self._integral) + abs(self._motor) < NEGLIGIBLE * self._gain:
             self.velocity = self._setpoint = self._integral = self._motor = 0.0
 
     def _take_load(self) -> None:
-        """The motor takes the load along where the play is used up."""
+        """The motor takes the load along when the play is used up."""
         motor, play = self._motor_position, self._half_play
         if self.load_position < motor - play:
             self.load_position = motor - play
@@ -161,13 +161,13 @@ class CascadedDrive:
             self.load_position = motor + play
 
     def _halve(self, level: int) -> None:
-        """Two steps of 1/2^level cycle each, in halves again where it must be."""
+        """Two steps of 1/2^level cycle each, halved again if needed."""
         for _ in range(2):
             if not (self._slide(level) if self._direction else self._stand(level)):
                 self._halve(level + 1)
 
     def _slide(self, level: int) -> bool:
-        """One step in motion; False, and nothing has happened, when its halves have to be looked at."""
+        """One step in motion; False, with nothing changed, when it has to be halved."""
         duration, decay, ip, ir, slide, slide_lag, _ = self._transitions[level]
         edge, gain, far, direction = self._edge, self._gain, self._far, self._direction
         v, integral = self.velocity, self._integral
@@ -234,7 +234,7 @@ class CascadedDrive:
         return 0.5 * direction * change
 
     def _pass_zero(self, v: float, new_v: float, duration: float) -> None:
-        """The velocity has changed its sign in one of the shortest steps: the axis stands, or turns back at once."""
+        """The velocity has changed its sign in one of the shortest steps: the axis stands, or reverses immediately."""
         share = v / (v - new_v)
         self._motor_position += 0.5 * v * share * duration
         self._take_load()
@@ -284,32 +284,32 @@ class CascadedDrive:
         return True
 
     def _impulse_at_rest(
-        self, side: int, duration: float, begin: tuple[float, float], end: tuple[float, float]
+        self, side: int, duration: float, start: tuple[float, float], end: tuple[float, float]
     ) -> float:
-        """What the velocity controller asks for, summed up over a step at rest; by its values and slopes at both ends.
+        """Integral of the torque demand over a step at rest, from values and slopes at both ends.
 
-        `begin`, `end`: set velocity and integral. A current loop puts it out later: Ti m' = asked - m.
+        `start`, `end`: set velocity and integral. A current loop outputs it later: Ti m' = demand - m.
         """
         if side:
             return side * self._limit * duration
-        values = [self._gain * w + integral for w, integral in (begin, end)]
+        values = [self._gain * w + integral for w, integral in (start, end)]
         slopes = [
-            self._gain * (self._wanted - w) * self._filter_rate + self._integral_rate * w for w, _ in (begin, end)
+            self._gain * (self._wanted - w) * self._filter_rate + self._integral_rate * w for w, _ in (start, end)
         ]
         return 0.5 * duration * sum(values) + duration * duration / 12.0 * (slopes[0] - slopes[1])
 
     def _integral_at_limit(self, level: int, side: int, p: float, new_p: float, free: float) -> float | None:
         """The integral after a step that begins at the torque limit `side` or, from 0, ends at one.
 
-        Beyond the limit it stands still, at the limit it grows no further than to hold it. p and new_p are the velocity
-        deviations at begin and end, `free` is the integral without a limit. None when the step has to be halved.
+        Beyond the limit it is frozen, at the limit it grows no further than to hold it. p and new_p are the velocity
+        deviations at start and end, `free` is the integral without a limit. None when the step has to be halved.
         """
         gain, limit, before = self._gain, self._limit, self._integral
         if not side:
             if level < FINEST:
                 return None
-            begin, end = gain * p + before, gain * new_p + free
-            return before + min(1.0, (copysign(limit, end) - begin) / (end - begin)) * (free - before)
+            start, end = gain * p + before, gain * new_p + free
+            return before + min(1.0, (copysign(limit, end) - start) / (end - start)) * (free - before)
         missing = limit - side * (gain * new_p + before)
         if missing <= 0.0:
             return before
@@ -321,7 +321,7 @@ class CascadedDrive:
         return before + side * max(0.0, min(missing, growth))
 
     def _dry_friction(self, v: float) -> float:
-        """Amount of Coulomb and Stribeck friction at a velocity, as acceleration."""
+        """Magnitude of Coulomb and Stribeck friction at a velocity, as acceleration."""
         ratio = v * self._per_stribeck_velocity
         return self._coulomb + self._stribeck * exp(-ratio * ratio)
 

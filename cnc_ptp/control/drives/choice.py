@@ -1,4 +1,4 @@
-"""Which drive an axis gets from its parameters."""
+"""The drive of an axis, made from its parameters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cnc_ptp.parameters.view.control_view import ControlParameters, PlantParamet
 def make_drive(control: ControlParameters, cycle_time: float) -> Drive:
     """The drive of the parameters; `cycle_time` in s.
 
-    Plant (P-SIM-00006), then what it is commanded by (telegram, P-AXIS-00320), then the bus (P-SIM-00018), then its
+    Plant (P-SIM-00006), then the form of its commands (telegram, P-AXIS-00320), then the bus (P-SIM-00018), then its
     formats, except for the simulated drive (P-AXIS-00020 = 4), which takes kernel units. Type 16 has no drive at all.
     """
     interface, plant = control.drive.interface, control.plant
@@ -30,8 +30,8 @@ def make_drive(control: ControlParameters, cycle_time: float) -> Drive:
 def commanded_drive(plant: PlantParameters, interface: str, cycle_time: float) -> Drive:
     """The plant behind a velocity, position, lag or torque command.
 
-    Behind a torque command stand its mechanics alone, also where P-SIM-00006 asks for a first-order lag: that is the
-    lag of a velocity controller, and there is none.
+    A torque command acts on the mechanics alone, even if P-SIM-00006 asks for a first-order lag: that is the lag of a
+    velocity controller, and there is none.
     """
     if interface == "torque":
         return TorqueCommandedDrive(plant, cycle_time=cycle_time)

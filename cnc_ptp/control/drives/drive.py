@@ -1,4 +1,4 @@
-"""What a position controller needs of a drive, whatever is behind it."""
+"""The interface between position controller and drive."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol
 class Drive(Protocol):
     """A drive of one axis or spindle; a real one would exchange its process data in `step`.
 
-    Axis units: mm, mm/s (deg, deg/s). Torques are Nm at the motor shaft, or N where a linear axis has no feed constant.
+    Axis units: mm, mm/s (deg, deg/s). Torques are Nm at the motor shaft, or N if a linear axis has no feed constant.
     """
 
     position: float
@@ -18,11 +18,11 @@ class Drive(Protocol):
     torque: float
     """Actual torque, Nm or N; 0.0 where the drive does not report one."""
     has_torque: bool
-    """Whether the drive reports its torque."""
+    """True if the drive reports its torque."""
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Holds the command for one cycle and takes over the new actual values.
 
-        `command` is what the drive's interface asks for: velocity in mm/s (deg/s), position or lag in mm (deg), torque
-        in Nm (N).
+        `command` is the quantity of the drive's interface: velocity in mm/s (deg/s), position or lag in mm (deg),
+        torque in Nm (N).
         """

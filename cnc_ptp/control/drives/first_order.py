@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 NEGLIGIBLE = 1e-12
-"""mm/s or deg/s; a lag below it is over, so that a drive comes to rest exactly."""
+"""mm/s or deg/s; a smaller lag is 0, so that a drive comes to rest exactly."""
 FASTEST = 1e9
-"""mm/s or deg/s; where an unstable loop ends before its numbers do."""
+"""mm/s or deg/s; bounds an unstable loop before numbers overflow."""
 
 
 class FirstOrderDrive:
@@ -16,7 +16,7 @@ class FirstOrderDrive:
     dv/dt = (u - v) / Ta + M / k with u = command + additive velocity, M the additive torque, k the torque for a unit
     of acceleration. All are held over a cycle, so the discrete solution is exact; with u' = u + Ta M / k:
     v(T) = u' + (v0 - u') e^(-T/Ta), x(T) = x0 + u' T + (v0 - u') Ta (1 - e^(-T/Ta)).
-    `torque` is the mean of k dv/dt over the cycle that is over. Source: TF5200 feedforward, figure 1 and 4.2.
+    `torque` is the mean of k dv/dt over the last cycle. Source: TF5200 feedforward, figure 1 and 4.2.
     """
 
     __slots__ = (
@@ -45,7 +45,7 @@ class FirstOrderDrive:
         """`cycle_time` and `time_constant` in s, `encoder_increment` in mm or deg (0 = ideal encoder).
 
         `time_constant` 0 is an ideal drive: no lag, and no additive torque can move it. `torque_per_acceleration` in
-        Nm (N) for 1 mm/s² (deg/s²); with 0 the drive has no inertia to speak of: shows no torque and heeds none.
+        Nm (N) for 1 mm/s² (deg/s²); with 0 the drive has no inertia: it reports no torque and ignores additive torques.
         """
         self.has_torque = torque_per_acceleration > 0.0
         self._cycle_time = cycle_time

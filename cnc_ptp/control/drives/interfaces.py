@@ -1,4 +1,4 @@
-"""What stands between the command of the NC and a drive that takes velocities: its own position loop, and the bus."""
+"""Interfaces between the command of the NC and a drive that takes velocities: its own position loop, and the bus."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ class LagCommandedDrive:
 
 
 class DelayedDrive:
-    """Commands are some cycles on the way to the drive."""
+    """Delays commands by some cycles on the bus to the drive."""
 
     __slots__ = ("_commands", "_drive", "has_torque", "position", "torque", "velocity")
 
     def __init__(self, drive: Drive, *, cycles: int, rest: float) -> None:
-        """`cycles` >= 1; `rest` is the command under which the drive stands until the first one has arrived."""
+        """`cycles` >= 1; `rest` is the command of the drive until the first one has arrived."""
         self._drive = drive
         self._commands = deque([(rest, 0.0, 0.0)] * cycles)
         self.has_torque = drive.has_torque

@@ -1,4 +1,4 @@
-"""A real drive's telegram between NC and drive: whole digits of limited length there and back."""
+"""Telegram between NC and drive: whole digits of limited length in both directions."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from cnc_ptp.parameters.view.control_view import ControlParameters
 
 
 class TelegramDrive:
-    """Encodes commands as the telegram does and decodes what comes back; the drive gets what the words say.
+    """Encodes commands as the telegram does and decodes the actual values; the drive gets the values of the words.
 
-    What the telegram does not carry does not get through: additive values without an object are 0, a velocity without
-    an object is the way of the last cycle, a torque without an object is 0.0 (`has_torque` is False).
+    What the telegram does not carry is not transmitted: additive values without an object are 0, a velocity without an
+    object is the distance of the last cycle divided by its time, a torque without an object is 0.0 (`has_torque` is
+    False).
     """
 
     __slots__ = (
@@ -77,7 +78,7 @@ class TelegramDrive:
         self._take_over()
 
     def _received(self, command: float) -> float:
-        """The command as the drive understands the word."""
+        """The command as the drive decodes the word."""
         form, interface = self._format, self._interface
         if interface == "position":
             self.command_word = form.position.encode(command)

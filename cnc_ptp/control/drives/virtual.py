@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class VirtualDrive:
-    """Shows what it is told to; `step` moves nothing."""
+    """Shows the set values; `step` moves nothing."""
 
     __slots__ = ("has_torque", "position", "torque", "velocity")
 
@@ -20,4 +20,4 @@ class VirtualDrive:
         self.position, self.velocity = position, velocity
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
-        """Nothing to be commanded."""
+        """No effect: there is nothing to be commanded."""

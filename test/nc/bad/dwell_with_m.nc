@@ -1,3 +1,3 @@
-; P-ERR-20685 dwell_with_m.nc line 2 column 12 'N10 G04 X2 M08': G04 stands alone in its block, here with M08
+; P-ERR-20685 dwell_with_m.nc line 2 column 12 'N10 G04 X2 M08': G04 must be alone in its block, not with M08
 N10 G04 X2 M08
 M30

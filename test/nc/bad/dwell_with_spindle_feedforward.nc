@@ -1,3 +1,3 @@
-; P-ERR-20685 dwell_with_spindle_feedforward.nc line 2 column 11 'N10 G04 5 S[G135]': G04 stands alone in its block, here with S
+; P-ERR-20685 dwell_with_spindle_feedforward.nc line 2 column 11 'N10 G04 5 S[G135]': G04 must be alone in its block, not with S
 N10 G04 5 S[G135]
 M30

@@ -1,7 +1,7 @@
 """Monitoring of the following error: fixed, linear in the velocity, or after an estimation filter.
 
 Sources: P-AXIS-00167, 00168, 00169, 00172 (axis list); TF5200 axis position lag, types 1, 2 and 4. The formulas of the
-factor P-AXIS-00167 are lost in the texts at hand and read so that 1024 switches the monitoring off.
+factor P-AXIS-00167 are missing in the available texts and read so that 1024 switches the monitoring off.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from cnc_ptp.parameters.view.control_view import ESTIMATED, FIXED, LINEAR, MONIT
 
 SCALE = 1024
 SETTLING = 5.0
-"""Time constants 1/Kv that the lag of a motion has to fall before the axis counts as standing."""
+"""Time constants 1/Kv that the lag of a motion has to fall before the axis counts as at a standstill."""
 
 
-class LagMonitor:
-    """Says for each cycle which following error is too large; `advance` once a cycle."""
+class FollowingErrorMonitor:
+    """Decides in each cycle which following error is too large; `advance` once per cycle."""
 
     __slots__ = (
         "_above",
@@ -54,8 +54,9 @@ class LagMonitor:
     def limit(self, velocity: float) -> float:
         """Largest following error at a set velocity, mm (deg).
 
-        Type 4: P-AXIS-00168, standing P-AXIS-00169. Type 2: v/Kv · 1024/(1024 - P-AXIS-00167), at least P-AXIS-00168;
-        standing P-AXIS-00169. Type 1: e' = e · P-AXIS-00167/1024 + |v| · T, within P-AXIS-00169 and P-AXIS-00168.
+        Type 4: P-AXIS-00168, at a standstill P-AXIS-00169. Type 2: v/Kv · 1024/(1024 - P-AXIS-00167), at least
+        P-AXIS-00168; at a standstill P-AXIS-00169. Type 1: e' = e · P-AXIS-00167/1024 + |v| · T, within P-AXIS-00169
+        and P-AXIS-00168.
         """
         return self._limit(velocity)[0]
 
@@ -78,7 +79,7 @@ class LagMonitor:
         return abs(following_error) > self.limit(velocity) and self._above >= self._needed
 
     def advance(self, following_error: float, velocity: float) -> None:
-        """This cycle is over."""
+        """Ends this cycle."""
         self._rest = self._rest + 1 if velocity == 0.0 else 0
         if self._needed:
             self._above = self._above + 1 if abs(following_error) > self.limit(velocity) else 0

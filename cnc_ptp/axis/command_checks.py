@@ -1,4 +1,4 @@
-"""Checks of what a command asks of an axis, before anything is changed. Source: TX1250 2.1."""
+"""Checks of the values of a command to an axis, before anything is changed. Source: TX1250 2.1."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SoftLimit(NamedTuple):
 
 
 class MotionChecks:
-    """Limits of one axis; each check raises CncError with who, where, value and limit, or gives what is to be used."""
+    """Limits of one axis; each check raises CncError with command, value and limit, or returns what is to be used."""
 
     def __init__(self, parameters: AxisParameters, *, cycle_time: float) -> None:
         """`cycle_time` in s."""
@@ -48,7 +48,7 @@ class MotionChecks:
         return CncError(number, reason, "nothing was changed", where=where, **values)
 
     def own_limits(self) -> Limits:
-        """The limits of a motion that says nothing about its dynamics."""
+        """The limits of a motion without dynamics of its own."""
         parameters = self._parameters
         velocity = min(parameters.max_velocity, parameters.reference_velocity)
         return Limits(velocity, parameters.acceleration, parameters.deceleration, parameters.jerk)
@@ -107,11 +107,11 @@ class MotionChecks:
         return limits._replace(jerk=highest), warning_text(JERK_RESCALED, warning)
 
     def soft_limit(self, direction: float) -> SoftLimit:
-        """The one to which a motion in this direction (> 0: positive) leads."""
+        """The soft limit in this direction of motion (> 0: positive)."""
         return self._positive_limit if direction > 0.0 else self._negative_limit
 
     def soft_limits(self, command: str, target: float) -> None:
-        """Raises 120002 and 120003 for a target outside, 23002 for one out of all range; the start may be anywhere."""
+        """Raises 120002 and 120003 for a target outside, 23002 for one out of range; the start may be anywhere."""
         unit = self._unit
         for direction in (1.0, -1.0):
             limit = self.soft_limit(direction)

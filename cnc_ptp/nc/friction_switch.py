@@ -1,6 +1,6 @@
 """Compensations of an axis in programs: `X[COMP ON FRICT]`, `X[COMP OFF FRICT]`.
 
-Source: TF5200 friction compensation 2.3.1. COMP comes first; what it switches stays so beyond the program end.
+Source: TF5200 friction compensation 2.3.1. COMP comes first; what it switches is kept beyond the program end.
 """
 
 import re
@@ -13,7 +13,7 @@ from cnc_ptp.nc.lexer import Token
 KEYWORD = "COMP"
 SWITCHES = ("ON", "OFF")
 KINDS = ("FRICT",)
-"""What can be switched: friction compensation."""
+"""Compensations that can be switched: friction compensation."""
 
 
 def bracket(token: Token, source: Source) -> CompensationSwitch:
@@ -49,7 +49,7 @@ def _words(token: Token) -> Iterator[tuple[str, int]]:
 
 
 def _check(axis: str, switch: str, kinds: list[str], word: str, source: Source, column: int) -> None:
-    """Raises for a word that cannot stand behind `switch` and `kinds`."""
+    """Raises for a word that cannot follow `switch` and `kinds`."""
     if word not in (*SWITCHES, *KINDS):
         known = ", ".join((*SWITCHES, *KINDS))
         raise faults.COMP_WORD.at(source, column, axis=axis, word=word, known=known)

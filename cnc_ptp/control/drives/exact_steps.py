@@ -1,12 +1,13 @@
-"""Exact steps of the linear part of a cascaded drive, worked out once: numbers that a step multiplies with.
+"""Exact steps of the linear part of a cascaded drive, computed once: the numbers by which a step multiplies.
 
-Letters as in parameters/view/plant_model.py. A step begins at the velocity v0 with the friction f and is written in
+Letters as in parameters/view/plant_model.py. A step starts at the velocity v0 with the friction f and is written in
 
     p = w - v0, r = u - v0      set velocities; without a filter p is r
     q = Kp p + i - f            acceleration that the velocity controller asks for, without friction
     n = m - f                   acceleration that there is, behind the current loop
 
-so that friction and v0 themselves drop out: the way is v0 t + x, the velocity v0 + y with y, x linear in p, r, q, n.
+so that friction and v0 themselves drop out: the distance is v0 t + x, the velocity v0 + y with y, x linear in p, r, q,
+n.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Transition(NamedTuple):
 
     duration: float
     decay: float
-    """What is left of w - u."""
+    """Remaining part of w - u."""
     integral_by_p: float
     """The integral grows by integral_by_p p + integral_by_r r - Kp/Tn x."""
     integral_by_r: float
@@ -70,7 +71,7 @@ def changes(plant: PlantParameters, gain: float, duration: float, *, stands: boo
 
 
 def without_p(gain: float) -> Matrix:
-    """Makes the input i out of q and p: i = q - Kp p (+ f, which drops out)."""
+    """Computes the input i from q and p: i = q - Kp p (+ f, which drops out)."""
     matrix = np.eye(7)
     matrix[I, W] = -gain
     return matrix
