@@ -1,6 +1,6 @@
-"""The states of a spindle and every way from one to another (PLCopen); `Spindle.take` alone changes the state.
+"""The states of a spindle and all transitions between them (PLCopen); `Spindle.take` alone changes the state.
 
-docs/spindles.md shows the diagram that is drawn from this table.
+The diagrams of the manual in docs/spindles.md show a part of this table.
 """
 
 from __future__ import annotations
@@ -22,7 +22,3 @@ FINISH_WITHOUT_POWER = transition("finished without power", *ON, S.DISABLED, to=
 FAULT = transition("fault", *S, to=S.ERROR_STOP)
 RESET = transition("reset", S.ERROR_STOP, to=S.STANDSTILL)
 RESET_WITHOUT_POWER = transition("reset without power", S.ERROR_STOP, to=S.DISABLED)
-
-SPINDLE_TRANSITIONS = tuple(
-    value for name, value in list(globals().items()) if name.isupper() and name not in ("S", "ON")
-)
