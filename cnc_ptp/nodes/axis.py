@@ -53,7 +53,7 @@ class AxisNode(UnitNode):
     def _move_result(self, block: CycleBlock, result: Any) -> bool | None:
         """The move has ended when the axis has neither job nor motion; in full unless it was stopped or has an error.
 
-        Where it ends may be changed on the way: by a new target, a compensation, external setpoints.
+        Its target may change on the fly: by a new target, a compensation, external setpoints.
         """
         if not isinstance(block, AxisBlock) or block.state[-1] in MOVING or block.set_velocity[-1] != 0.0:
             return None

@@ -66,7 +66,7 @@ class ChannelNode(UnitNode):
         return super().command(command)
 
     def complete_commands(self, block: PlcBlock) -> None:
-        """The text of a program does not travel in blocks; a file that has gone leaves a load that the unit refuses."""
+        """The text of a program does not travel in blocks; a missing file leaves a load that the unit refuses."""
         for command in block.commands:
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
@@ -91,7 +91,7 @@ def program_feedback(block: CycleBlock, feedback: Any) -> None:
 
 
 def program_result(block: CycleBlock, result: Any) -> bool | None:
-    """The program has ended when the channel is done; in full when all its blocks are through without an error."""
+    """The program has ended when the channel is done; in full when all its blocks are finished without an error."""
     if not isinstance(block, ChannelBlock) or not block.done:
         return None
     result.error_id = block.error_id[-1]

@@ -62,7 +62,7 @@ class SpindleNode(UnitNode):
         return [Command(self.spindle.name, command, arguments)]
 
     def _result(self, command: str, block: CycleBlock, result: Any) -> bool | None:
-        """In full when the job has come to its end; not when something else has taken its place, or it was refused."""
+        """In full when the job is finished; not when another job has replaced it, or it was refused."""
         number = self._numbers[command]
         done = self.spindle.outcome(number)
         if done is None or not isinstance(block, SpindleBlock):
@@ -101,12 +101,12 @@ def positioning_ended(block: SpindleBlock) -> str:
 
 def homing_ended(block: SpindleBlock) -> str:
     if block.referenced[-1]:
-        return "the homing was given up, the reference point of before counts"
+        return "the homing was aborted, the previous reference point is kept"
     return "the homing has ended without a reference"
 
 
 ENDED = {"orient": positioning_ended, "home": homing_ended}
-"""What people hear of a job that something else has ended."""
+"""The message about a job that something else has ended."""
 
 main = arguments.unit_main(SpindleNode, "spindle")
 

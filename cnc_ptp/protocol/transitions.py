@@ -8,7 +8,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode
 
 
 class Transition(NamedTuple):
-    """From one of the states `sources` to `target`; `cause` is the text of the arrow in diagrams."""
+    """From one of the states `sources` to `target`; `cause` is the label of the arrow in diagrams."""
 
     cause: str
     sources: frozenset[AxisStateCode]

@@ -113,7 +113,7 @@ def test_points_below_the_limit_are_shown():
     assert result.exit_code == 0, result.output
     assert "below n_grenz, not fitted" in result.stdout.splitlines()[8]
     assert rows(result.stdout)[0] == [6000.0, 1000.0, 15_000.0, 16_000.0, 1000.0, 6.67]
-    assert "warning: the curve lies +6.7 % beside the point at 6000 °/s" in result.stdout
+    assert "warning: the curve lies +6.7 % off the point at 6000 °/s" in result.stdout
 
 
 def test_what_deserves_a_look():
