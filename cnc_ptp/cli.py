@@ -15,8 +15,8 @@ from cnc_ptp.commands.completion import (
     complete_unit,
     complete_word,
 )
-from cnc_ptp.commands.console import WRONG_INPUT, print_error
-from cnc_ptp.errors import CncError
+from cnc_ptp.commands.console import print_error
+from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import namespace_option, ros_arguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments

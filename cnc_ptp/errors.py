@@ -6,6 +6,8 @@ import re
 from collections.abc import Mapping
 
 Value = float | int | str
+WRONG_INPUT = 2
+"""Exit status after wrong usage or input; nothing was started."""
 _WARNING = re.compile(r"P-WARN-(\d+) ")
 
 

@@ -9,11 +9,11 @@ from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import NEGLIGIBLE_VELOCITY
-from cnc_ptp.axis.faults import OUT_OF_RANGE, PATH_NOT_ACCEPTED
+from cnc_ptp.axis.faults import PATH_NOT_ACCEPTED
 from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.axis.gantry import GantryPair
 from cnc_ptp.errors import CncError
-from cnc_ptp.motion.limits import LARGEST_STATE
+from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE
 from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.path.path_motion import begins_element

@@ -12,7 +12,6 @@ from cnc_ptp.axis.axis_sources import MasterSource, PathSource
 from cnc_ptp.axis.compensation_commands import CompensationCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
-from cnc_ptp.axis.faults import FOLLOWING_ERROR
 from cnc_ptp.axis.feed_release_commands import FeedReleaseCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
@@ -22,6 +21,7 @@ from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
 from cnc_ptp.control.control_loop import ControlCycle, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
+from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.control.feedforward import CouplingLimits
 from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters import AxisParameters

@@ -10,14 +10,13 @@ from cnc_ptp.axis.faults import (
     ACCELERATION_TOO_HIGH,
     BAD_DYNAMICS,
     JERK_RESCALED,
-    OUT_OF_RANGE,
     SOFT_LIMIT_NEGATIVE,
     SOFT_LIMIT_POSITIVE,
     VELOCITY_TOO_HIGH,
 )
 from cnc_ptp.errors import CncError, Value, warning_text
 from cnc_ptp.motion import Limits
-from cnc_ptp.motion.limits import LARGEST_STATE, SMALLEST_LIMIT
+from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE, SMALLEST_LIMIT
 from cnc_ptp.parameters import AxisParameters
 
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from math import copysign
 
 from cnc_ptp.axis.axis import ROUNDING, Axis, Report
-from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST, TARGET_MISSED
+from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST
+from cnc_ptp.control.faults import TARGET_MISSED
 from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 

@@ -7,12 +7,11 @@ from math import inf, nan
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
+from cnc_ptp.axis.transitions import MOVING
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.notes import without_effect
-
-MOVING = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION)
 
 
 class StopCommands:

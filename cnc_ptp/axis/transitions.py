@@ -21,7 +21,7 @@ ENABLE_EXTERNAL = transition("external setpoints", S.STANDSTILL, to=S.CONTINUOUS
 STOP = transition("stop", *OWN_MOTION, to=S.STOPPING)
 FINISH = transition("finished", S.STANDSTILL, *OWN_MOTION, to=S.STANDSTILL)
 FINISH_WITHOUT_POWER = transition("finished without power", S.DISABLED, *OWN_MOTION, to=S.DISABLED)
-GO_ON_EXTERNALLY = transition("external setpoints go on", *OWN_MOTION, to=S.CONTINUOUS_MOTION)
+GO_ON_EXTERNALLY = transition("external setpoints continue", *OWN_MOTION, to=S.CONTINUOUS_MOTION)
 STOP_EXTERNALLY = transition("external setpoints come to rest", *OWN_MOTION, to=S.STOPPING)
 ENTER_PATH = transition("path of a channel", S.STANDSTILL, to=S.SYNCHRONIZED_MOTION)
 LEAVE_PATH = transition("end of the path", S.SYNCHRONIZED_MOTION, to=S.STOPPING)
@@ -30,11 +30,7 @@ DECOUPLE_AT_REST = transition("decouple at rest", S.SYNCHRONIZED_MOTION, to=S.ST
 DECOUPLE_WITHOUT_POWER = transition("decouple without power", S.SYNCHRONIZED_MOTION, to=S.DISABLED)
 DECOUPLE_TO_TARGET = transition("decouple to a target", S.SYNCHRONIZED_MOTION, to=S.DISCRETE_MOTION)
 DECOUPLE_IN_MOTION = transition("decouple in motion", S.SYNCHRONIZED_MOTION, to=S.CONTINUOUS_MOTION)
-DECOUPLE_AND_STOP = transition("decouple, nothing to drive on with", S.SYNCHRONIZED_MOTION, to=S.STOPPING)
+DECOUPLE_AND_STOP = transition("decouple and stop", S.SYNCHRONIZED_MOTION, to=S.STOPPING)
 FAULT = transition("fault", *S, to=S.ERROR_STOP)
 RESET = transition("reset", S.ERROR_STOP, to=S.STANDSTILL)
 RESET_WITHOUT_POWER = transition("reset without power", S.ERROR_STOP, to=S.DISABLED)
-
-AXIS_TRANSITIONS = tuple(
-    value for name, value in list(globals().items()) if name.isupper() and name not in ("S", "MOVING", "OWN_MOTION")
-)

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import inf
 from typing import NamedTuple
 
+from cnc_ptp.axis.faults import SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
     AuxiliaryFunction,
@@ -33,10 +35,7 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
-SOFT_LIMIT_POSITIVE = 120002
-SOFT_LIMIT_NEGATIVE = 120003
 UNKNOWN_M_FUNCTION = 22011
-NO_FRICTION_COMPENSATION = 70495
 NO_CHANNEL = 26112
 
 

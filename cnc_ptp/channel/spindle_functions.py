@@ -14,11 +14,10 @@ from typing import Any
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.spindle_reports import Condition, Expectation, turns
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
+from cnc_ptp.nc.spindles import DIRECTIONS
 from cnc_ptp.parameters import ChannelParameters, SpindleParameters, Synchronisation
 from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.commands import COMMANDS
-
-DIRECTIONS = {3: "cw", 4: "ccw"}
 
 
 class SpindleFunctions:

@@ -11,8 +11,6 @@ from cnc_ptp.protocol.notes import Note
 
 RUN_FAILED = 1
 """The run ended in an error, or a recording differs."""
-WRONG_INPUT = 2
-"""Wrong usage or input; nothing was started."""
 
 
 def print_error(error: CncError) -> None:

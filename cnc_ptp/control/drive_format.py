@@ -10,9 +10,6 @@ from typing import NamedTuple
 
 from cnc_ptp.parameters.view.control_view import DriveParameters, DriveScaling
 
-DA_FULL_SCALE = 32767
-DA_VOLTS = 10.0
-
 
 class Digits(NamedTuple):
     """A quantity as a signed integer of `bits` bits."""
@@ -79,11 +76,6 @@ class CounterReader:
         """The position in mm (deg) that a new value of the counter, signed or unsigned, shows."""
         self.increments += self._format.signed(counter - self.increments)
         return self.increments / self._format.scale
-
-
-def da_volts(word: int) -> float:
-    """Output voltage of a DA word, V: 32767 is 10 V; the word -32768 gives -10 V too."""
-    return max(-DA_VOLTS, word * DA_VOLTS / DA_FULL_SCALE)
 
 
 class DriveFormat(NamedTuple):

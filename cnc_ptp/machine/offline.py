@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from cnc_ptp.machine.runner import UnitRunner
-from cnc_ptp.machine.wiring import PLC, Inputs, wiring
+from cnc_ptp.machine.wiring import Inputs, wiring
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import at_rest
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
-from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.protocol.unit import PLC, Unit
 
 STUCK_TIME = 10.0
 """Seconds without any motion after which a program that waits is aborted: nobody will help it."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from cnc_ptp.machine.silence import Silence
-from cnc_ptp.machine.wiring import PLC
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, CycleTick, PlcBlock, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
-from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.protocol.unit import PLC, Unit
 
 CLOCK = "clock"
 

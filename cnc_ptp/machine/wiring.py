@@ -13,10 +13,9 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import EventValue, Severity
 from cnc_ptp.protocol.commands import sources_of
-from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.protocol.unit import PLC, Unit
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
-PLC = "plc"
 UNKNOWN_UNIT = 26111
 
 

@@ -7,7 +7,7 @@ from cnc_ptp.motion.batch import RestToRestBatch, plan_rest_to_rest_batch
 from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.profile import Profile
 from cnc_ptp.motion.ramp import stopping_distance
-from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest, reachable_velocity
+from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest
 from cnc_ptp.motion.step_profile import step_stopping_distance, step_to_position, step_to_velocity
 from cnc_ptp.motion.to_position import plan_to_position
 from cnc_ptp.motion.to_velocity import plan_to_velocity
@@ -20,7 +20,6 @@ __all__ = [
     "plan_rest_to_rest_batch",
     "plan_to_position",
     "plan_to_velocity",
-    "reachable_velocity",
     "step_stopping_distance",
     "step_to_position",
     "step_to_velocity",

@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 from cnc_ptp.errors import CncError
 
+BAD_LIMIT = 23001
+OUT_OF_RANGE = 23002
 SMALLEST_LIMIT = 1e-9
 LARGEST_LIMIT = 1e12
 LARGEST_STATE = 1e12
@@ -57,7 +59,7 @@ def check_limit(name: str, value: float) -> None:
     """Refuse one limit that is outside 1e-9 … 1e12 (NaN included). Raises CncError 23001."""
     if not SMALLEST_LIMIT <= value <= LARGEST_LIMIT:
         raise CncError(
-            23001,
+            BAD_LIMIT,
             f"motion limit {name} = {value!r} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}",
             "the motion is refused",
             limit=name,
@@ -70,7 +72,7 @@ def check_state(**values: float) -> None:
     for name, value in values.items():
         if not -LARGEST_STATE <= value <= LARGEST_STATE:
             raise CncError(
-                23002,
+                OUT_OF_RANGE,
                 f"motion value {name} = {value!r} must be between {-LARGEST_STATE:g} and {LARGEST_STATE:g}",
                 "the motion is refused",
                 state=name,

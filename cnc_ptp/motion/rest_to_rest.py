@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import cbrt, sqrt
 
-from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limit, check_limits, check_state
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limits, check_state
 from cnc_ptp.motion.profile import Profile, Segment
 
 
@@ -17,15 +17,7 @@ def reachable_velocity(distance: float, acceleration: float, jerk: float) -> flo
     """Largest peak velocity (mm/s) of a motion from rest to rest over `distance` (mm) with equal ramps and no cruise.
 
     The two ramps take distance = v·t(v): t = 2√(v/J) while vJ <= A², else t = v/A + A/J.
-    Raises CncError 23001 (acceleration, jerk) and 23002 (distance).
     """
-    check_limit("acceleration", acceleration)
-    check_limit("jerk", jerk)
-    check_state(distance=distance)
-    return _reachable(abs(distance), acceleration, jerk)
-
-
-def _reachable(distance: float, acceleration: float, jerk: float) -> float:
     v = cbrt(0.25 * jerk * distance * distance)
     if v * jerk <= acceleration * acceleration:
         return v
@@ -64,7 +56,9 @@ def rest_to_rest(start: float, target: float, limits: Limits) -> Profile:
     down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)
     needed = 0.5 * velocity * (2.0 * (up + down) + up_hold + down_hold)
     if distance < needed:
-        reduced = max(velocity * (distance / needed), _reachable(distance, min(acceleration, deceleration), jerk))
+        reduced = max(
+            velocity * (distance / needed), reachable_velocity(distance, min(acceleration, deceleration), jerk)
+        )
         velocity = min(velocity, reduced)
         up, up_hold, up_top = _ramp_shape(velocity, acceleration, jerk)
         down, down_hold, down_top = _ramp_shape(velocity, deceleration, jerk)

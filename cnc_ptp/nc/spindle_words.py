@@ -4,13 +4,13 @@ from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.lexer import Token, bracket_words
 from cnc_ptp.nc.program import SpindleWords
+from cnc_ptp.nc.vocabulary import MAX_M
 
 DEFAULT_DYNAMICS = ("DEFAULT_DYNAMIC_DATA", "DEFAULT_DYNAMIK_DATA", "DEFAUL_DYNAMIK_DATA")
 """The last spelling is that of TF5200 spindle p.83."""
 
 KNOWN = "M3, M4, M5, M19, REV, POS, G74, G167, G135, G136, G137, DEFAULT_DYNAMIC_DATA, free M functions"
 FLOW_M = (0, 1, 2, 17, 29, 30)
-MAX_M = 999
 
 
 def spindle_bracket(token: Token, source: Source) -> SpindleWords:

@@ -12,11 +12,12 @@ from rclpy.node import Node
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.protocol.unit import PLC
 
 POLL = 0.02
 START_DELAY = 0.1

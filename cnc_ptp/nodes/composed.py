@@ -12,7 +12,7 @@ from rclpy.node import Node
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.run_entries import read_entries, read_file
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode, cycles_of
@@ -24,6 +24,7 @@ from cnc_ptp.nodes.spindle import SpindleNode
 from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOrder, observers_of, only_run
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.protocol.unit import PLC
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 

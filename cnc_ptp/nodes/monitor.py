@@ -10,7 +10,7 @@ from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.channel.program_report import ProgramReport
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import (
@@ -29,6 +29,7 @@ from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.protocol.unit_view import UnitView
 
 SUPERVISOR = "supervisor"

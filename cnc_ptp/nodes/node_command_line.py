@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT, unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.number_range import STATES_PER_SECOND
@@ -49,7 +49,7 @@ def call(command: click.Command) -> None:
         own, ros = split(sys.argv[1:])
     except CncError as error:
         print(error, file=sys.stderr)
-        sys.exit(process.WRONG_INPUT)
+        sys.exit(WRONG_INPUT)
     command.main(args=own, obj=ros)
 
 

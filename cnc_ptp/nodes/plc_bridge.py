@@ -15,7 +15,7 @@ from cnc_ptp import msg
 from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence
-from cnc_ptp.machine.wiring import PLC, build_unit
+from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
@@ -28,6 +28,7 @@ from cnc_ptp.parameters import AxisParameters, ChannelParameters, MachineParamet
 from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command, CycleBlock, Severity
+from cnc_ptp.protocol.unit import PLC
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118

@@ -18,13 +18,12 @@ from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.unit.parameters import BARE_WORDS, require_known_parameters
 from cnc_ptp.ros_arguments import ros_arguments
 
 FAILED = 1
-WRONG_INPUT = 2
 SIGNALLED = 128
 """Exit status of a node that a signal has ended: this plus the signal's number, as shells have it."""
 DOMAIN_TAKEN = 26107

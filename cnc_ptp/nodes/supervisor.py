@@ -19,7 +19,7 @@ from cnc_ptp import srv
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.machine.runner import CLOCK
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
@@ -28,6 +28,7 @@ from cnc_ptp.nodes.topics import MONITOR, RECORDER
 from cnc_ptp.nodes.unit.claim import require_free
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
 

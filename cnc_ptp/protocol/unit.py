@@ -13,6 +13,8 @@ from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names
 
 Handler = Callable[..., str | None]
 
+PLC = "plc"
+"""Name of the PLC, as a unit and as the source of commands."""
 UPSTREAM_LOST = 26101
 """A unit that is needed has sent nothing within the watchdog time."""
 

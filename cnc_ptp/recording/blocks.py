@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, SpindleBlock
-from cnc_ptp.recording.layout import Layout, Records, fixed_layout
+from cnc_ptp.recording.layout import NOT_ENCODED, Layout, Records, fixed_layout
 from cnc_ptp.recording.schemas import PRIMITIVES, Schema, load_schema
 
 OF_THE_BLOCK = ("modulo_begin", "modulo_length", "torque_digits")
@@ -95,7 +95,7 @@ class Packer:
 
 def misfit(block: Any, reason: str) -> CncError:
     return CncError(
-        26006,
+        NOT_ENCODED,
         f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does not fit its "
         f"message: {reason}",
         "it was not recorded",

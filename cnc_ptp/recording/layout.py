@@ -23,6 +23,7 @@ from cnc_ptp.recording.schemas import PRIMITIVES, Field, Schema, full_name
 Records = npt.NDArray[np.void]
 Bytes = npt.NDArray[np.uint8]
 
+NOT_ENCODED = 26006
 ENCAPSULATION = b"\x00\x01\x00\x00"
 HEADER_TYPE = "std_msgs/Header"
 SIZES = {code: struct.calcsize(code) for code in PRIMITIVES.values()}
@@ -125,7 +126,7 @@ def _walk(schema: Schema, value: Any, header_of: Callable[[Any], Header]) -> _Wr
         writer.message(schema.name, value)
     except (struct.error, TypeError, AttributeError, KeyError) as error:
         raise CncError(
-            26006, f"recording: {full_name(schema.name)} cannot be encoded: {error}", "it was not recorded"
+            NOT_ENCODED, f"recording: {full_name(schema.name)} cannot be encoded: {error}", "it was not recorded"
         ) from error
     return writer
 

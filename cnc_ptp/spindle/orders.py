@@ -12,10 +12,10 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.spindle.faults import AT_WORK, SLAVE_LOCKED
 from cnc_ptp.spindle.spindle import Spindle
 
-PLC = "plc"
 MOTION = frozenset({"start", "set_speed", "stop", "orient", "home", "select_gear"})
 """Commands that make the spindle work for their source."""
 AWAITED = {

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from math import copysign
 
+from cnc_ptp.control.faults import TARGET_MISSED
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
 from cnc_ptp.spindle import transitions as T
-from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE, POSITION_MISSED
+from cnc_ptp.spindle.faults import GEAR_NOT_ACKNOWLEDGED, NO_ZERO_PULSE
 from cnc_ptp.spindle.homing import PATIENCE, ZeroPulse, nearest_shift
 from cnc_ptp.spindle.positioning import next_target, plan_positioning, shortest_direction, stopping_distance
 from cnc_ptp.spindle.procedure import DIRECTIONS, Procedure, Step
@@ -213,7 +214,7 @@ class Procedures:
             return True
         if self._too_long(spindle.cycles_since_end(cycle)):
             since = f"{spindle.parameters.target_time:g} s after its end the positioning"
-            spindle.fault(cycle, POSITION_MISSED, f"{since} {self._missed(away, actual_speed)}")
+            spindle.fault(cycle, TARGET_MISSED, f"{since} {self._missed(away, actual_speed)}")
         return False
 
     def hold(self, cycle: int, actual: float, actual_speed: float) -> None:
@@ -225,7 +226,7 @@ class Procedures:
         spindle.note_position(cycle, away, actual_speed)
         if self._too_long(cycle - spindle.exact_stop.left_at):
             since = f"the position was left and has not come back for {spindle.parameters.target_time:g} s: the spindle"
-            spindle.fault(cycle, POSITION_MISSED, f"{since} {self._missed(away, actual_speed)}")
+            spindle.fault(cycle, TARGET_MISSED, f"{since} {self._missed(away, actual_speed)}")
 
     def _too_long(self, cycles: float) -> bool:
         """True if the position has been missing for too many `cycles` and is not about to be reached."""

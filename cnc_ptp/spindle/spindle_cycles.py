@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from math import inf
 
+from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 from cnc_ptp.spindle import transitions as T
-from cnc_ptp.spindle.faults import FOLLOWING_ERROR, SPEED_NOT_REACHED
+from cnc_ptp.spindle.faults import SPEED_NOT_REACHED
 from cnc_ptp.spindle.orders import Orders
 from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.rotation_commands import RotationCommands

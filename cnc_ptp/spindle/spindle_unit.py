@@ -15,10 +15,10 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
-from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
+from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
-from cnc_ptp.spindle.orders import MOTION, PLC, Order, Orders
+from cnc_ptp.spindle.orders import MOTION, Order, Orders
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
 from cnc_ptp.spindle.procedures import Procedures

@@ -22,7 +22,3 @@ FINISH_WITHOUT_POWER = transition("finished without power", *ON, S.DISABLED, to=
 FAULT = transition("fault", *S, to=S.ERROR_STOP)
 RESET = transition("reset", S.ERROR_STOP, to=S.STANDSTILL)
 RESET_WITHOUT_POWER = transition("reset without power", S.ERROR_STOP, to=S.DISABLED)
-
-SPINDLE_TRANSITIONS = tuple(
-    value for name, value in list(globals().items()) if name.isupper() and name not in ("S", "ON")
-)

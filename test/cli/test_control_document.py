@@ -11,7 +11,7 @@ ROW = re.compile(r"^\| ([0-9][0-9a-fx (),–]*) \| [MPWRF] \| (.+) \|$")
 HEAD = "## Errors, warnings, faults\n"
 
 NAMES = {
-    17744: ("axis.faults", "FOLLOWING_ERROR", "following error"),
+    17744: ("control.faults", "FOLLOWING_ERROR", "following error"),
     23060: ("control.commands", "BAD_WEIGHT", "weight_percent"),
     23061: ("control.commands", "FEEDFORWARD_WAITS", "feedforward waits"),
     23062: ("control.commands", "WEIGHT_LIMITED", "limited to it"),
@@ -19,7 +19,7 @@ NAMES = {
     25009: ("parameters.errors", "CONTRADICTION", "above max_points"),
     25019: ("parameters.errors", "DENOMINATOR", "denominator"),
     25020: ("parameters.errors", "TELEGRAM", "object"),
-    70082: ("axis.faults", "TARGET_MISSED", "away from its target"),
+    70082: ("control.faults", "TARGET_MISSED", "away from its target"),
     70350: ("parameters.check.control_checks", "NO_ADDITIVE_VELOCITY", "additive velocity"),
     70351: ("parameters.check.control_checks", "NO_ADDITIVE_TORQUE", "additive torque"),
     70495: ("control.commands", "NO_FRICTION_COMPENSATION", "friction compensation"),

@@ -5,9 +5,9 @@ from __future__ import annotations
 import random
 
 import pytest
-from format_support import control_of, format_of
+from format_support import control_of, da_volts, format_of
 
-from cnc_ptp.control.drive_format import CounterFormat, CounterReader, Digits, da_volts
+from cnc_ptp.control.drive_format import CounterFormat, CounterReader, Digits
 
 RPM = 6.0
 """deg/s"""
@@ -143,11 +143,6 @@ def test_digits_stay_within_their_length(bits: int, lowest: int, highest: int) -
     assert digits.encode(lowest / 10.0) == lowest
     assert digits.encode(1e15) == highest
     assert digits.encode(-1e15) == lowest
-
-
-def test_volts_of_a_da_word() -> None:
-    assert [da_volts(word) for word in (-32_768, -32_767, 0, 32_767)] == [-10.0, -10.0, 0.0, 10.0]
-    assert da_volts(3277) == pytest.approx(1.0001, abs=1e-4)
 
 
 def test_lengths_of_objects() -> None:

@@ -13,12 +13,13 @@ from rclpy.serialization import serialize_message
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import PLC, unit_kinds
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import axis, clock, nc_channel, player, plc_bridge, process, recorder, spindle
 from cnc_ptp.nodes.unit.parameters import declare_parameters, require_known_parameters
 from cnc_ptp.nodes.unit.unit_node import MACHINE
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.ros_arguments import split
 

@@ -15,7 +15,6 @@ from cnc_ptp.motion import (
     plan_rest_to_rest_batch,
     plan_to_position,
     plan_to_velocity,
-    reachable_velocity,
 )
 
 GOOD = Limits(100.0, 1000.0, 1000.0, 10000.0)
@@ -53,7 +52,6 @@ def test_bad_limits(name, value, text):
         (lambda: plan_to_velocity(0.0, math.nan, 0.0, 0.0, GOOD), "start_velocity", "nan"),
         (lambda: plan_to_velocity(0.0, 0.0, math.nan, 0.0, GOOD), "start_acceleration", "nan"),
         (lambda: plan_to_velocity(0.0, 0.0, 0.0, math.nan, GOOD), "velocity", "nan"),
-        (lambda: reachable_velocity(math.nan, 1.0, 1.0), "distance", "nan"),
         (lambda: plan_rest_to_rest_batch([0.0, math.nan], 0.0, *GOOD), "start", "nan"),
         (lambda: plan_rest_to_rest_batch(0.0, [-math.inf, 0.0], *GOOD), "target", "-inf"),
     ],
@@ -65,14 +63,6 @@ def test_bad_states(plan, name, text):
     assert str(fault.value) == (
         f"P-ERR-23002 motion value {name} = {text} must be between -1e+12 and 1e+12; the motion is refused"
     )
-
-
-@pytest.mark.parametrize(("arguments", "name"), [((1.0, 0.0, 1.0), "acceleration"), ((1.0, 1.0, 0.0), "jerk")])
-def test_reachable_velocity_checks_its_limits(arguments, name):
-    with pytest.raises(CncError) as fault:
-        reachable_velocity(*arguments)
-    expected = f"P-ERR-23001 motion limit {name} = 0.0 must be between 1e-09 and 1e+12; the motion is refused"
-    assert str(fault.value) == expected
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,14 @@ from cnc_ptp.control.drive_format import DriveFormat, drive_format
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
 
+DA_FULL_SCALE = 32767
+DA_VOLTS = 10.0
+
+
+def da_volts(word: int) -> float:
+    """Output voltage of a DA word, V: 32767 is 10 V; the word -32768 gives -10 V too."""
+    return max(-DA_VOLTS, word * DA_VOLTS / DA_FULL_SCALE)
+
 
 def control_of(*lines: str, spindle: bool = False, gear: int = 0, cycle_time_us: int = 1000) -> ControlParameters:
     """What the drive of an axis (or spindle) with these parameter lines is controlled by."""

@@ -17,11 +17,12 @@ from cnc_ptp.commands.console import print_faults
 from cnc_ptp.commands.run.simulate import Result, interrupted, write
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.protocol.notes import Note
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.writer import Recording
 
 Columns = Mapping[str, npt.NDArray[np.float64]]

@@ -7,7 +7,8 @@ from pathlib import Path
 from rich.console import Console
 
 from cnc_ptp.channel.program_check import ProgramCheck
-from cnc_ptp.commands.console import WRONG_INPUT, print_error
+from cnc_ptp.commands.console import print_error
+from cnc_ptp.errors import WRONG_INPUT
 from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.parameters import MachineParameters, read_machine

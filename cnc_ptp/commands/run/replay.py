@@ -8,10 +8,11 @@ from collections.abc import Iterator
 
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.machine.offline import OfflineMachine
-from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock
 from cnc_ptp.protocol.commands import COUPLINGS
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.reader import Recorded, read_recording
 from cnc_ptp.recording.verify import verify as verify_recording
 

@@ -17,7 +17,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.run_entries import read_entries, read_file
-from cnc_ptp.machine.wiring import PLC, build_units
+from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.plc_unit import error_of
 from cnc_ptp.protocol.blocks import (
@@ -29,6 +29,7 @@ from cnc_ptp.protocol.blocks import (
     Severity,
 )
 from cnc_ptp.protocol.notes import Note, Notes, error_text
+from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.writer import Recording
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cnc_ptp.control.drive_format import CounterReader, da_volts, drive_format
+from cnc_ptp.control.drive_format import CounterReader, drive_format
 from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
@@ -16,7 +16,6 @@ class TelegramDrive:
     """
 
     __slots__ = (
-        "_analogue",
         "_carries",
         "_cycle_time",
         "_drive",
@@ -44,7 +43,6 @@ class TelegramDrive:
         self._interface = control.drive.interface
         self._carries = control.drive.commands
         self._feedback = control.drive.feedback
-        self._analogue = control.drive.analogue
         self._format = form = drive_format(control.scaling, control.drive)
         self.has_torque = "torque" in self._feedback and form.actual_torque.scale != 0.0
         start = form.sign * drive.position
@@ -56,11 +54,6 @@ class TelegramDrive:
         self.velocity = self.torque = 0.0
         self.position_word = form.actual_position.encode(start)
         self.position = form.sign * self._shown.position
-
-    @property
-    def volts(self) -> float | None:
-        """The command of an analogue drive, V; None on a bus."""
-        return da_volts(self.command_word) if self._analogue else None
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Commands in kernel units: velocity, position, lag or torque as the interface asks for."""

@@ -16,12 +16,13 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.wiring import PLC, UNKNOWN_UNIT
+from cnc_ptp.machine.wiring import UNKNOWN_UNIT
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS, INTERNAL, UNKNOWN_COMMAND, Arguments
+from cnc_ptp.protocol.unit import PLC
 
 NO_MACHINE = 26135
 NO_ANSWER = 26136

@@ -17,7 +17,7 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.gate import BlockGate
 from cnc_ptp.machine.runner import CLOCK, UnitRunner
-from cnc_ptp.machine.wiring import PLC, Inputs, unit_kinds, wiring
+from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.topics import (
@@ -45,7 +45,7 @@ from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
-from cnc_ptp.protocol.unit import Unit
+from cnc_ptp.protocol.unit import PLC, Unit
 
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""

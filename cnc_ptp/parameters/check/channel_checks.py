@@ -3,7 +3,7 @@
 Each check yields Problems; those of gears, couplings and tools are in channel_spindle_checks.py.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.channel_spindle_checks import SPINDLE_LIST_CHECKS
@@ -11,9 +11,7 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, axis_entries, is_path_axis, spindle_entries
-
-Sets = Mapping[str, ParameterSet]
+from cnc_ptp.parameters.view.channel_members import ChannelAxisEntry, Sets, axis_entries, is_path_axis, spindle_entries
 
 
 def channel_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:

@@ -2,7 +2,7 @@
 spindles that the channel has.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
@@ -12,13 +12,13 @@ from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.channel_members import (
     COUPLING_GROUP,
     ChannelAxisEntry,
+    Sets,
     coupled_spindle_pairs,
     main_spindle_number,
     spindle_entries,
 )
 from cnc_ptp.parameters.view.channel_view import GEAR_M_FUNCTIONS
 
-Sets = Mapping[str, ParameterSet]
 SYNCHRONISATIONS = (
     ids.M_SYNCH,
     ids.SPINDEL_M19_SYNCH,

@@ -3,7 +3,7 @@
 Each check yields Problems. Only `check_machine` is used by other modules.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.axis_checks import (
@@ -20,9 +20,7 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.view.channel_members import axis_entries
-
-Sets = Mapping[str, ParameterSet]
+from cnc_ptp.parameters.view.channel_members import Sets, axis_entries
 
 
 def check_machine(sets: Sets) -> list[Problem]:

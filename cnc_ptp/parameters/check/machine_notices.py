@@ -1,6 +1,6 @@
 """Notices about a machine file: accepted values that may not do what their author expects. None stops a node."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from cnc_ptp.parameters.check.control_notices import control_notices
 from cnc_ptp.parameters.check.friction_notices import friction_notices
@@ -10,7 +10,7 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import is_modulo
-from cnc_ptp.parameters.view.channel_members import spindle_entries
+from cnc_ptp.parameters.view.channel_members import Sets, spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
 from cnc_ptp.parameters.view.gears import active_gear
 from cnc_ptp.parameters.view.spindle_view import curve_view, has_position
@@ -26,7 +26,7 @@ SMALL_STEP = 0.001
 """Fraction of the constant acceleration."""
 
 
-def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+def machine_notices(machine: ParameterSet, sets: Sets) -> Iterator[Notice]:
     """All notices of a machine, each with file and line."""
     cycle_time = machine.kernel(ids.CYCLE_TIME_US)
     yield from units_without_section(machine, sets)
@@ -46,7 +46,7 @@ def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> 
             yield from spindle_notices(parameters)
 
 
-def units_without_section(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+def units_without_section(machine: ParameterSet, sets: Sets) -> Iterator[Notice]:
     """Units that /machine lists without a section of their own; the loader gives them the place of /machine."""
     for name, parameters in sets.items():
         if parameters.place == machine.place:
@@ -89,7 +89,7 @@ def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
                 yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled")
 
 
-def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
+def ranges_above_the_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Notice]:
     """Speeds of a gear stage that its spindle refuses in motion (24001)."""
     if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         return
