@@ -118,7 +118,7 @@ class Feedforward:
         return self._coupling.take_wait()
 
     def at_rest(self, history: deque[MotionState]) -> bool:
-        """True if all setpoints in use are at a standstill; `history` ends with the cycle before, newest at its left."""
+        """True if all setpoints in use are at a standstill; `history` ends with the cycle before, newest first."""
         seen = islice(history, self._depth)
         return all(v == 0.0 and a == 0.0 for _, v, a, _ in seen) and not any(map(any, self._prefilter))
 
