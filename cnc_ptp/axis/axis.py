@@ -283,7 +283,7 @@ class Axis:
         if self.jogs_to_limit:
             self._report_limit(cycle)
         if self.superposed and self.external.mode is not None:
-            self._finish(T.GO_ON_EXTERNALLY)
+            self._finish(T.CONTINUE_EXTERNALLY)
         elif self.superposed and self.external.moving(cycle):
             self._finish(T.STOP_EXTERNALLY)
         else:

@@ -317,16 +317,16 @@ class CouplingCommands:
         full = max(SMALLEST_LIMIT, velocity or min(former or abs(speed), highest))
         limits = axis.own_limits._replace(velocity=full)
         if target is not None:
-            # what a compensation adds to the velocity is kept on the way to the target too
+            # what a compensation adds to the velocity is kept for the motion to the target too
             kept = velocity or min(max(full, abs(speed)), highest)
-            axis.ptp.lead_on(cycle, float(target), limits._replace(velocity=kept))
+            axis.ptp.continue_to(cycle, float(target), limits._replace(velocity=kept))
             axis.target_window.watch()
             axis.take(T.DECOUPLE_TO_TARGET)
         elif velocity is not None:
-            axis.ptp.lead_on(cycle, copysign(inf, speed), limits)
+            axis.ptp.continue_to(cycle, copysign(inf, speed), limits)
             axis.take(T.DECOUPLE_IN_MOTION)
         else:
-            axis.ptp.drive_on(cycle, full, limits)
+            axis.ptp.continue_at(cycle, full, limits)
             axis.take(T.DECOUPLE_IN_MOTION if axis.ptp.job else T.DECOUPLE_AND_STOP)
         return None
 

@@ -235,7 +235,7 @@ class ExternalSetpoints:
     def _to_rest(self, driving: Setpoint, cycle: int) -> Profile:
         """The ramp to rest from `cycle` on; a setpoint at a standstill stays where it is.
 
-        Setpoints know no jerk limit, and neither does their end: their acceleration ends at once. On the jerk limit of
+        Setpoints know no jerk limit, and neither does their end: their acceleration ends too. On the jerk limit of
         the axis it would raise the velocity further by a²/2J.
         """
         position, velocity, _, _ = self._driven(driving, cycle)

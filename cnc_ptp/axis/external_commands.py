@@ -32,9 +32,9 @@ class ExternalCommands:
         self._axis = axis
 
     def do_external_enable(self, cycle: int, *, mode: str, target: float | None = None) -> str | None:
-        """Lets external setpoints move the axis: `absolute`, or `relative` to where it is, also on top of other motion.
+        """Lets external setpoints move the axis: `absolute`, or `relative` to where it is, also added to other motion.
 
-        On top of a PTP motion or of the path of a channel they are relative; beside a path they have no target.
+        On a PTP motion or the path of a channel they are relative; on a path they have no target.
 
         `target` (mm, deg; absolute, or relative like the setpoints) switches the target window monitoring to it. Called
         again in the same mode it takes over a new target. Refusals: 23005, 23025, 23026, 23028 – 23030, 120002, 120003.

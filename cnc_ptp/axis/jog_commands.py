@@ -40,7 +40,7 @@ class JogCommands:
         if axis.ptp.brakes_to(cycle, end):
             return f"axis {axis.name}: {JOG} changes nothing: the axis brakes to its soft limit {end} {axis.unit}"
         axis.absorb(cycle)
-        axis.ptp.lead_on(cycle, end, limits)
+        axis.ptp.continue_to(cycle, end, limits)
         self._job = axis.ptp.job
         axis.target_window.watch()
         axis.has_been_stopped = False

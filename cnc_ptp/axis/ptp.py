@@ -190,7 +190,7 @@ class PtpGenerator:
         job = self._job_from_rest(self.state(cycle)[0], target, limits)
         self._begin(cycle, job, self._table(cycle, job))
 
-    def drive_on(self, cycle: int, full_velocity: float, limits: Limits) -> None:
+    def continue_at(self, cycle: int, full_velocity: float, limits: Limits) -> None:
         """Continues endlessly with the velocity left when the acceleration is taken out; 0 ends at a standstill.
 
         `full_velocity` (mm/s, deg/s) is the velocity at 100 % override when that changes. Source: TX1250 3.2.3.
@@ -209,7 +209,7 @@ class PtpGenerator:
         most = max(abs(jerk), own_jerk)
         return 0.5 * most * self._cycle_time**2 * (1.0 + most / own_jerk)
 
-    def lead_on(self, cycle: int, target: float, limits: Limits) -> None:
+    def continue_to(self, cycle: int, target: float, limits: Limits) -> None:
         """A job for an axis that moves without one: to `target`, endless for ±infinity.
 
         Raises CncError 23001 and 23002 for limits and targets that no table can be made for; then nothing is changed.

@@ -150,6 +150,6 @@ class Orders:
         spindle = self._spindle
         if not self.source or spindle.work.procedure is not None:
             return
-        turns_as_told = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached
-        if turns_as_told or spindle.state in (S.STANDSTILL, S.DISABLED):
+        turns_as_commanded = spindle.state == S.CONTINUOUS_MOTION and spindle.speed_was_reached
+        if turns_as_commanded or spindle.state in (S.STANDSTILL, S.DISABLED):
             self.source = ""

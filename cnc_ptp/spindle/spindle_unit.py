@@ -113,7 +113,7 @@ class SpindleUnit(Unit):
         return record
 
     def handler(self, command: str) -> Handler:
-        """Motion commands come in the order that `Orders` gives them; all others act at once."""
+        """Motion commands come in the order that `Orders` gives them; all others act immediately."""
         handler = self._group_handler(command)
         return partial(self._ordered, command) if command in MOTION else handler
 
@@ -154,9 +154,9 @@ class SpindleUnit(Unit):
     def _carry_out(self, cycle: int, order: Order) -> str | None:
         work = self.spindle.work
         if order.command == "stop":
-            self._tell_lost_homings(cycle, "stop")
+            self._report_lost_homings(cycle, "stop")
             if order.source != self._orders.source:
-                self._tell_overtaken(cycle, "stop")
+                self._report_overtaken(cycle, "stop")
         before, turned = work.procedure, self.spindle.state == S.CONTINUOUS_MOTION
         message = self._group_handler(order.command)(cycle, **order.arguments)
         if work.procedure is not None and work.procedure is not before:
@@ -170,7 +170,7 @@ class SpindleUnit(Unit):
             self._passed_on.append(Command(self.name, order.command, {**order.arguments, **source}))
         return message
 
-    def _tell_overtaken(self, cycle: int, by: str) -> None:
+    def _report_overtaken(self, cycle: int, by: str) -> None:
         """Notifies the source of the gear change that the rotation does not resume afterwards."""
         source = self._orders.source
         if not source or not self.spindle.work.gear_request:
@@ -179,7 +179,7 @@ class SpindleUnit(Unit):
         self._report(Severity.WARNING, cycle, GEAR_CHANGE_OVERTAKEN, text)
         self._refused.append(Refusal(source, GEAR_CHANGE_OVERTAKEN, text))
 
-    def _tell_lost_homings(self, cycle: int, by: str) -> None:
+    def _report_lost_homings(self, cycle: int, by: str) -> None:
         """Reports a homing without zero pulse so far, and waiting ones, as aborted: nobody waits for them."""
         spindle, procedure = self.spindle, self.spindle.work.procedure
         numbers = [procedure.number] if procedure is not None and procedure.homes else []
@@ -228,7 +228,7 @@ class SpindleUnit(Unit):
     def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """See PowerCommands.do_power; without power nothing waits; slaves of a spindle in a gear change stop too."""
         if not enabled:
-            self._tell_overtaken(cycle, "power off")
+            self._report_overtaken(cycle, "power off")
             self._orders.clear()
             if self.spindle.work.gear_request:
                 self._passed_on.append(Command(self.name, "stop", {"homes": False}))
@@ -236,7 +236,7 @@ class SpindleUnit(Unit):
 
     def do_reset(self, cycle: int) -> None:
         """See PowerCommands.do_reset; waiting commands are dropped, and slaves stop too."""
-        self._tell_lost_homings(cycle, "reset")
+        self._report_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
         self._orders.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
@@ -315,7 +315,7 @@ class SpindleUnit(Unit):
             self._orders.add(order)
             return
         if name == "stop":
-            self._tell_lost_homings(cycle, "stop")
+            self._report_lost_homings(cycle, "stop")
             self._orders.clear()
         self._act_as_slave(cycle, order)
 

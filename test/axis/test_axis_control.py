@@ -1,4 +1,4 @@
-"""Feedforward, friction compensation and following errors of an axis unit; the fast and the slow way are one."""
+"""Feedforward, friction compensation and following errors of an axis unit; the fast and the slow computation agree."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def test_a_standing_axis_that_is_pushed_out_of_place() -> None:
 
 
 def test_behind_a_delay_line_the_text_has_the_error_of_the_position_controller() -> None:
-    """4 cycles of shift_time at 200 mm/s are 0.8 mm of way, and no following error."""
+    """4 cycles of shift_time at 200 mm/s are 0.8 mm, and no following error."""
     of_feedforward = feedforward(CONVENTIONAL, lead_cycles=4, always_active=True)
     control = replace(plain_control(monitoring=monitored(4)), feedforward=of_feedforward)
     bench = control_bench(control, drive=stuck())
@@ -299,7 +299,7 @@ def test_the_size_of_the_blocks_changes_nothing(name: str) -> None:
 
 
 def test_a_fault_in_the_middle_of_a_block_is_at_the_same_cycle_in_all_blocks() -> None:
-    """The fast way stops before the following error that is too large, and the filter time has counted on."""
+    """The fast computation stops before the following error that is too large, and the filter time has counted on."""
     columns = []
     for count in (1, 7, 10, 100):
         control = plain_control(CONVENTIONAL, monitoring=monitored(4, moving_limit=2.0, filter_time=0.013))
@@ -350,7 +350,7 @@ def test_feedforward_without_room_is_a_warning_with_number_and_text() -> None:
 
 
 def test_the_status_says_whether_friction_compensation_is_on() -> None:
-    """In every way in which cycles are computed: standing, moving, superimposed, without power."""
+    """In every mode in which cycles are computed: standing, moving, superimposed, without power."""
     bench = control_bench()
     bit = int(StatusBit.FRICTION_COMPENSATION)
     assert bit == 65536

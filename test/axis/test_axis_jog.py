@@ -55,8 +55,8 @@ def test_it_ramps_up_goes_on_and_halts(velocity: float, modulo: bool) -> None:
     bench.run(10)
     assert bench.state == S.DISCRETE_MOTION
     run_to_standstill(bench)
-    way = math.copysign(ramp_way(abs(velocity), 0.0), velocity)
-    assert motion(bench)[-1][0] == pytest.approx(begin + way, abs=1e-7)
+    distance = math.copysign(ramp_way(abs(velocity), 0.0), velocity)
+    assert motion(bench)[-1][0] == pytest.approx(begin + distance, abs=1e-7)
     assert bench.last.status_bits[-1] & StatusBit.HAS_BEEN_STOPPED
     assert_axis_smooth(bench, acceleration=A, jerk=J)
     assert bench.event_texts() == []
@@ -80,9 +80,9 @@ def test_velocity_and_direction_change_on_the_fly(second: float, at: int, modulo
         longest = fastest_change(v, a, 0.0).duration + ramp_time(abs(second))
     assert abs(velocity[at + math.ceil(longest / CYCLE_TIME) + 1 :] - second).max() <= 1e-9
     if modulo:
-        way = fastest_change(v, a, second)
+        change = fastest_change(v, a, second)
         for k in range(math.ceil(longest / CYCLE_TIME)):
-            _, (expected,), _ = way.at_time(min(k * CYCLE_TIME, way.duration))
+            _, (expected,), _ = change.at_time(min(k * CYCLE_TIME, change.duration))
             assert velocity[at + k] == pytest.approx(expected, abs=1e-5)
     assert bench.state == S.CONTINUOUS_MOTION
     assert_axis_smooth(bench, acceleration=A, jerk=J)
@@ -262,7 +262,7 @@ def test_a_stop_acts_while_the_compensation_of_a_jog_comes_to_rest(command: str)
 
 
 def test_a_jog_below_external_setpoints_ends_once_at_the_limit() -> None:
-    """They go on alone: one event, no job, and the limit is watched for them."""
+    """They continue alone: one event, no job, and the limit is watched for them."""
     bench = limited(-1000.0, 300.0)
     bench.accepted("jog", velocity=200.0)
     bench.run(200)
@@ -365,7 +365,7 @@ def test_a_jerk_above_a_over_t_is_rescaled_with_a_warning() -> None:
 
 
 def test_a_scenario_runs_as_long_as_its_jog() -> None:
-    """A jog that is ended ends the run; so does the soft limit, 100 m away here; a round axis goes on for good."""
+    """A jog that is ended ends the run; so does the soft limit, 100 m away here; a round axis continues endlessly."""
     ended = MachineBench(
         scenario="[{at: 0, to: x, do: jog, velocity: 50}, {at: 1, to: x, do: jog, velocity: 0}]", machine=PTP
     ).run()

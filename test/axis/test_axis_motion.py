@@ -141,9 +141,9 @@ def test_the_block_size_changes_no_number(count: int) -> None:
 def test_a_velocity_out_of_reach_is_reduced_for_min_of_both_ramps(
     kind: int, up: float, down: float, part: float
 ) -> None:
-    """The ramps stay those of the user; what the symmetric reduction leaves of the way is driven at the velocity.
+    """The ramps stay those of the user; what the symmetric reduction leaves of the distance is driven at the velocity.
 
-    Just below the way that the user's ramps need it falls in proportion, so that it does not jump.
+    Just below the distance that the user's ramps need it falls in proportion, so that it does not jump.
     """
     distance = part * (ramp_way(0.0, V, up) + ramp_way(V, 0.0, down))
     velocity = max(reachable(distance, min(up, down)), part * V)

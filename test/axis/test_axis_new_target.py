@@ -23,7 +23,7 @@ from cnc_ptp.protocol.axis_states import StatusBit
 
 JOB, STOPPED = StatusBit.HAS_JOB, StatusBit.HAS_BEEN_STOPPED
 FULL_STOP = ramp_way(V, 0.0)
-"""Way of a stop from 2000 mm/s: 500 mm."""
+"""Distance of a stop from 2000 mm/s: 500 mm."""
 
 
 def check_end(bench: UnitBench, target: float) -> None:
@@ -139,7 +139,7 @@ def test_new_target_while_it_returns_from_another(target: float) -> None:
 @pytest.mark.parametrize("pause", [0, 100, 250])
 @pytest.mark.parametrize("target", [3000.0, 5000.0, 0.0])
 def test_during_a_stop_it_waits_until_the_axis_stands(cycle: int, pause: int, target: float) -> None:
-    """Then it goes on by itself with the dynamics of the start."""
+    """Then it continues automatically with the dynamics of the start."""
     bench = started(3000.0, cycle)
     bench.accepted("stop")
     bench.run(pause)
@@ -262,7 +262,7 @@ def test_the_place_where_override_0_holds_it_as_a_target_ends_the_job(kind: int)
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("target", [6000.0, 0.0])
 def test_the_override_lives_on_through_new_targets(kind: int, target: float) -> None:
-    """50 % of 2000; on the way back over 900 mm of these, or for types 1 and 3 of what this way can reach."""
+    """50 % of 2000; on the way back over 900 mm of these, or for types 1 and 3 of what this distance can reach."""
     bench = axis_bench(count=100, override_type=kind)
     bench.accepted("set_override", percent=50.0)
     start(bench, 3000.0)

@@ -362,7 +362,7 @@ def test_during_a_stop_it_waits_and_then_acts_in_both_stages(target: float, acti
 
 
 def test_short_successive_requests_do_not_stop_the_axis() -> None:
-    """Incoherent instructions in every block; the axis goes on and ends at the last target."""
+    """Incoherent instructions in every block; the axis continues and ends at the last target."""
     bench = under_way()
     for n in range(60):
         request(bench, 300.0 + (n * 631) % 1500, 2500.0 + (n * 977) % 2000, 300.0 + (n * 389) % 2500)

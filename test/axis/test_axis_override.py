@@ -221,7 +221,7 @@ def test_override_outside_0_to_100_is_refused(percent: float) -> None:
 
 REACHED = 700.0
 SHORT = REACHED * (REACHED / A + A / J)
-"""A way that reaches 700 of the 1000 mm/s asked for: 168 mm."""
+"""A distance that reaches 700 of the 1000 mm/s asked for: 168 mm."""
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])

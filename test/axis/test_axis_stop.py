@@ -165,8 +165,10 @@ def test_the_ramp_of_an_emergency_stop(cycle: int, direction: float) -> None:
     assert bench.column("status_bits")[-1] & STOPPED
     if cycle == 800:
         assert states.index(S.STANDSTILL) == pytest.approx(cycle + 140, abs=1.1)
-        way = ramp_way(V, 0.0, 20_000.0, 500_000.0)
-        assert bench.column("set_position")[-1] == pytest.approx(direction * (ramp_way(0, V) + 0.3 * V + way), abs=1e-6)
+        distance = ramp_way(V, 0.0, 20_000.0, 500_000.0)
+        assert bench.column("set_position")[-1] == pytest.approx(
+            direction * (ramp_way(0, V) + 0.3 * V + distance), abs=1e-6
+        )
     assert_axis_smooth(bench, acceleration=20_000.0, jerk=500_000.0)
 
 
@@ -189,7 +191,7 @@ WEAK_OR_INVALID = [4999.9, 1e-300, 0.0, -1.0, -0.0, nan, -inf, None, "", "fast",
 def test_an_emergency_stop_stops_with_the_larger_of_what_is_given_and_the_start(
     deceleration: object, jerk: object
 ) -> None:
-    """10,000 mm/s² with the jerk of the start (5000, 50,000) is one of them. The way is that of the closed form."""
+    """10,000 mm/s² with the jerk of the start (5000, 50,000) is one of them. The distance is that of the closed form."""
     bench = started(5000.0, 800)
     given = {"deceleration": deceleration, "jerk": jerk}
     a, j = (
@@ -203,8 +205,8 @@ def test_an_emergency_stop_stops_with_the_larger_of_what_is_given_and_the_start(
     ]
     assert bench.accepted("emergency_stop", **values) == (WARNING + "; ".join(corrections) if corrections else "")
     run_to_standstill(bench)
-    way = ramp_way(V, 0.0, a, j)
-    assert bench.column("set_position")[-1] == pytest.approx(ramp_way(0.0, V) + 0.3 * V + way, abs=1e-6)
+    distance = ramp_way(V, 0.0, a, j)
+    assert bench.column("set_position")[-1] == pytest.approx(ramp_way(0.0, V) + 0.3 * V + distance, abs=1e-6)
     assert bench.column("state")[800] == S.STOPPING and bench.column("status_bits")[-1] & STOPPED
     assert_axis_smooth(bench, acceleration=a, jerk=j)
 
@@ -352,7 +354,7 @@ def test_the_brake_phase_begins_where_the_velocity_falls() -> None:
 
 
 def test_an_emergency_stop_while_override_0_brakes_or_holds() -> None:
-    """A hold is no brake phase: the job goes on later."""
+    """A hold is no brake phase: the job continues later."""
     for pause in (100, 1000):
         bench = started(5000.0, 700)
         bench.accepted("set_override", percent=0.0)

@@ -1,4 +1,4 @@
-"""The trapezoid of a position compensation and its way along a basic motion, against geometry and quadrature."""
+"""The trapezoid of a position compensation and its distance along a basic motion, against geometry and quadrature."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def trapezoid(t: float, peak: float, first: float, last: float, seconds: float) 
 
 
 def area(peak: float, first: float, last: float, seconds: float) -> float:
-    """Way of a trapezoid as the mean of its two parallel sides times its height."""
+    """Distance of a trapezoid as the mean of its two parallel sides times its height."""
     top = seconds - peak / first - peak / last
     return 0.5 * (seconds + top) * peak
 
@@ -37,8 +37,8 @@ def highest(first: float, last: float, seconds: float) -> float:
 def way_by_quadrature(table: Profile, first: float, last: float) -> float:
     peak = max(abs(row[2]) for row in table.rows)
     corners = [peak / first, table.duration - peak / last]
-    way, _ = quad(trapezoid, 0.0, table.duration, (peak, first, last, table.duration), points=corners)
-    return float(way)
+    distance, _ = quad(trapezoid, 0.0, table.duration, (peak, first, last, table.duration), points=corners)
+    return float(distance)
 
 
 # what is reached
@@ -174,8 +174,8 @@ def test_a_varying_velocity_above_and_below_vp() -> None:
     speed = lagging_speed(1500.0 + 1400.0 * np.sin(2.0 * pi * 1.7 * t), dt)
     assert np.count_nonzero(np.isclose(np.abs(np.diff(speed)) / dt, 1000.0, rtol=1e-6)) > 20_000
     assert rows[:2000, 1] == pytest.approx(speed[::100][:2000], abs=0.5)
-    way = cumulative_simpson(speed, x=t, initial=0.0)
-    assert rows[:2001, 0] == pytest.approx(way[::100], abs=5e-3)
+    distance = cumulative_simpson(speed, x=t, initial=0.0)
+    assert rows[:2001, 0] == pytest.approx(distance[::100], abs=5e-3)
     assert (np.abs(np.diff(rows[:, 0]) - 0.5 * CYCLE_TIME * (rows[1:, 1] + rows[:-1, 1])) <= 5e-4).all()
 
 

@@ -31,12 +31,12 @@ VALUES: dict[str, float] = {
 }
 PEAK = 200.0
 PHASES = {"begin": 0, "first cycle": 1, "rise": 150, "hold": 1000, "fall": 1900, "last cycle": 1999}
-"""Cycles after the begin of the compensation; rise and fall take 0.4 and 0.2 s (0.2 and 0.4 s for D < 0)."""
+"""Cycles after the start of the compensation; rise and fall take 0.4 and 0.2 s (0.2 and 0.4 s for D < 0)."""
 SMOOTH = {"acceleration": A * 1.1 + FALL, "jerk": J * 1.1 + 2.0 * FALL * A / 2000.0}
 
 
 def compensating_axis(cycles: int, *, sign: float = 1.0, side: float = 1.0, **changes: Any) -> UnitBench:
-    """An axis at 2000 mm/s, `cycles` after the begin of its compensation in cycle 1000."""
+    """An axis at 2000 mm/s, `cycles` after the start of its compensation in cycle 1000."""
     bench = moving_axis(target=side * 20_000.0, **changes)
     bench.accepted("compensation_start", **VALUES | {"difference": sign * VALUES["difference"]})
     if cycles:
@@ -66,7 +66,7 @@ def additional(t: float, sign: float) -> tuple[float, float]:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_compensation_stop_ramps_down_at_once(phase: str, sign: float, side: float) -> None:
-    """D becomes what is reached then: the way so far and w²/(2·last rate)."""
+    """D becomes what is reached then: the distance so far and w²/(2·last rate)."""
     cycles = PHASES[phase]
     bench = compensating_axis(cycles, sign=sign, side=side)
     assert bench.accepted("compensation_stop") == ""

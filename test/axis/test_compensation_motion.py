@@ -40,11 +40,13 @@ def compensate(bench: UnitBench, **changes: float) -> str:
     return bench.accepted("compensation_start", **VALUES | changes)
 
 
-def shape(t: np.ndarray, way: float, seconds: float, first: float, last: float, increase: float = 1e9) -> np.ndarray:
-    """Velocity w(t) >= 0 of the trapezoid over `seconds` with the area `way`, its peak found numerically."""
+def shape(
+    t: np.ndarray, distance: float, seconds: float, first: float, last: float, increase: float = 1e9
+) -> np.ndarray:
+    """Velocity w(t) >= 0 of the trapezoid over `seconds` with the area `distance`, its peak found numerically."""
 
     def lacks(peak: float) -> float:
-        return 0.5 * (2.0 * seconds - peak / first - peak / last) * peak - way
+        return 0.5 * (2.0 * seconds - peak / first - peak / last) * peak - distance
 
     meet = seconds / (1.0 / first + 1.0 / last)
     top = min(increase, meet if lacks(meet) < 0.0 else brentq(lacks, 0.0, meet, xtol=1e-13, rtol=1e-15))
@@ -133,7 +135,7 @@ def test_a_length_beyond_the_target_is_cut_to_the_rest_of_the_way() -> None:
         "P-WARN-23023 axis x: compensation_start: length 20000 mm is more than the distance to go; 8500 mm is used"
     )
     settle(bench)
-    t = np.arange(4001) * CYCLE_TIME  # up to the begin of the basic motion's brake phase
+    t = np.arange(4001) * CYCLE_TIME  # up to the start of the basic motion's brake phase
     w = shape(t, 100.0, 4.25, 500.0, 1000.0)
     assert column(bench, "set_velocity")[1000:5001] == pytest.approx(2000.0 + w, abs=1e-8)
     ramp = 2000.0 - start_ramp(2000.0, np.arange(501) * CYCLE_TIME)  # the brake phase mirrors the start
@@ -215,10 +217,10 @@ def test_overrides_during_a_compensation(
     bench, clean = benches
     first, last = (500.0, 1000.0) if difference > 0.0 else (1000.0, 500.0)
     seconds = VALUES["length"] / vp
-    way = reference_way(
+    distance = reference_way(
         clean, 1000, lambda t: shape(t, 250.0, seconds, first, last), side * float(np.sign(difference)), vp
     )
-    assert bench.column("set_position")[-1] - side * 20_000.0 == pytest.approx(way, abs=1e-4)
+    assert bench.column("set_position")[-1] - side * 20_000.0 == pytest.approx(distance, abs=1e-4)
     crossings = 0 if vp == 2000.0 else 4  # where v passes VP under acceleration, min(1, v/VP) has a corner
     assert_no_steps(bench, acceleration=A * 1.21 + 1000.0, jerk=J * 1.21 + 2000.0 * A / vp, corners=4 + crossings)
 
@@ -323,7 +325,7 @@ def test_the_jerk_is_the_slope_of_the_acceleration() -> None:
 
 
 def test_the_end_of_the_path_ends_the_compensation() -> None:
-    """The time L/VP = 5 s would go on after the target is reached (the axis goes at 4·VP first)."""
+    """The time L/VP = 5 s would continue after the target is reached (the axis goes at 4·VP first)."""
     bench = moving_axis(target=4000.0)
     compensate(bench, length=2500.0, process_velocity=500.0, difference=100.0)
     settle(bench)
@@ -332,12 +334,12 @@ def test_the_end_of_the_path_ends_the_compensation() -> None:
     assert has_bit(bench, COMPENSATING)[1000 : arrived - 1].all()
     assert not has_bit(bench, HAS_JOB)[arrived:].any()
     assert bench.state == 1
-    way = simpson(
+    distance = simpson(
         shape(t := np.arange(1501) * CYCLE_TIME, 100.0, 5.0, 500.0, 1000.0)
         * np.minimum(1.0, np.concatenate([np.full(1000, 2000.0), 2000.0 - start_ramp(2000.0, t[:501])]) / 500.0),
         x=t,
     )
-    assert bench.column("set_position")[-1] == pytest.approx(4000.0 + way, abs=1e-4)
+    assert bench.column("set_position")[-1] == pytest.approx(4000.0 + distance, abs=1e-4)
     # min(1, v/VP) gets a corner where v falls below VP under -A: 20·A/VP there
     assert_no_steps(bench, acceleration=A * 1.05 + 500.0, jerk=J * 1.05 + 2.0 * 500.0 * A / 500.0, corners=3)
 

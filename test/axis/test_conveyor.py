@@ -40,8 +40,8 @@ def test_a_row_of_modulo_starts(seed: int) -> None:
         end = bench.last.set_position[-1]
         lengths, station = divmod(Fraction(abs(position)), 500)
         assert float((Fraction(end) - station) / 500) == pytest.approx(round((end - float(station)) / 500), abs=1e-9)
-        way = math.copysign(1.0, position) * (end - before)
-        assert 500.0 * lengths <= way + 1e-6 and way < 500.0 * (lengths + 1)
+        distance = math.copysign(1.0, position) * (end - before)
+        assert 500.0 * lengths <= distance + 1e-6 and distance < 500.0 * (lengths + 1)
         before = end
 
 

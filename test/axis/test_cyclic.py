@@ -84,7 +84,7 @@ def test_acceleration_bound_is_kept_below_it_too(motion: list[float], factors: l
 @QUICK
 @given(MOTIONS, FACTORS, st.floats(-3.0, 3.0))
 def test_slave_is_exactly_linear_once_its_factor_stays(motion: list[float], factors: list[float], last: float) -> None:
-    """2 · 3 · v/(B - 3·A) is the longest way to a new velocity; after it the offset does not change any more."""
+    """2 · 3 · v/(B - 3·A) is the longest way to a new velocity; after it the offset no longer changes."""
     held = 130
     bound = 8.0 * A
     states = master([*motion, *[0.0] * held])
@@ -100,8 +100,8 @@ def test_slave_is_exactly_linear_once_its_factor_stays(motion: list[float], fact
 def test_change_of_factor_takes_the_time_of_the_bound() -> None:
     """0.5 -> 1.5 at 1000 mm/s and 8000 mm/s²: 0.125 s; the velocity is a straight line."""
     rows = changing(0.5, 1.5)
-    way = rows[1000:1125, 1]
-    assert way == pytest.approx(500.0 + 8.0 * np.arange(1, 126), abs=1e-9)
+    distance = rows[1000:1125, 1]
+    assert distance == pytest.approx(500.0 + 8.0 * np.arange(1, 126), abs=1e-9)
     assert rows[1124:, 1] == pytest.approx(1500.0, abs=1e-9)
     assert rows[1124, 0] - rows[999, 0] == pytest.approx(1000.0 * 0.125, abs=1e-9)
 
@@ -143,7 +143,7 @@ def test_huge_factor_is_no_way_around_the_bound(factor: float) -> None:
 
 
 def test_change_of_the_source_moves_nothing() -> None:
-    """The master's position is counted 25 mm further from a block on: the slave goes on as if nothing had been."""
+    """The master's position is counted 25 mm further from a block on: the slave continues as if nothing had been."""
     states = master(CONSTANT)
     plain, shifted = (CyclicCoupling("x", 8000.0, cycle_time=T) for _ in range(2))
     for coupling in (plain, shifted):

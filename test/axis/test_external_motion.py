@@ -26,15 +26,15 @@ from superposition_support import (
 
 
 @pytest.mark.parametrize("start", [0.0, 0.1, -1234.567])
-@pytest.mark.parametrize("way", [600.0, -600.0])
+@pytest.mark.parametrize("distance", [600.0, -600.0])
 @pytest.mark.parametrize("count", [1, 7, 10, 1000])
-def test_absolute_setpoints_come_out_to_the_bit(start: float, way: float, count: int) -> None:
+def test_absolute_setpoints_come_out_to_the_bit(start: float, distance: float, count: int) -> None:
     bench = external_axis(start_position=start, count=count)
-    rows = generator(way, first_cycle=20, start=start)
+    rows = generator(distance, first_cycle=20, start=start)
     feed(bench, rows, 1000)
     assert setpoints(bench, rows) == [tuple(row[1:4]) for row in rows]
-    assert bench.column("set_position")[-1] == start + way
-    assert bench.column("actual_position")[-1] == pytest.approx(start + way, abs=1e-6)
+    assert bench.column("set_position")[-1] == start + distance
+    assert bench.column("actual_position")[-1] == pytest.approx(start + distance, abs=1e-6)
     assert bench.events == [] and bench.state == 4
 
 
@@ -94,19 +94,19 @@ def test_two_absolute_motions_with_a_ptp_motion_in_between() -> None:
 # superposed
 
 
-@pytest.mark.parametrize("way", [300.0, -300.0])
+@pytest.mark.parametrize("distance", [300.0, -300.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_relative_setpoints_on_a_ptp_motion_are_added_exactly(way: float, side: float) -> None:
+def test_relative_setpoints_on_a_ptp_motion_are_added_exactly(distance: float, side: float) -> None:
     bench, clean = moving_axis(target=side * 10_000.0), moving_axis(target=side * 10_000.0)
     bench.accepted("external_enable", mode="relative")
-    rows = generator(way, first_cycle=1500, velocity=500.0)
+    rows = generator(distance, first_cycle=1500, velocity=500.0)
     feed(bench, rows, 6000)
     clean.run(6000)
     basic = setpoints(clean, rows)
     assert setpoints(bench, rows) == [
         tuple(b + r for b, r in zip(base, row[1:4], strict=True)) for base, row in zip(basic, rows, strict=True)
     ]
-    assert bench.column("set_position")[-1] == side * 10_000.0 + way
+    assert bench.column("set_position")[-1] == side * 10_000.0 + distance
     assert bench.state == 4 and has_bit(bench, EXTERNAL)[1000:].all()
     assert (
         np.flatnonzero(has_bit(bench, HAS_JOB))[[0, -1]].tolist()
@@ -328,7 +328,7 @@ def test_setpoints_every_10_cycles_are_smooth() -> None:
     fine = np.linspace(0.0, seconds, 80_001)
     acceleration = np.interp(fine, t, a)
     velocity = np.concatenate([[0.0], np.cumsum(0.5 * (acceleration[1:] + acceleration[:-1]) * (fine[1] - fine[0]))])
-    way = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * (fine[1] - fine[0]))])
+    distance = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * (fine[1] - fine[0]))])
     bench = external_axis()
     rows = [[20, 0.0, 0.0, 0.0, 1]]
     for k in range(int(seconds / 0.01) + 3):
@@ -336,7 +336,7 @@ def test_setpoints_every_10_cycles_are_smooth() -> None:
         rows.append(
             [
                 30 + 10 * k,
-                float(np.interp(x, fine, way)),
+                float(np.interp(x, fine, distance)),
                 float(np.interp(x, fine, velocity)),
                 float(np.interp(x, fine, acceleration)),
                 1,
@@ -345,10 +345,10 @@ def test_setpoints_every_10_cycles_are_smooth() -> None:
     feed(bench, rows, round(seconds / CYCLE_TIME) + 200)
     p, v = column(bench, "set_position"), column(bench, "set_velocity")
     assert p[-1] == pytest.approx(500.0, abs=1e-6)
-    true_way = CubicHermiteSpline(fine, way, velocity)
+    true_distance = CubicHermiteSpline(fine, distance, velocity)
     inside = np.arange(30, 30 + round(seconds / CYCLE_TIME))
     # a step of J·T² /2 for T = 10 ms in velocity, J·T³/6 in position is what the held acceleration leaves out
-    assert p[inside] == pytest.approx(true_way((inside - 30) * CYCLE_TIME), abs=J * 0.01**3 / 6.0 + 1e-6)
+    assert p[inside] == pytest.approx(true_distance((inside - 30) * CYCLE_TIME), abs=J * 0.01**3 / 6.0 + 1e-6)
     assert np.abs(np.diff(v)).max() <= 5000.0 * CYCLE_TIME + J * 0.01**2 / 2.0 + 1e-6
     assert bench.events == []
 
@@ -400,7 +400,7 @@ def test_late_setpoints_count_from_when_they_come() -> None:
 def test_setpoints_at_the_largest_velocity_are_taken_far_from_zero_too(position: float) -> None:
     """At 1 mm/s a cycle is 0.001 mm: at 99,000 mm the last place of a position is 1e-11 mm, 1e-8 of that."""
     bench = external_axis(max_velocity=1.0, reference_velocity=1.0, start_position=position)
-    way = [position + 0.001 * k for k in range(500)]
-    rows = [[bench.cycle + k, p, 1.0, 0.0, 1] for k, p in enumerate(way)]
-    feed(bench, [*rows, [bench.cycle + 500, way[-1], 0.0, 0.0, 0]], 600)
-    assert bench.events == [] and bench.column("set_position")[-1] == way[-1]
+    distance = [position + 0.001 * k for k in range(500)]
+    rows = [[bench.cycle + k, p, 1.0, 0.0, 1] for k, p in enumerate(distance)]
+    feed(bench, [*rows, [bench.cycle + 500, distance[-1], 0.0, 0.0, 0]], 600)
+    assert bench.events == [] and bench.column("set_position")[-1] == distance[-1]

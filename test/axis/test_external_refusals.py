@@ -314,8 +314,8 @@ def test_the_maximum_is_never_exceeded_before_the_fault(seed: int) -> None:
     assert np.abs(v).max() <= highest * (1.0 + 1e-9)
     assert (np.abs(np.diff(v)) <= (A + added) * 0.001 * (1.0 + 1e-9)).all()
     p = column(bench, "set_position")
-    way = np.diff(p) - 0.0005 * (v[1:] + v[:-1])
-    assert (np.abs(way) <= 0.25 * (A + added) * 1e-6 + 1e-9).all()
+    distance = np.diff(p) - 0.0005 * (v[1:] + v[:-1])
+    assert (np.abs(distance) <= 0.25 * (A + added) * 1e-6 + 1e-9).all()
 
 
 def test_silence_at_rest_is_no_fault() -> None:

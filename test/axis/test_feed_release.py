@@ -1,4 +1,4 @@
-"""Feed releases: motion in a direction that is not released comes to rest, waits and goes on; nothing else is touched."""
+"""Feed releases: motion in a direction that is not released comes to rest, waits and continues; nothing else is touched."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_the_withheld_direction_is_like_override_0(sign: float, at: int) -> None
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_the_other_direction_is_free(sign: float) -> None:
-    """Nothing at all changes for a motion the other way, nor for one in its brake phase."""
+    """Nothing changes for a motion the other way, nor for one in its brake phase."""
     free, other = moving_axis(target=sign * 1000.0, cycles=300), moving_axis(target=sign * 1000.0, cycles=300)
     withhold(other, -sign)
     for bench in (free, other):
@@ -355,7 +355,7 @@ def brakes_for_the_end(bench: MachineBench) -> None:
 def test_an_element_that_brakes_for_its_end_leaves_the_next_one_to_its_direction(
     way_on: str, node: str, block_cycles: int
 ) -> None:
-    """Both axes have gone forward to X100 Y50; what goes on backward, or stands, is not touched at all."""
+    """Both axes have gone forward to X100 Y50; what continues backward, or stands, is not touched at all."""
     program = f"%P\nG01 X100 Y50 F6000\n{way_on}\nM30"
     mill = replace(MILL, block_cycles=block_cycles)
     free, other = (MachineBench(program, machine=mill, end_when_idle=False).run(0.3) for _ in range(2))
@@ -377,7 +377,7 @@ def test_an_element_that_brakes_for_its_end_leaves_the_next_one_to_its_direction
 
 
 def test_the_next_element_in_the_withheld_direction_is_held_in_its_own_line() -> None:
-    """It has moved for a block at most before it brakes (2·J·t³), and goes on after the release."""
+    """It has moved for a block at most before it brakes (2·J·t³), and continues after the release."""
     program = "%P\nG01 X100 Y50 F6000\nG01 X200\nG01 X0\nM30"
     bench = MachineBench(program, end_when_idle=False).run(0.3)
     brakes_for_the_end(bench)

@@ -185,7 +185,7 @@ def test_change_of_the_source_moves_nothing() -> None:
 @pytest.mark.parametrize("place", [0.0, 99_000.0, -99_000.0])
 @pytest.mark.parametrize("velocity", [1.0, 0.01])
 def test_a_slow_saw_without_time_to_spare_is_not_late_far_from_zero(place: float, velocity: float) -> None:
-    """The run-up fills the whole way of the slave and the whole time of the master, wherever they are."""
+    """The run-up fills the whole distance of the slave and the whole time of the master, wherever they are."""
     ramp = ramp_of(velocity)
     for begin in np.random.default_rng(5).uniform(0.0, 1.0, 200):
         slave = place + begin

@@ -1,4 +1,4 @@
-"""Modulo targets against exact arithmetic: direction, congruence, minimal way, whole turns. Source: TX1250 2.1."""
+"""Modulo targets against exact arithmetic: direction, congruence, minimal distance, whole turns. Source: TX1250 2.1."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def test_worked_examples(position: float, modulo_position: float, target: float)
 def test_rounding_makes_no_full_turn(base: float, error: float, turns: int, direction: float) -> None:
     """An axis that is 1e-13 beyond its modulo position is there; it only makes the turns asked for."""
     position = base + error
-    way = modulo_target(position, direction * (90.0 + 360.0 * turns), 360.0) - position
-    assert way == pytest.approx(direction * 360.0 * turns, abs=1e-7)
-    assert turns == 0 or way * direction > 0.0
+    distance = modulo_target(position, direction * (90.0 + 360.0 * turns), 360.0) - position
+    assert distance == pytest.approx(direction * 360.0 * turns, abs=1e-7)
+    assert turns == 0 or distance * direction > 0.0
 
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
@@ -91,7 +91,7 @@ def test_direction_congruence_and_minimal_way(position: float, modulo_position: 
 @MANY
 @given(position=st.floats(-1e6, 1e6), modulo_position=st.floats(-720.0, 720.0))
 def test_the_same_command_again_only_adds_its_whole_turns(position: float, modulo_position: float) -> None:
-    """Where the axis has arrived, a second start must not find a way of nearly one turn because of rounding."""
+    """Where the axis has arrived, a second start must not find a distance of nearly one turn because of rounding."""
     there = modulo_target(position, modulo_position, 360.0)
     again = modulo_target(there, modulo_position, 360.0)
     whole = math.copysign(360.0 * (abs(modulo_position) // 360.0), modulo_position)

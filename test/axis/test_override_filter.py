@@ -1,4 +1,4 @@
-"""The override filter by itself: steps, interval, 0 and 100 % at once, the latest value wins."""
+"""The override filter alone: steps, interval, 0 and 100 % at once, the latest value wins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The PTP generator by itself: what it refuses, hands over and keeps."""
+"""The PTP generator alone: what it refuses, hands over and keeps."""
 
 from __future__ import annotations
 

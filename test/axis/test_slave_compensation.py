@@ -45,15 +45,15 @@ def trapezoid(length: float, difference: float, vp: float, vk: float, up: float,
     time = length / vp
     low, high = 0.0, min(vk, time / (1.0 / up + 1.0 / down))
 
-    def way(v: float) -> float:
+    def distance(v: float) -> float:
         return v * time - 0.5 * v * v * (1.0 / up + 1.0 / down)
 
-    if way(high) <= difference:
-        return way(high)
+    if distance(high) <= difference:
+        return distance(high)
     for _ in range(200):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if way(middle) < difference else (low, middle)
-    return way(low)
+        low, high = (middle, high) if distance(middle) < difference else (low, middle)
+    return distance(low)
 
 
 def test_the_slave_is_making_up() -> None:
@@ -95,7 +95,7 @@ def test_what_cannot_be_reached_is_cut_with_a_warning() -> None:
 @pytest.mark.parametrize("factor", [1.0, 0.5, -0.5, -2.0])
 @pytest.mark.parametrize("difference", [200.0, -200.0])
 def test_it_counts_along_the_motion_whatever_the_factor(factor: float, difference: float) -> None:
-    """With a negative factor 'making up' is still more way: away from where the slave comes from."""
+    """With a negative factor 'making up' is still more distance: away from where the slave comes from."""
     bench = running(factor=factor)
     speed = 2000.0 * abs(factor)
     data = {**COMPENSATION, "difference": difference, "process_velocity": speed, "length": 2.5 * speed}
@@ -143,7 +143,7 @@ def test_velocities_of_compensations_in_a_cascade_add_up() -> None:
 
 
 def test_below_the_process_velocity_less_is_compensated() -> None:
-    """Override 50 % after the begin: v/VP = 0.5 for the rest, D_real between D/2 and D."""
+    """Override 50 % after the start: v/VP = 0.5 for the rest, D_real between D/2 and D."""
     bench = running(target=20_000.0)
     bench.send("x", "set_override", percent=50.0)
     bench.run(1.0)
@@ -281,7 +281,7 @@ def test_a_compensation_that_leads_out_of_the_soft_limits_ends_with_an_error(fac
 
 
 def test_a_slave_whose_master_becomes_faster_never_gets_above_its_maximum() -> None:
-    """1500 mm/s and 300 of the compensation; the master goes on to 2100: 23036 at 2200, which is not exceeded."""
+    """1500 mm/s and 300 of the compensation; the master continues to 2100: 23036 at 2200, which is not exceeded."""
     bench = SlaveBench(machine=machine(PTP, y={"max_velocity": 2200.0}))
     bench.do("y", "couple", master="x", factor=1.0)
     bench.do("x", "move_absolute", target=20_000.0, velocity=1500.0)

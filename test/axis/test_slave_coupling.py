@@ -225,7 +225,7 @@ def test_block_sizes_change_nothing(period: int, sizes: tuple[int, ...]) -> None
 
 
 def test_a_new_factor_keeps_the_position_and_steps_the_velocity() -> None:
-    """The manual's figure: -0.7, then -0.8 in motion; the way after the change counts with the new factor."""
+    """The manual's figure: -0.7, then -0.8 in motion; the distance after the change counts with the new factor."""
     bench = SlaveBench()
     bench.send_all([couple("y", -0.7), start()])
     bench.run(0.7)

@@ -78,7 +78,7 @@ def test_instantaneous_all_of_the_group_stop_on_their_ramps(block_cycles: int) -
 
 
 def test_the_faulty_axis_does_not_follow_its_master_any_more() -> None:
-    """y stops on its own ramp at once, not on the relation to x; z follows y until it hears of the error."""
+    """y stops on its own ramp at once, not on the relation to x; z follows y until it is notified of the error."""
     bench = group()
     failed = bench.cycle
     bench.do("y", "power", enabled=False)
@@ -138,7 +138,7 @@ def test_delayed_only_the_faulty_axis_stops_until_the_delay_is_over() -> None:
 
 
 def test_delayed_the_slave_of_the_faulty_axis_is_decoupled_in_time() -> None:
-    """It is of no group with an error any more: it goes on, x does not."""
+    """It is no longer of a group with an error: it continues, x does not."""
     bench = late_group()
     bench.do("y", "power", enabled=False)
     bench.run(0.05)
@@ -149,7 +149,7 @@ def test_delayed_the_slave_of_the_faulty_axis_is_decoupled_in_time() -> None:
 
 
 def test_delayed_the_faulty_axis_is_decoupled_in_time() -> None:
-    """Two groups: x without error goes on, y and its slave z stop."""
+    """Two groups: x without error continues, y and its slave z stop."""
     bench = late_group()
     bench.do("y", "power", enabled=False)
     bench.run(0.05)

@@ -85,7 +85,7 @@ def played(sequence: list[Step], *, delayed: bool = False) -> SlaveBench:
 
 
 def assert_nothing_jumps(bench: SlaveBench, axis: str) -> None:
-    """The way of a cycle lies between what its velocities at both ends make; except where power on places the axis."""
+    """The distance of a cycle lies between what its velocities at both ends make; except where power on places the axis."""
     p, v = bench.values(axis), bench.values(axis, "set_velocity")
     fastest = np.maximum(np.abs(v[1:]), np.abs(v[:-1]))
     jumps = np.abs(np.diff(p)) > T * fastest + 0.02

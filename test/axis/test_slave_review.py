@@ -103,7 +103,7 @@ def test_a_channel_may_not_move_a_slave() -> None:
 
 
 def test_enabling_and_starting_a_pushed_master_does_not_throw_its_slave() -> None:
-    """x is moved without enable; when it counts from there again and starts in the same block, y goes on smoothly."""
+    """x is moved without enable; when it counts from there again and starts in the same block, y continues smoothly."""
     bench = MachineBench(scenario='- {at: 0, to: "y", do: couple, master: x, factor: 1}', machine=PTP)
     bench.run(0.1)
     bench.give("x", "power", enabled=False)

@@ -40,8 +40,8 @@ compensations = st.fixed_dictionaries(
 
 def external_rows(begin: int, sign: float, velocity: float, a: float, every: int = 1) -> list[SetpointRow]:
     """Up to the velocity, 300 ms on, and back to rest."""
-    way = sign * velocity * (velocity / a + 0.3)
-    return generator(way, first_cycle=begin, velocity=velocity, a=a, every=every)
+    distance = sign * velocity * (velocity / a + 0.3)
+    return generator(distance, first_cycle=begin, velocity=velocity, a=a, every=every)
 
 
 def end(bench: UnitBench, how: str, rows: list[SetpointRow]) -> None:

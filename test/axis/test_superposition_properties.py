@@ -75,7 +75,7 @@ def play(bench: UnitBench, sequence: list[tuple[tuple[str, dict[str, Any]], int]
             bench.run(pause)
 
 
-def generate(bench: UnitBench, way: float) -> None:
+def generate(bench: UnitBench, distance: float) -> None:
     """A generator that starts from where the axis is, as absolute or relative setpoints, whatever the state."""
     axis = bench.unit._axis  # type: ignore[attr-defined]
     start = (
@@ -85,7 +85,7 @@ def generate(bench: UnitBench, way: float) -> None:
     )
     bench.give(
         "external_setpoints",
-        setpoints=generator(way, first_cycle=bench.cycle, velocity=EXTERNAL_V, a=EXTERNAL_A, start=start),
+        setpoints=generator(distance, first_cycle=bench.cycle, velocity=EXTERNAL_V, a=EXTERNAL_A, start=start),
     )
 
 

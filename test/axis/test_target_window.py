@@ -8,7 +8,7 @@ from cnc_ptp.axis.target_window import TargetWindow
 
 
 def overdue(window: TargetWindow, cycles: range, *, at: float = 0.0, target: float = 0.0) -> list[int]:
-    """The cycles of `cycles` that are told as overdue, with the setpoint at `target` and the axis at `at`."""
+    """The cycles of `cycles` that are reported as overdue, with the setpoint at `target` and the axis at `at`."""
     return [cycle for cycle in cycles if window.overdue(cycle, target, at)]
 
 

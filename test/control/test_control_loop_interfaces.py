@@ -175,14 +175,14 @@ def moving_loop(interface: str, plant: str, mode: int = ADD_VEL | ADD_ACC) -> Co
 
 @pytest.mark.parametrize(("interface", "plant"), CASES)
 def test_an_open_loop_brings_the_drive_to_rest(interface: str, plant: str) -> None:
-    """Opened at full velocity, which no axis does: velocity 0 is held, nothing of the past goes out any more."""
+    """Opened at full velocity, which no axis does: velocity 0 is held, nothing of the past goes out."""
     loop = moving_loop(interface, plant)
     v = loop.drive.velocity
     cycles = run(loop, [STATES[200]] * 600, closed=False)
     assert abs(loop.drive.velocity) < 1e-6
     assert cycles[-1].actual_position == pytest.approx(cycles[-100].actual_position, abs=1e-9)
-    way = cycles[-1].actual_position - cycles[0].actual_position
-    assert -0.0001 * v < way < 0.03 * v
+    distance = cycles[-1].actual_position - cycles[0].actual_position
+    assert -0.0001 * v < distance < 0.03 * v
     for name in (
         "command_velocity",
         "feedforward_velocity",

@@ -92,7 +92,7 @@ def test_velocity_and_acceleration_feedforward_leave_nothing(mode: int, time_con
 def test_constant_jerk_leaves_the_part_that_changes_within_a_cycle(time_constant: float, j: float) -> None:
     """-Ta·j·(T/(1 - e^(-T/Ta)) - Ta - T/2)/Kv, about -j·T²/(12 Kv): the axis is ahead by what holding a command costs.
 
-    From V(n+1) = u + (V(n) - u)·e^(-T/Ta) and its integral, with a following error that does not change any more.
+    From V(n+1) = u + (V(n) - u)·e^(-T/Ta) and its integral, with a following error that no longer changes.
     """
     error = lags(run(matched(VEL | ACC, time_constant), motion([(1200, j)])))
     held = T / (1.0 - math.exp(-T / time_constant))

@@ -116,7 +116,7 @@ DELAYS = [0.0, 0.00015, 0.0004, 0.001, 0.0025, 0.004, 0.005999]
 
 @pytest.mark.parametrize("delay", DELAYS)
 def test_delays_of_whole_cycles_and_of_fractions(delay: float) -> None:
-    """P-AXIS-00389 for the velocity, P-AXIS-00390 for the torque, each by itself."""
+    """P-AXIS-00389 for the velocity, P-AXIS-00390 for the torque, each separately."""
     late = means(delay, 0.005999 - delay)
     loop = loop_with(ADD_VEL | ADD_ACC | ADD_JERK, velocity_delay=delay, acceleration_delay=0.005999 - delay)
     assert_puts_out(loop, 0.0, late.v, INERTIA * (late.a + 0.01 * late.j))

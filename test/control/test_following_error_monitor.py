@@ -196,11 +196,11 @@ def test_the_lag_of_the_delay_line_alone_never_faults() -> None:
     of = replace(FIXED, moving_limit=0.5)
     friction = replace(NO_FRICTION, permitted=True, reversal_lookahead=4)
     loop = make_loop(control(monitoring=of, friction=friction, of_feedforward=feedforward(0x3, always_active=True)))
-    way: list[MotionState] = motion(trapezoid(25_000.0, 100, 40, 200, rest=100))
-    for state in way:
+    states: list[MotionState] = motion(trapezoid(25_000.0, 100, 40, 200, rest=100))
+    for state in states:
         assert not loop.too_far(state)
         cycle = loop.step(state, True)
-    assert max(abs(c.following_error) for c in run(make_loop(control(friction=friction)), way)) > 4 * T * 300.0
+    assert max(abs(c.following_error) for c in run(make_loop(control(friction=friction)), states)) > 4 * T * 300.0
     assert abs(cycle.following_error) < 1e-6
 
 

@@ -156,7 +156,7 @@ def test_both_weights_as_in_figure_5() -> None:
 
 
 def through_zero(rest: int, sign: float) -> list[Phase]:
-    """Slows down to rest, stays there, goes on in the direction `sign`."""
+    """Slows down to rest, stays there, continues in the direction `sign`."""
     first = trapezoid(2000.0, 20, 0, 10, rest=rest)
     return [*first, *trapezoid(2000.0, 20, 0, 10, rest=5, sign=sign)]
 

@@ -33,8 +33,8 @@ def in_short_steps(of: PlantParameters, commands: Iterable[float]) -> list[Point
             impulse += h * torque
             if v == 0.0 and abs(torque) <= of.static:
                 continue
-            way = math.copysign(1.0, v or torque)
-            friction = way * of.static if v == 0.0 else friction_torque(of, v)
+            direction = math.copysign(1.0, v or torque)
+            friction = direction * of.static if v == 0.0 else friction_torque(of, v)
             new_v = v + h * (torque - friction) / k
             new_v = 0.0 if v and of.static and new_v * v < 0.0 else new_v
             x += h * (v + new_v) / 2.0

@@ -108,16 +108,16 @@ def test_friction_takes_energy_and_never_gives_any(seed: float) -> None:
     draw = random.Random(seed)
     of = plant()
     drive = TorqueCommandedDrive(of, cycle_time=T)
-    work = way = 0.0
+    work = distance = 0.0
     for _ in range(300):
         torque, before = draw.uniform(-1.5, 1.5), drive.position
         held = draw.randrange(1, 6)
         for _ in range(held):
             drive.step(torque)
         work += torque * (drive.position - before)
-        way += abs(drive.position - before)
+        distance += abs(drive.position - before)
         loss = work - K * drive.velocity**2 / 2.0
-        assert loss >= of.coulomb * way * (1.0 - 1e-3) - 1e-6
+        assert loss >= of.coulomb * distance * (1.0 - 1e-3) - 1e-6
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -29,14 +29,14 @@ def way_of(problem: Problem, profile: Profile) -> float:
 def assert_not_slower_than_ruckig(problems: list[Problem], profiles: list[Profile]) -> None:
     peer, compared = RuckigPeer(), 0
     for problem, profile in zip(problems, profiles, strict=True):
-        way = way_of(problem, profile)
-        if profile.duration == 0.0 or way == 0.0:
+        distance = way_of(problem, profile)
+        if profile.duration == 0.0 or distance == 0.0:
             continue
-        peer.scale(profile.duration, way)
+        peer.scale(profile.duration, distance)
         theirs = peer.duration(problem)
         if theirs is not None:
             compared += 1
-            longest = theirs * (1 + 1e-9) + peer.margin(problem, way)
+            longest = theirs * (1 + 1e-9) + peer.margin(problem, distance)
             assert profile.duration <= longest or peer.breaks_velocity(problem), (problem, theirs)
     assert compared > 0.85 * len(problems)
 

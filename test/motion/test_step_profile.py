@@ -59,10 +59,10 @@ def assert_sound(profile: Profile, v: float, target: float, limits: Limits) -> N
     middle = 0.5 * (times[1:] + times[:-1])
     a = profile.sample(middle)[2]
     velocity = v + np.concatenate([[0.0], np.cumsum(a * np.diff(times))])
-    way = cumulative_trapezoid(velocity, times, initial=0.0)
+    distance = cumulative_trapezoid(velocity, times, initial=0.0)
     scale = abs(target) + v + 1.0
     assert abs(velocity[-1]) < 1e-9 * (v + limits.velocity)
-    assert way[-1] == pytest.approx(target, abs=1e-9 * scale)
+    assert distance[-1] == pytest.approx(target, abs=1e-9 * scale)
     assert np.all((a == 0.0) | (a == limits.acceleration) | (a == -limits.deceleration))
     assert np.all(profile.sample(times)[3] == 0.0)
     assert velocity.min() > -1e-9 * limits.velocity
@@ -74,11 +74,13 @@ def test_random_problems_are_sound_and_no_slower_than_with_any_jerk() -> None:
     for _ in range(300):
         limits = Limits(*(10.0 ** draw.uniform(0.0, 4.0) for _ in range(3)), 10.0 ** draw.uniform(3.0, 9.0))
         v = draw.choice([0.0, draw.uniform(0.0, 2.0) * limits.velocity])
-        way = step_stopping_distance(v, limits.deceleration) * draw.choice([1.0, 1.5]) + 10.0 ** draw.uniform(-3.0, 3.0)
-        profile = step_to_position(0.0, v, way, limits)
-        assert_sound(profile, v, way, limits)
+        distance = step_stopping_distance(v, limits.deceleration) * draw.choice([1.0, 1.5]) + 10.0 ** draw.uniform(
+            -3.0, 3.0
+        )
+        profile = step_to_position(0.0, v, distance, limits)
+        assert_sound(profile, v, distance, limits)
         if v == 0.0:
-            assert profile.duration <= plan_rest_to_rest(0.0, way, limits).duration * (1.0 + 1e-12)
+            assert profile.duration <= plan_rest_to_rest(0.0, distance, limits).duration * (1.0 + 1e-12)
 
 
 def test_no_way_is_no_motion() -> None:

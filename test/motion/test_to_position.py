@@ -107,14 +107,14 @@ def test_planning_again_while_braking_does_not_reverse_far_from_zero():
     """Rounding of the place must not be taken for an overshoot: no return motion, the same time of arrival."""
     draw = random.Random(45)
     for _ in range(1000):
-        begin, way = draw.choice([0.0, 1e3, -1e5]), draw.choice([-1, 1]) * 10 ** draw.uniform(-2, 4)
+        begin, distance = draw.choice([0.0, 1e3, -1e5]), draw.choice([-1, 1]) * 10 ** draw.uniform(-2, 4)
         limits = Limits(*(10 ** draw.uniform(low, high) for low, high in ((0, 4), (1, 4.7), (1, 4.7), (3, 6))))
-        profile = plan_to_position(begin, 0.0, 0.0, begin + way, limits)
+        profile = plan_to_position(begin, 0.0, 0.0, begin + distance, limits)
         for _ in range(5):
             t = draw.uniform(profile.rows[-2][0], profile.duration)
-            again = plan_to_position(*profile.state_at(t)[:3], begin + way, limits)
+            again = plan_to_position(*profile.state_at(t)[:3], begin + distance, limits)
             assert t + again.duration == pytest.approx(profile.duration, rel=1e-7)
-            assert min(math.copysign(1.0, way) * row[2] for row in again.rows) >= -1e-9 * limits.velocity
+            assert min(math.copysign(1.0, distance) * row[2] for row in again.rows) >= -1e-9 * limits.velocity
 
 
 def test_solvers_stay_in_their_brackets_where_the_target_is_behind():

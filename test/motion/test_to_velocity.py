@@ -109,8 +109,8 @@ def test_stop_way_is_the_way_of_the_stop_ramp(draw_limits, draw_start):
         a *= draw.choice([1.0, 1.0, 3.0])
         profile = plan_to_velocity(0.0, v, a, 0.0, limits)
         largest = max(abs(row[1]) for row in profile.rows)
-        way = stopping_distance(v, a, limits.deceleration, limits.jerk)
-        assert way == pytest.approx(profile.end[0], rel=1e-9, abs=1e-9 * largest)
+        distance = stopping_distance(v, a, limits.deceleration, limits.jerk)
+        assert distance == pytest.approx(profile.end[0], rel=1e-9, abs=1e-9 * largest)
 
 
 def test_as_fast_as_ruckig_in_its_velocity_mode(draw_limits, draw_start):

@@ -46,8 +46,8 @@ def test_every_cycle_of_a_long_ramp_is_exact(wanted: float) -> None:
     profile = plan_speed(0.0, -0.5 * wanted, wanted, RAMP)
     for k in range(0, 80_000, 7):
         p, v, _ = profile.state_at(k * 0.001)
-        way, speed = expected(0.0, -0.5 * wanted, wanted, k * 0.001)
-        assert v == pytest.approx(speed, rel=1e-9, abs=1e-9) and p == pytest.approx(way, rel=1e-9, abs=1e-6)
+        distance, speed = expected(0.0, -0.5 * wanted, wanted, k * 0.001)
+        assert v == pytest.approx(speed, rel=1e-9, abs=1e-9) and p == pytest.approx(distance, rel=1e-9, abs=1e-6)
 
 
 def test_the_end_speed_is_exact_and_a_speed_that_is_reached_makes_no_ramp() -> None:

@@ -80,7 +80,7 @@ def test_a_digital_spindle_homes_first_and_then_goes_to_m19() -> None:
 
 @pytest.mark.parametrize("at", [0.05, 0.12])
 def test_a_reset_tells_that_the_homing_is_lost(at: float) -> None:
-    """And the rotation that waits for it does not begin any more."""
+    """And the rotation that waits for it no longer begins."""
     scenario = f"- {{at: {at}, to: channel, do: reset}}\n"
     bench = MachineBench(
         "%P\nG74 S1\nM3 S100\nG01 Z1 F1000\nM30", scenario, machine=machine_of("nc_spindle", False)
@@ -227,7 +227,7 @@ def coupled() -> MachineParameters:
 
 
 def test_a_fault_ends_the_work_for_a_source_at_once() -> None:
-    """Not with the next cycle: a command in the same block hears of the error, not of a work that has ended (24012)."""
+    """Not with the next cycle: a command in the same block is notified of the error, not of a work that has ended (24012)."""
     for fault, words in (("upstream_lost", {"source": "clock"}), ("power", {"enabled": False})):
         bench = spindle_bench()
         bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")

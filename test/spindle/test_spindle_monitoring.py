@@ -112,7 +112,7 @@ def test_an_override_that_does_not_change_gives_no_more_time() -> None:
     ids=["speed not reached", "no job in work", "refused with an error", "positioning"],
 )
 def test_hli_job_error(commands: list[tuple[str, dict[str, object]]], failed: bool) -> None:
-    """What was in work, or was refused, has failed; a reset takes the bit back (2.9)."""
+    """What was active, or was refused, has failed; a reset takes the bit back (2.9)."""
     drive = StuckDrive(stuck=False, limit=400.0 * RPM)
     bench = bench_of(spindle_parameters(speed_time=0.25, preferred_direction=1), drive=drive)
     for command, arguments in commands:

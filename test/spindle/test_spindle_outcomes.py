@@ -1,4 +1,4 @@
-"""What became of a positioning or a homing, as its action tells: while it waits, in work, at its end, overtaken."""
+"""What became of a positioning or a homing, as its action tells: while it waits, active, at its end, overtaken."""
 
 from __future__ import annotations
 

@@ -293,8 +293,8 @@ def test_seeded_jumps_between_rotation_and_positioning_are_smooth() -> None:
     speeds, positions = bench.column("set_speed_rpm"), bench.column("set_position_deg")
     for k in range(len(speeds) - 1):
         assert abs(speeds[k + 1] - speeds[k]) * RPM <= 40.0 * (1.0 + 1e-9) + 1e-7, k
-        way = 0.0005 * RPM * (speeds[k] + speeds[k + 1])
-        assert positions[k + 1] - positions[k] == pytest.approx(way, abs=0.25 * 76_000.0 * 1e-6 + 1e-7), k
+        distance = 0.0005 * RPM * (speeds[k] + speeds[k + 1])
+        assert positions[k + 1] - positions[k] == pytest.approx(distance, abs=0.25 * 76_000.0 * 1e-6 + 1e-7), k
 
 
 @pytest.mark.parametrize("count", [1, 7, 50])
