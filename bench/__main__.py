@@ -1,4 +1,4 @@
-"""`python -m bench`: measures the topics, prints a table each, writes JSON if asked."""
+"""`python -m bench`: measures the topics, prints a table for each, writes JSON if asked."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ def progress(topic: str) -> Iterator[Say]:
 
 
 def measure(topic: str, effort: Effort) -> list[Figure]:
-    """All figures of a topic. A topic's module is loaded when it is its turn: not all need ROS."""
+    """All figures of a topic. A topic's module is loaded when its turn comes: not all need ROS."""
     figures: Callable[[Effort, Say], Iterator[Figure]] = import_module(f"bench.{topic}").figures
     with progress(topic) as say:
         return list(figures(effort, say))
 
 
 def host() -> dict[str, Any]:
-    """Where was measured; others at work on the machine show in the load."""
+    """The computer of the measurement; other programs on it show in the load."""
     return {
         "python": platform.python_version(),
         "system": platform.platform(),
@@ -62,9 +62,9 @@ def write_json(path: str, effort: Effort, results: dict[str, list[Figure]]) -> N
 @click.option("--short", is_flag=True, help="Fewer runs of smaller jobs, 15 s of the graph.")
 @click.option("--json", "json_file", type=click.Path(dir_okay=False), help="Also write all figures to this file.")
 def main(topics: tuple[str, ...], short: bool, json_file: str | None) -> None:
-    """Measure speed and memory of TOPICS (all if none is given). Figures never fail; goals stand beside them.
+    """Measure speed and memory of TOPICS (all if none is given). Figures never fail; goals are shown next to them.
 
-    Medians over several runs (control: the least). Where another program does the same, it runs in turn with ours.
+    Medians over several runs (control: the least). If another program does the same, it runs in turn with ours.
     """
     effort = SHORT if short else FULL
     console = Console(highlight=False, width=None if sys.stdout.isatty() else 140)

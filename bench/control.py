@@ -1,7 +1,7 @@
-"""Position control: what one axis costs a cycle, from setpoint to actual values, in time of the processor.
+"""Position control: processor time of one axis per cycle, from setpoint to actual values.
 
 Each figure is the least of several rounds over one turn of a circle of 25 mm at 2000 mm/min (4.7 s, two reversals):
-a round takes milliseconds, and whoever else is at work on the machine makes it longer, never shorter.
+a round takes milliseconds, and other programs on the machine make it longer, never shorter.
 """
 
 from __future__ import annotations

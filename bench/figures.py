@@ -19,7 +19,7 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How thoroughly is measured."""
+    """Thoroughness of the measurement."""
 
     runs: int
     """Runs of which the median is taken."""
@@ -38,7 +38,7 @@ SHORT = Effort(runs=3, size=0.2, graph_seconds=15.0)
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A measured value, beside it the goal (and an aim beyond it) and the value of a peer from the same run."""
+    """A measured value with the goal (and an aim beyond it) and the value of a peer from the same run."""
 
     name: str
     value: float
@@ -82,7 +82,7 @@ class Stopwatch:
 
 @contextmanager
 def stopwatch() -> Iterator[Stopwatch]:
-    """Measures the block of a with statement, without garbage of what was measured before."""
+    """Measures the block of a with statement, without garbage of earlier measurements."""
     gc.collect()
     watch = Stopwatch()
     wall, cpu = time.perf_counter(), time.process_time()

@@ -45,7 +45,7 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
 
 
 def real_time(run: GraphRun) -> Iterator[Figure]:
-    """What must hold in real time: blocks, lateness."""
+    """Figures that must hold in real time: blocks, lateness."""
     machine = read_machine(MACHINE)
     block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
     yield Figure("failures and errors", len(run.failures), "", goal=0.0, at_most=True)
@@ -59,7 +59,7 @@ def real_time(run: GraphRun) -> Iterator[Figure]:
 
 
 def resources(run: GraphRun) -> Iterator[Figure]:
-    """Cores and memory: of the 8 nodes together, then each; the supervisor beside them."""
+    """Cores and memory: of the 8 nodes together, then each; and the supervisor."""
     yield Figure("start-up, from the call to the first cycle", run.startup, "s")
     if not run.wall:
         return
@@ -85,13 +85,13 @@ def spindle_beside_axis(cores: Mapping[str, float]) -> Iterator[Figure]:
 
 
 def failures(run: GraphRun) -> Iterator[Figure]:
-    """What went wrong first, and how often."""
+    """The first failure, and the number of failures."""
     for text, count in Counter(run.failures).most_common(3):
         yield Figure(text, count, "times", goal=0.0, at_most=True)
 
 
 def rate(name: str, run: GraphRun) -> Iterator[Figure]:
-    """Cycles a second and the cores that this takes; what went wrong."""
+    """Cycles per second and the cores that this takes; failures."""
     yield from failures(run)
     if run.wall:
         yield Figure(name, run.cycles / run.wall, "cycles/s")
@@ -99,7 +99,7 @@ def rate(name: str, run: GraphRun) -> Iterator[Figure]:
 
 
 def missing_samples(record: str) -> int:
-    """State samples that the cycle numbers say there must be and that the file lacks, over all units."""
+    """State samples that the file lacks according to the cycle numbers, over all units."""
     recorded = read_recording(record)
     expected = recorded.last_cycle + 1
     return sum(expected - len(np.unique(rows["cycle"])) for rows in recorded.states.values())

@@ -11,7 +11,7 @@ from multiprocessing import get_context
 import psutil
 
 SETTLED_CYCLES = 1000
-"""The figures begin here, when all nodes run evenly."""
+"""The figures start here, when all nodes run evenly."""
 SAMPLE_PERIOD = 1.0
 SUPERVISOR = "supervisor and monitor"
 COMPOSED = "all nodes"
@@ -19,7 +19,7 @@ COMPOSED = "all nodes"
 
 @dataclass(slots=True)
 class GraphRun:
-    """What was seen of a run between its first and its last sample."""
+    """Observations of a run between its first and its last sample."""
 
     startup: float = 0.0
     """Seconds until the first cycle was reported."""
@@ -100,7 +100,7 @@ class Sample:
 
 
 class Watch:
-    """Looks at the processes of the run once a second: this one and its children."""
+    """Samples the processes of the run once a second: this one and its children."""
 
     def __init__(self, *, memory_at: float, own: str) -> None:
         """`memory_at`: cycle at which the memory is read. `own`: name for this process."""

@@ -1,6 +1,6 @@
 """Motion arithmetic against Ruckig, side by side.
 
-Each figure is the median of several rounds over a few hundred seeded problems, in microseconds a call.
+Each figure is the median of several rounds over a few hundred seeded problems, in microseconds per call.
 """
 
 from __future__ import annotations

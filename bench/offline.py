@@ -1,4 +1,4 @@
-"""The offline run: times real time with and without recording, where the time goes, memory over a long run."""
+"""The offline run: speed over real time with and without recording, split of the time, memory over a long run."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ KINDS = ("plc", "channel", "spindle", "axis")
 
 @dataclass(frozen=True, slots=True)
 class OfflineRun:
-    """What one run took."""
+    """Times and memory of one run."""
 
     machine_seconds: float
     blocks: int

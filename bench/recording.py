@@ -1,4 +1,4 @@
-"""What recording costs: 3 axes, spindle and channel in blocks of 10 cycles, beside mcap.Writer."""
+"""Cost of recording: 3 axes, spindle and channel in blocks of 10 cycles, compared with mcap.Writer."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def seconds(call: Callable[[], object]) -> Callable[[], float]:
 
 
 def writing(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
-    """Messages a second beside mcap.Writer; what a block costs."""
+    """Messages per second compared with mcap.Writer; cost of a block."""
     peer = McapPeer(path)
     beside = path.with_name("peer.mcap")
     measures = [lambda: record_all(path, run), lambda: peer.write(beside), lambda: record_states(beside, run)]

@@ -23,7 +23,7 @@ PATIENCE = 20.0
 
 
 def figures(effort: Effort, say: Say) -> Iterator[Figure]:
-    """Starts the graph, calls `move_relative` of a standing axis again and again."""
+    """Starts the graph, calls `move_relative` of an axis at a standstill again and again."""
     calls = effort.scaled(CALLS)
     say(f"{calls} service calls")
     os.environ["ROS_DOMAIN_ID"] = str(101 + os.getpid() % 100)

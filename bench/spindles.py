@@ -28,7 +28,7 @@ GOAL = 10.0
 STEADY, RAMPS = (500, 1500, 2500, 3500), (6000, 500)
 """Speeds in rpm; from one to the other of the ramps takes 0.9 s."""
 STROKE, STROKE_TIME = 10, 0.4
-"""mm there and back at F2000, and about how long one takes, s."""
+"""mm back and forth at F2000, and about how long one takes, s."""
 
 
 def machine_file(path: Path) -> str:
@@ -74,9 +74,9 @@ class NoAliases(yaml.SafeDumper):
 
 
 def program(axis: str, numbers: range, speeds: Sequence[int], hold: float, seconds: float) -> str:
-    """Every `hold` s all spindles get the next of `speeds`, every other one turns the other way round.
+    """Every `hold` s all spindles get the next of `speeds`, every other one in the opposite direction.
 
-    Meanwhile `axis` goes to and fro; without one the path waits.
+    Meanwhile `axis` moves back and forth; without one the path waits.
     """
     names = ["S", *(f"S{number}" for number in numbers[1:])]
     strokes = [f"G01 {axis.upper()}{STROKE * (n % 2)} F2000" for n in range(1, 1 + round(hold / STROKE_TIME))]

@@ -25,7 +25,7 @@ MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
 CLIENTS = ("status", "do", "jog", "watch")
 STARTS_NODES = ("run", "replay", *CLIENTS)
-"""Commands that ROS arguments are for."""
+"""Commands that take ROS arguments."""
 
 
 def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -33,7 +33,7 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
-        click.option("--duration", type=DURATION, help="Seconds; without it the run ends by itself."),
+        click.option("--duration", type=DURATION, help="Seconds; without it the run ends automatically."),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
         click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
         MACHINE,
@@ -86,16 +86,16 @@ def simulate_command(**options: Any) -> None:
 @click.option("--free-run", is_flag=True, help="As fast as all nodes follow, instead of in real time.")
 @click.option("--composed", is_flag=True, help="All nodes in one process.")
 @namespace_option
-@click.option("--stay", is_flag=True, help="Go on when everything stands, to be commanded, until Ctrl-C.")
+@click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
 @click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states a second on /<unit>/state, 0 = none (P-MACH-00070)."
 )
 def run_command(**options: Any) -> None:
-    """Run a machine as a ROS graph, one process a node, until the job is done."""
+    """Run a machine as a ROS graph, one process per node, until the job is finished."""
     from cnc_ptp.commands.run.run import run
 
     if options["stay"] and options["duration"] is not None:
-        raise click.UsageError("--stay and --duration exclude each other: --duration stays for so many seconds.")
+        raise click.UsageError("--stay and --duration exclude each other: --duration stays for that many seconds.")
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
     ros_arguments().require_for_all_nodes("cnc_ptp run")
@@ -103,7 +103,9 @@ def run_command(**options: Any) -> None:
 
 
 COMPLETE_FROM = click.option(
-    "--machine", type=click.Path(dir_okay=False), help="Machine file that completion takes units from; without it asks."
+    "--machine",
+    type=click.Path(dir_okay=False),
+    help="Machine file from which completion takes units; without it the running machine.",
 )
 UNIT = click.argument("unit", shell_complete=complete_unit)
 
@@ -121,7 +123,9 @@ def status_command(**options: Any) -> None:
 @UNIT
 @click.argument("command", shell_complete=complete_command)
 @click.argument("words", nargs=-1, metavar="[NAME=VALUE]...", shell_complete=complete_word)
-@click.option("--wait", is_flag=True, help="Until the unit stands, turns at its speed, or its program has ended.")
+@click.option(
+    "--wait", is_flag=True, help="Until the unit is at a standstill, turns at its speed, or its program has ended."
+)
 @COMPLETE_FROM
 @namespace_option
 def do_command(machine: str | None, **options: Any) -> None:
@@ -139,7 +143,7 @@ def do_command(machine: str | None, **options: Any) -> None:
 @click.argument("axis", shell_complete=complete_axis)
 @click.argument("direction", type=click.Choice(["+", "-"]))
 @click.option("--speed", type=POSITIVE, required=True, help="mm/s, deg/s.")
-@click.option("--distance", type=POSITIVE, help="mm, deg: ends about there.")
+@click.option("--distance", type=POSITIVE, help="mm, deg: ends after about this distance.")
 @click.option("--time", "seconds", type=POSITIVE, help="Seconds.")
 @COMPLETE_FROM
 @namespace_option
@@ -176,9 +180,11 @@ def check_command(**options: Any) -> None:
 @main.command("replay")
 @RECORDING
 @click.option("--verify", is_flag=True, help="Re-run the kernel and compare every setpoint to the bit (the default).")
-@click.option("--publish", is_flag=True, help="Put the recorded topics back on the graph.")
+@click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
 @click.option("--rate", type=RATE, default=1.0, show_default=True, help="Speed of --publish.")
-@click.option("--inputs", is_flag=True, help="PLC inputs too with --publish: a machine on this ROS domain obeys them.")
+@click.option(
+    "--inputs", is_flag=True, help="PLC inputs too with --publish: a machine on this ROS domain acts on them."
+)
 @namespace_option
 def replay_command(**options: Any) -> None:
     """Re-run the kernel from a recording, or publish the recording again."""
@@ -202,11 +208,11 @@ def words(_context: click.Context, _option: click.Parameter, values: tuple[str, 
 
 
 def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Options of what draws a recording: which part of it."""
+    """Options for the part of a recording to draw."""
     for option in (
         click.option("--axes", callback=words, multiple=True, help="Axes and spindles, the others are left out: x,s"),
         click.option("--to", "end", type=float, help="Seconds of the recording; without it to its end."),
-        click.option("--from", "begin", type=float, help="Seconds of the recording; without it from its begin."),
+        click.option("--from", "begin", type=float, help="Seconds of the recording; without it from its start."),
     ):
         function = option(function)
     return function
@@ -244,7 +250,7 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
 @main.command("params")
 @click.argument("words", nargs=-1, metavar="[WORD]...")
 def params_command(words: tuple[str, ...]) -> None:
-    """Show the parameter reference: what the WORDs find (id, number, parts of names, text), or all groups."""
+    """Show the parameter reference: what matches the WORDs (id, number, parts of names, text), or all groups."""
     from cnc_ptp.commands.look.params import params
 
     sys.exit(params(" ".join(words)))
@@ -275,7 +281,7 @@ def require_source(options: dict[str, Any]) -> None:
 
 @main.group("identify")
 def identify_group() -> None:
-    """Find out what an axis is: friction table, drive time constant, position controller gain."""
+    """Identify an axis: friction table, drive time constant, position controller gain."""
 
 
 @identify_group.command("friction")
@@ -304,10 +310,12 @@ def identify_dynamics_command(**options: Any) -> None:
 @click.option("--radius", type=float, required=True, help="mm")
 @click.option("--feed", type=float, required=True, help="mm/min")
 @click.option("--plane", default="XY", show_default=True, help="XY, ZX or YZ.")
-@click.option("--centre", type=float, nargs=2, help="Centre in the plane, mm; without it where the axes stand.")
+@click.option("--centre", type=float, nargs=2, help="Centre in the plane, mm; without it the position of the axes.")
 @click.option("--direction", type=click.Choice(["both", "ccw", "cw"]), default="both", show_default=True)
 @click.option("--feedforward/--no-feedforward", default=None, help="G135 (off without it, as after a program start).")
-@click.option("--friction/--no-friction", default=None, help="Friction compensation (without it as the machine is).")
+@click.option(
+    "--friction/--no-friction", default=None, help="Friction compensation (without it as in the machine file)."
+)
 @click.option(
     "--compare",
     type=click.Choice(["feedforward", "friction", "both"]),
@@ -316,7 +324,7 @@ def identify_dynamics_command(**options: Any) -> None:
 @click.option(
     "-o", "--output", "outputs", type=click.Path(dir_okay=False), multiple=True, help="Picture: .svg, .png or .html."
 )
-@click.option("--magnification", type=float, help="Of the deviations in the picture; without it as they fit.")
+@click.option("--magnification", type=float, help="Of the deviations in the picture; without it chosen to fit.")
 @click.option(
     "--record",
     type=click.Path(dir_okay=False),
@@ -354,7 +362,7 @@ def curve_group() -> None:
     help="Of the speeds in --point, --limit and --top-speed.",
 )
 @click.option("--limit", type=float, help="Limit speed, one of the points; without it the first.")
-@click.option("--top-speed", type=float, help="Up to which the curve must hold; without it the last point.")
+@click.option("--top-speed", type=float, help="Speed up to which the curve must hold; without it the last point.")
 @click.option("--a-min", type=click.IntRange(0, 2**32 - 1), default=0, show_default=True, help="Floor in °/s².")
 @click.option("--spindle", default="s", show_default=True, help="For the lines of the machine file.")
 @click.option("--gear", type=click.IntRange(0, 5), default=0, show_default=True, help="Index of getriebe[i].")

@@ -31,14 +31,14 @@ DIAMETER, ROOM = 440.0, 460.0
 COLOURS = (BLUE.set, RED.set, GREEN.set, YELLOW.set)
 MICROMETRES = 1000.0
 INNER = 1.8
-"""The middle of the plot lies so many largest deviations inside the circle."""
+"""Distance of the middle of the plot from the circle, in largest deviations."""
 POINTS = 1800
 """Of a curve."""
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A pair of turns: its name and what the evaluation of the circle says."""
+    """A pair of turns: its name and the evaluation of the circle."""
 
     name: str
     result: CircleResult

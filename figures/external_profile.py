@@ -1,7 +1,7 @@
 """`python -m figures.external_profile`: writes the setpoints of the external setpoint example.
 
-A generator as a PLC program would be one: 600 mm at 1000 mm/s in three phases (constant acceleration, velocity,
-deceleration), a packet a cycle of 1 ms. As TX1250 2.6 asks, the direction is +1 one cycle before the motion and one
+A generator like one in a PLC program: 600 mm at 1000 mm/s in three phases (constant acceleration, velocity,
+deceleration), one packet per cycle of 1 ms. As TX1250 2.6 asks, the direction is +1 one cycle before the motion and one
 cycle after it, and 0 at the end.
 """
 

@@ -57,7 +57,7 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
 
 
 def measured(figure: FigureScenario, run: FigureRun, axis: str) -> tuple[FrictionPoint, ...]:
-    """What the analysis of commissioning finds in the run."""
+    """The result of the commissioning analysis for the run."""
     rows = {**run.columns[axis], "cycle": np.arange(run.cycles)}
     try:
         return friction_curve(AxisTrace.of_rows(axis, run.cycle_time, rows), settling=always(SETTLING)).points
@@ -92,7 +92,7 @@ def draw_curve(plot: Axes, plant: PlantParameters, reach: float, points: tuple[F
 
 
 def label_parts(plot: Axes, plant: PlantParameters) -> None:
-    """What the curve is made of, where it can be seen: near standstill."""
+    """The parts of the curve where they can be seen: near standstill."""
     note(plot, f"static {plant.static:g}", (0.0, plant.static), (-5.0, -3.0), ha="right")
     note(plot, f"Coulomb {plant.coulomb:g}", (0.0, plant.coulomb), (-5.0, -3.0), ha="right")
     stribeck = plant.stribeck_velocity

@@ -32,7 +32,7 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
 
 
 def draw(figure: FigureScenario, run: FigureRun) -> Figure:
-    """The picture of a run. Raises FigureError where its head asks for something that does not exist."""
+    """The picture of a run. Raises FigureError if its head asks for something that does not exist."""
     if figure.kind not in KINDS:
         raise FigureError(figure.path, f"kind '{figure.kind}' does not exist, known are {', '.join(KINDS)}")
     return KINDS[figure.kind](figure, run)

@@ -36,9 +36,9 @@ from figures.run import Column, FigureRun
 from figures.scenario_head import FigureError, FigureScenario
 
 BANDS = {StatusBit.COMPENSATING: "compensating", StatusBit.EXT_SETPOINT: "external"}
-"""What is tinted, by bits of the status."""
+"""Tints by bits of the status."""
 NEGLIGIBLE = 0.01
-"""Of the largest lag; the rest is not waited for."""
+"""Part of the largest lag that is not waited for."""
 
 
 def draw(figure: FigureScenario, run: FigureRun) -> Figure:
@@ -62,7 +62,7 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
 
 
 def chosen_panels(figure: FigureScenario, run: FigureRun) -> Iterator[tuple[str, Panel]]:
-    """Titles and panels in the order of the head; without a choice all that the kinds of the units usually have."""
+    """Titles and panels in the order of the head; without a choice all usual ones of the kinds of the units."""
     known: dict[str, Panel] = {}
     usual: dict[str, None] = {}
     for kind in dict.fromkeys(unit.kind for unit in run.units.values()):
@@ -75,7 +75,7 @@ def chosen_panels(figure: FigureScenario, run: FigureRun) -> Iterator[tuple[str,
 
 
 def shown_cycles(run: FigureRun) -> int:
-    """How many cycles are shown: until everything stands and all is commanded, and a little longer, lags included."""
+    """Number of cycles shown: until all is commanded and at a standstill, and a little longer, lags included."""
     moving = [np.flatnonzero(run.motion(unit)) for unit in run.columns]
     events = [int(cycles[-1]) for cycles in moving if len(cycles)]
     events += [round(marker.time / run.cycle_time) for marker in run.markers]
@@ -137,7 +137,7 @@ def curves(title: str, run: FigureRun, end: int) -> Iterator[Curve]:
 
 
 def fine_unit(title: str, run: FigureRun, drawn: list[Curve]) -> tuple[list[Curve], str]:
-    """The curves and their unit; where a panel may, small ways in µm."""
+    """The curves and their unit; small distances in µm if the panel permits."""
     units = [run.units[name].unit_of(panel.fields[0]) for name, panel in drawn_panels(title, run)]
     fine = all(panel.fine for _, panel in drawn_panels(title, run)) and set(units) == {"mm"}
     micrometres = in_micrometres(drawn) if fine else None
@@ -145,7 +145,7 @@ def fine_unit(title: str, run: FigureRun, drawn: list[Curve]) -> tuple[list[Curv
 
 
 def draw_override(plot: Axes, run: FigureRun, end: int, drawn: list[Curve]) -> None:
-    """Override as the velocity that it asks for, where it is not 100 % all the time (one unit only)."""
+    """Override as the velocity that it asks for, if it is not 100 % all the time (one unit only)."""
     percent = run.column(next(iter(run.columns)), "override_percent")[:end]
     if len(run.columns) > 1 or np.all(percent == 100.0):
         return
@@ -153,16 +153,16 @@ def draw_override(plot: Axes, run: FigureRun, end: int, drawn: list[Curve]) -> N
     level = percent * (highest / float(percent.max()))
     steps = np.flatnonzero(np.diff(percent, prepend=-1.0))
     shown = level.copy()
-    shown[steps[1:]] = np.nan  # the line of the command stands there
+    shown[steps[1:]] = np.nan  # the line of the command is there
     plot.plot(run.time[:end], shown, color=SOFT, linewidth=1.0, dashes=(5, 3), zorder=1)
     for cycle in steps:
-        from_above = max(abs(curve.values[cycle]) for curve in drawn) > level[cycle]  # then the text stands below
+        from_above = max(abs(curve.values[cycle]) for curve in drawn) > level[cycle]  # then the text is below
         below, side = (-4.0, "top") if from_above else (3.0, "baseline")
         note(plot, f"override {percent[cycle]:g} %", (run.time[cycle], level[cycle]), (5.0, below), va=side)
 
 
 def draw_bands(plot: Axes, run: FigureRun, end: int, *, with_texts: bool) -> None:
-    """A tint where the status of an axis says that something else acts on it."""
+    """A tint where the status of an axis shows that something else acts on it."""
     for name in (name for name, unit in run.units.items() if unit.kind == "axis"):
         bits = run.column(name, "status_bits")[:end].astype(np.int64)
         for bit, text in BANDS.items():

@@ -1,4 +1,4 @@
-"""Runs a figure's scenario offline and keeps what is drawn: the cycles of its axes and the commands."""
+"""Offline run of a figure's scenario, with the cycles of its axes and the commands for drawing."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from cnc_ptp.recording.units import unit_of
 from figures.scenario_head import FigureError, FigureScenario
 
 NOT_SHOWN = INTERNAL | {"reset_feedforward"}
-"""Commands that come by themselves."""
+"""Commands that come automatically."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnUnit:
-    """What a unit is and counts in: `kind` of cnc_ptp.plots.panels, `way` mm or deg, `torque` N or Nm."""
+    """Kind and units of measurement of a unit: `kind` of cnc_ptp.plots.panels, `way` mm or deg, `torque` N or Nm."""
 
     kind: str
     way: str
@@ -71,7 +71,7 @@ class FigureRun:
         return self.columns[unit][field]
 
     def motion(self, unit: str) -> Column:
-        """What is 0 while the unit stands."""
+        """The value that is 0 while the unit is at a standstill."""
         return self.columns[unit][UNIT_KINDS[self.units[unit].kind].motion]
 
     def following_error(self, unit: str) -> Column:
@@ -79,7 +79,7 @@ class FigureRun:
 
 
 def run_figure(figure: FigureScenario) -> FigureRun:
-    """Runs until all axes stand. Raises FigureError where an input is wrong, a command refused or a fault occurs."""
+    """Runs until all axes are at a standstill. Raises FigureError for a wrong input, a refused command or a fault."""
     program = str(figure.program_path) if figure.program_path else None
     try:
         machine = read_machine(figure.machine_path)
@@ -126,7 +126,7 @@ def drawn_unit(machine: MachineParameters, name: str) -> DrawnUnit:
 
 
 def _markers(records: list[CommandRecord], cycle_time: float, *, named: bool) -> Iterator[Marker]:
-    """What is given again and again (setpoints, block by block) is marked where it begins; `named`: with its axis."""
+    """Repeated commands (setpoints, block by block) are marked at their start; `named`: with their axis."""
     last = ""
     for record in records:
         text = f"{record.target}: {brief(record)}" if named else brief(record)

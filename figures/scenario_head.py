@@ -1,6 +1,6 @@
-"""The head of a figure's scenario: what the picture needs to say about itself.
+"""The head of a figure's scenario: title, caption and contents of the picture.
 
-The head is the block of comment lines at the top of the file, `key: value` each; indented lines go on with the value:
+The head is the block of comment lines at the top of the file, `key: value` each; indented lines continue the value:
 
     # title: Dynamics 1.1
     # caption: One or two sentences, which may
@@ -15,7 +15,7 @@ Besides there may be
   or `over:` and `points:` (figures/spindle_curve.py),
 - `errors: shown`: a figure of faults; without it a fault means that there is no picture.
 
-`axes` may name spindles too. All this stands in the scenario itself so that a figure is one file, read in one go and
+`axes` may name spindles too. All this is in the scenario itself so that a figure is one file, read in one go and
 added without touching another.
 For the run these lines are comments: `cnc_ptp simulate MACHINE --scenario FILE` takes the file as it is.
 """
@@ -118,7 +118,7 @@ def read_head(path: Path) -> FigureScenario:
 
 
 def names(text: str) -> tuple[str, ...]:
-    """What stands between commas."""
+    """The values between commas."""
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 

@@ -1,4 +1,4 @@
-"""Speed of a spindle and feed of the path over time: does the path wait for the speed?
+"""Speed of a spindle and feed of the path over time, to show whether the path waits for the speed.
 
 Source: TF5200 spindle, figures 11 and 12.
 """
@@ -65,7 +65,7 @@ def path_of(run: FigureRun) -> PathRun:
 
 
 def mark_waits(plot: Axes, run: FigureRun, path: PathRun, *, with_texts: bool) -> None:
-    """Tinted where the path waits."""
+    """Tints where the path waits."""
     for begin, last in stretches(path.waits):
         plot.axvspan(run.time[begin], run.time[last], color=BAND, zorder=0.2, linewidth=0.0)
         if with_texts:
@@ -73,7 +73,7 @@ def mark_waits(plot: Axes, run: FigureRun, path: PathRun, *, with_texts: bool) -
 
 
 def mark_speeds(plot: Axes, run: FigureRun, spindle: str) -> None:
-    """A line where the spindle says that its speed is reached."""
+    """A line where the spindle reports that its speed is reached."""
     reached = run.column(spindle, "speed_reached")
     moving = run.column(spindle, "programmed_speed_rpm") != 0.0
     for cycle in np.flatnonzero((np.diff(reached) > 0.0) & moving[1:]) + 1:

@@ -1,4 +1,4 @@
-"""Acceleration over speed: what spindles did in a run, against the laws of their acceleration curves.
+"""Acceleration over speed: spindles in a run, against the laws of their acceleration curves.
 
 The head may say over what the curve is drawn and which interpolation points are marked (°/s:°/s²):
 
@@ -22,7 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from cnc_ptp.commissioning.curve_points import CurvePoint, parse_point
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters import CurveParameters
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.plots.colours import BLUE, FAINT, INK, RED, SOFT
 from cnc_ptp.plots.sheet import HEADER, LEFT, PLOT, Name, Sheet, draw_header, note, style_plot
 from cnc_ptp.spindle.acceleration_curves import raw_pieces
@@ -37,7 +37,7 @@ SMALL_STEP = 40.0
 
 
 class Scale(NamedTuple):
-    """What the curve is drawn over: the place of a speed, given the limit speed, and where the scale begins."""
+    """The scale of a curve: the place of a speed, given the limit speed, and where the scale begins."""
 
     place: Callable[[Any, float], Any]
     words: str
@@ -75,7 +75,7 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     return sheet.drawing
 
 
-# ---------------------------------------------------------------- what the head asks for
+# ---------------------------------------------------------------- choices of the head
 
 
 def scale_of(figure: FigureScenario) -> Scale:
@@ -135,7 +135,7 @@ def law(curve: CurveParameters, top_speed: float) -> tuple[Column, Column]:
 
 
 def draw_run(plot: Axes, run: FigureRun, name: str, curve: CurveParameters, scale: Scale) -> None:
-    """What the spindle did up and down, and the law above it as a thin line."""
+    """The spindle's motion up and down, and the law above it as a thin line."""
     limit = limit_of(curve)
     for leg, colour, width in ((RUN_UP, BLUE.actual, 6.0), (BRAKING, BLUE.set, 2.6)):
         speed, acceleration = measured(run, name, leg)

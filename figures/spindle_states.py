@@ -1,4 +1,4 @@
-"""States of a spindle over time: its speed, and which state of the state graph it is in.
+"""States of a spindle over time: its speed, and its state in the state graph.
 
 Source: TF5200 spindle, figures 9 and 10.
 """

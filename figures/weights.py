@@ -61,7 +61,7 @@ def counted_velocity(friction: FrictionParameters, velocity: Column) -> Column:
 
 
 def full_current(friction: FrictionParameters, velocity: Column) -> Column:
-    """What the table says, with the sign of the velocity."""
+    """The current of the table, with the sign of the velocity."""
     table = FrictionTable(friction.velocities, friction.currents)
     return np.array([np.sign(v) * table.current(v) for v in velocity])
 

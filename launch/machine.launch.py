@@ -1,7 +1,7 @@
 """ros2 launch cnc_ptp machine.launch.py machine:=config/mill.yaml program:=examples/bracket.nc record:=runs/demo.mcap
 
 One process that starts, watches and ends all nodes in order (`cnc_ptp run`), or with separate:=true each node as a Node
-of its own: to be taken over into other launch files, with what else belongs to the cell.
+of its own: to be copied into other launch files, with the other nodes of the cell.
 """
 
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
@@ -13,14 +13,14 @@ from launch import LaunchDescription
 OPTIONS = {
     "program": "NC program for the first channel",
     "scenario": "timed PLC commands (YAML)",
-    "duration": "seconds; without it the run ends by itself",
+    "duration": "seconds; without it the run ends automatically",
     "record": "MCAP recording to write",
     "state_rate": "live states a second, 0 = none",
     "namespace": "ROS namespace of all nodes",
 }
 SWITCHES = {
     "free_run": "as fast as all nodes follow, instead of in real time",
-    "stay": "go on when everything stands, to be commanded",
+    "stay": "continue when everything is at a standstill, for commands",
     "separate": "a Node action for every node, instead of one for cnc_ptp run",
 }
 
@@ -41,20 +41,20 @@ def start(context):
 
 
 def separate_nodes(given, switches, namespace):
-    """The end of the clock ends the launch; the recorder, told to end, first takes what still comes."""
+    """The end of the clock ends the launch; the recorder, signalled to end, first takes the last messages."""
     from cnc_ptp.commands.output_file import check_recording
     from cnc_ptp.machine.gate import CLOCK
-    from cnc_ptp.machine.job import read_job
-    from cnc_ptp.nodes.supervisor import Job, command_lines
+    from cnc_ptp.machine.run_entries import read_entries
+    from cnc_ptp.nodes.supervisor import RunOrder, command_lines
     from cnc_ptp.nodes.topics import RECORDER
     from cnc_ptp.parameters import read_machine
 
     duration = float(given.pop("duration")) if "duration" in given else None
     rate = float(given.pop("state_rate")) if "state_rate" in given else None
-    job = Job(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
+    job = RunOrder(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
     check_recording(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
     machine = read_machine(job.machine)
-    read_job(machine, program=job.program, scenario=job.scenario)
+    read_entries(machine, program=job.program, scenario=job.scenario)
     observers = [RECORDER] if job.record else []
     return [
         node(executable, arguments, name=name, namespace=namespace, on_exit=Shutdown() if name == CLOCK else refused)

@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.carried import CarriedMotion
-from cnc_ptp.axis.checks import MotionChecks
+from cnc_ptp.axis.command_checks import MotionChecks
 from cnc_ptp.axis.compensation import Compensation
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import ExternalSetpoints

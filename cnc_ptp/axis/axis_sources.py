@@ -7,10 +7,11 @@ from math import copysign
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
-from cnc_ptp.axis.coupling import Coupling, LinearCoupling
+from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.external import NEGLIGIBLE_VELOCITY
-from cnc_ptp.axis.faults import GANTRY_DIFFERENCE, OUT_OF_RANGE, PATH_NOT_ACCEPTED
+from cnc_ptp.axis.faults import OUT_OF_RANGE, PATH_NOT_ACCEPTED
 from cnc_ptp.axis.flying_saw import FlyingSaw
+from cnc_ptp.axis.gantry import GantryPair
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE
 from cnc_ptp.motion.profile import MotionState
@@ -124,10 +125,6 @@ class PathSource:
             axis.advance_state(cycle)
 
 
-PAIR_PATIENCE = 4
-"""Blocks in which the error of a gantry slave must have reached its master."""
-
-
 class MasterSource:
     """The master of a coupled axis: its set values, or or its actual values if those are to be followed."""
 
@@ -141,16 +138,13 @@ class MasterSource:
         self._velocity = 0.0
         self._rest: float | None = None
         """Position of the master at the end of its last block, None if it moved."""
-        self._first_cycle = 0
-        self._gantry: list[float] | None = None
-        self._gantry_distance: float | None = None
-        self._blocks_in_error = 0
+        self.gantry = GantryPair(axis)
 
     def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
         """The setpoints of the coupling; none when the axis is not coupled or cannot follow."""
         axis = self._axis
         coupling = axis.coupling
-        self._gantry = None
+        self.gantry.rest()
         if coupling is None or axis.state != S.SYNCHRONIZED_MOTION:
             return []
         block = inputs.get(coupling.master)
@@ -158,8 +152,8 @@ class MasterSource:
             axis.fault(first_cycle, UPSTREAM_LOST, f"there is no block of its master '{coupling.master}'")
             return []
         if coupling is not self._coupling:
-            self._coupling, self._actual, self._gantry_distance = coupling, block.couples_actual, None
-            self._blocks_in_error = 0
+            self._coupling, self._actual = coupling, block.couples_actual
+            self.gantry.begin()
         else:
             self._allow_placing(coupling, block)
         self._rest = block.set_position[-1] if block.set_velocity[-1] == block.set_acceleration[-1] == 0.0 else None
@@ -173,25 +167,14 @@ class MasterSource:
         if not all(in_range(state) for state in setpoints):
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of range")
             return []
-        if axis.error_id and self._pair_ends(first_cycle, setpoints[0][0], block):
+        if axis.error_id and self.gantry.ends(first_cycle, setpoints[0][0], block):
             return []
         if axis.carried is not None:
             axis.carried.take(first_cycle, setpoints)
             return []
-        self._prepare_gantry(coupling, first_cycle, block)
+        self.gantry.take(coupling, first_cycle, block)
         axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
         return setpoints
-
-    def _pair_ends(self, first_cycle: int, position: float, block: AxisBlock) -> bool:
-        """The slave of a gantry pair in error: it stops with its master, or alone if the master does not stop."""
-        self._blocks_in_error += 1
-        if not (block.set_velocity[0] or block.set_acceleration[0]):
-            self._axis.end_with_master(first_cycle, position)
-            return True
-        if block.error_id[0] or self._blocks_in_error <= PAIR_PATIENCE:
-            return False
-        self._axis.end_alone(first_cycle)
-        return True
 
     def _allow_placing(self, coupling: Coupling, block: AxisBlock) -> None:
         """A master at a standstill whose position changed without enable does not take its slave along."""
@@ -229,29 +212,3 @@ class MasterSource:
             change = -copysign(min(window * share, abs(self._velocity)), self._velocity)
         self._velocity += change
         return self._velocity
-
-    def _prepare_gantry(self, coupling: Coupling, first_cycle: int, block: AxisBlock) -> None:
-        if isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None:
-            self._first_cycle = first_cycle
-            self._gantry = list(block.actual_position)
-
-    @property
-    def watches_gantry(self) -> bool:
-        return self._gantry is not None and self._axis.coupled
-
-    def watch_gantry(self, cycle: int, setpoint: MotionState, actual_position: float) -> None:
-        """A fault when the actual positions of a gantry pair deviate from their distance by more than its limit."""
-        if self._gantry is None or self._axis.error_id or not self._axis.coupled:
-            return
-        axis, coupling = self._axis, self._axis.coupling
-        assert isinstance(coupling, LinearCoupling) and coupling.difference_limit is not None
-        distance = actual_position - self._gantry[cycle - self._first_cycle]
-        if self._gantry_distance is None:
-            self._gantry_distance = distance
-        difference = abs(distance - self._gantry_distance)
-        if difference > coupling.difference_limit:
-            reason = (
-                f"the actual positions of {axis.name} and its gantry master {coupling.master} differ by "
-                f"{difference:g} {axis.unit}, more than {coupling.difference_limit:g} {axis.unit}"
-            )
-            axis.fault(cycle, GANTRY_DIFFERENCE, reason, setpoint)

@@ -13,6 +13,7 @@ from cnc_ptp.axis.compensation_commands import CompensationCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.faults import FOLLOWING_ERROR
+from cnc_ptp.axis.feed_release_commands import FeedReleaseCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.power_commands import PowerCommands
@@ -73,6 +74,7 @@ class AxisUnit(Unit):
         self._commands = (
             self,
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
+            FeedReleaseCommands(self._axis),
             PtpCommands(self._axis),
             StopCommands(self._axis),
             JogCommands(self._axis),
@@ -173,7 +175,7 @@ class AxisUnit(Unit):
         """Adds the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
         axis = self._axis
         done = 0
-        if setpoints and not self._master.watches_gantry:
+        if setpoints and not self._master.gantry.watches:
             if axis.state in MOVING_ALONE:
                 axis.advance_state(first_cycle)
             if self._monitoring.undisturbed(first_cycle, setpoints):
@@ -225,7 +227,7 @@ class AxisUnit(Unit):
             axis.advance_state(cycle)
         self._path.watch(cycle, base[1])
         setpoint = self._monitoring.watch(cycle, setpoint)
-        self._master.watch_gantry(cycle, setpoint, actual_position)
+        self._master.gantry.watch(cycle, setpoint, actual_position)
         self._monitoring.watch_target(cycle, setpoint, actual_position)
         closed = axis.powered or axis.moving(cycle)
         if closed and axis.error_id == 0 and loop.too_far(setpoint):

@@ -1,4 +1,4 @@
-"""Enable, feed releases and reset of an axis."""
+"""Enable and reset of an axis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 
 class PowerCommands:
-    """`power`, `set_feed_release` and `reset`."""
+    """`power` and `reset`."""
 
     def __init__(self, axis: Axis, *, actual_position: Callable[[], float]) -> None:
         """`actual_position` in mm or deg, as the encoder shows it."""
@@ -53,14 +53,6 @@ class PowerCommands:
             axis.stop(cycle)
             axis.take(T.STOP)
             axis.has_been_stopped = True
-
-    def do_set_feed_release(self, cycle: int, *, forward: bool, backward: bool) -> None:
-        """Releases motion towards greater and towards smaller positions, each separately.
-
-        A positioning in a direction that is withheld stops on its ramp and continues when it is released. A path stops
-        with its channel; a motion that only others can stop (a slave, external setpoints) is a fault, 23058.
-        """
-        self._axis.release_feed(cycle, forward=forward, backward=backward)
 
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""

@@ -1,7 +1,7 @@
-"""The NC channel: takes commands and reports, follows the program sequence, makes setpoints for its axes.
+"""The NC channel: takes commands and reports, follows the program sequence, computes setpoints for its axes.
 
-What happens in one block of cycles: `step` looks at what axes and spindles reported, sends the functions that came up,
-then `_fill` makes rows cycle by cycle: from the path while a motion runs, standing ones while the program waits.
+One cycle block: `step` reads the reports of axes and spindles, sends the functions that came up, then `_fill` makes the
+rows cycle by cycle: from the path while a motion is active, at a standstill while the program waits.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class ChannelUnit(Unit):
         """`axes` and `spindles` of the machine by node name, `cycle_time` in s.
 
         `request_numbers`: numbers for handshake requests that no other channel of the machine uses.
-        `handshake_timeout`: s in which the PLC must have acknowledged them, 0 is for ever.
+        `handshake_timeout`: s within which the PLC must acknowledge them, 0 means without limit.
         """
         super().__init__(parameters.name)
         self._parameters = parameters
@@ -77,27 +77,27 @@ class ChannelUnit(Unit):
         self._program: Program | None = None
         self._prepared: PreparedProgram | None = None
         self._modal = ModalState()
-        """What an MDI text finds: the state that the one before has left, if that was carried out in full."""
+        """The modal state in which an MDI text starts: that of the previous one, if it was carried out in full."""
         self._modal_at_end: ModalState | None = None
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
         self._links: dict[int, Pairs] = {}
-        """Coupling groups that programs have defined; they stay for the next one."""
+        """Coupling groups that programs have defined; they are kept for the next one."""
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
-        """The program ended between the last cycle of the block before and the first of the next one."""
+        """The program ended between the last cycle of the previous block and the first of the next one."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
         self._element_begins = False
-        """The running element begins with the next block: what axes report is about the one before."""
+        """The active element starts with the next block: what axes report belongs to the previous one."""
         self._held: Sequence[str] = ()
-        """What the program waited for because of override 0, in the block before."""
+        """What the program waited for because of override 0, in the previous block."""
         self._error_id = 0
         self._apply_override()
 
     def prepare(self, program: str, text: str) -> None:
-        """Parses and interprets before time matters what `load` and `start` then find ready. Raises ProgramError."""
+        """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
         parsed = parse_program(text, program)
         modal = self._check.initial_state(self._feedback, self._links)
         before = modal.copy()
@@ -116,7 +116,7 @@ class ChannelUnit(Unit):
         self._sequence.source = NO_SOURCE
 
     def do_start(self, cycle: int) -> None:
-        """Starts the program, which is interpreted as a whole first; or goes on after M00 or in single block."""
+        """Starts the program, which is interpreted as a whole first; or resumes it after M00 or in single block."""
         if self._sequence.phase is Phase.STOPPED:
             self._sequence.resume()
             return
@@ -127,14 +127,14 @@ class ChannelUnit(Unit):
         self._sequence.end_couplings()
 
     def do_mdi(self, cycle: int, *, text: str) -> None:
-        """Executes NC text at once; modal states are kept from one such text to the next."""
+        """Executes NC text immediately; modal states are kept from one such text to the next."""
         self._require_idle("mdi")
         modal = self._modal.copy()
         modal.spindle.gears = self._check.gears(self._feedback)
         self._begin("mdi", parse_program(text, "mdi", mdi=True), modal)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
-        """Feed hold: the path goes to velocity 0 on its ramp, and on again when it is taken away."""
+        """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
         self._feed_hold = enabled
         self._apply_override()
 
@@ -163,7 +163,7 @@ class ChannelUnit(Unit):
     def do_reset(self, cycle: int) -> None:
         """Aborts the program on the path ramp and clears the error; refused while an error ramp runs (22008).
 
-        The spindles that the channel has set turning stop, unless P-AXIS-00455 keeps them (TF5200 spindle 2.4.3).
+        The spindles that the channel has started stop, unless P-AXIS-00455 keeps them (TF5200 spindle 2.4.3).
         """
         if self._error_id:
             if self._sequence.phase is Phase.RAMP_DOWN:
@@ -180,26 +180,26 @@ class ChannelUnit(Unit):
         self._sequence.acknowledge(id)
 
     def do_measuring_event(self, cycle: int) -> None:
-        """The event for which functions of type MNE_SNS wait; refused (22020) when the running block has none."""
+        """The event for which functions of type MNE_SNS wait; refused (22020) when the active block has none."""
         if not self._sequence.measuring_event():
             self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
-        """The watchdog: PLC, clock, an axis or a spindle has sent nothing in time; the path stops."""
+        """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""
         self._fault(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     def waits_for(self) -> str:
-        """What the program waits for that does not come with time alone; empty when it goes on by itself."""
+        """What the program waits for that does not come with time alone; empty when it continues without help."""
         what = self._sequence.waits_for()
         return f"channel {self.name} waits in line {self._sequence.source.line} for {what}" if what else ""
 
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> ChannelBlock:
-        """Computes one block; `inputs` holds the blocks before of the channel's axes and spindles.
+        """Computes one block; `inputs` holds the previous blocks of the channel's axes and spindles.
 
-        The first row is the state that the block before has led to, so that commands act from exactly there; one row
-        more than the block has leads on to the next one.
+        The first row is the state to which the previous block has led, so that commands act from exactly there; one
+        row more than the block has leads to the next one.
         """
         first_cycle, count = tick
         self._read_feedback(first_cycle, inputs)
@@ -250,7 +250,7 @@ class ChannelUnit(Unit):
         )
 
     def _fill(self, rows: CycleRows, first_cycle: int, wanted: int) -> None:
-        """Adds rows up to `wanted`: the path's while a motion runs, standing ones while nothing can go on."""
+        """Adds rows up to `wanted`: of the path in a motion, else at a standstill."""
         while len(rows) < wanted:
             if self._sequence.phase in (Phase.MOTION, Phase.RAMP_DOWN):
                 self._follow_path(rows, wanted - len(rows), first_cycle + len(rows))
@@ -259,7 +259,7 @@ class ChannelUnit(Unit):
                 self._add(rows, [self._motion.point])
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
-        """CycleRows of the running motion; it ends early when the motion does, at the exact instant inside a cycle."""
+        """CycleRows of the active motion; it ends early when the motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
         self._add(rows, points)
         if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
@@ -298,7 +298,7 @@ class ChannelUnit(Unit):
         rows.error_id += [self._error_id] * count
 
     def _state_code(self) -> ChannelStateCode:
-        """State of the channel; where feed hold or override 0 have brought the path to rest, HOLD replaces RUNNING."""
+        """State of the channel; HOLD replaces RUNNING when feed hold or override 0 have brought the path to rest."""
         if self._error_id:
             return C.ERROR
         phase = self._sequence.phase
@@ -318,10 +318,12 @@ class ChannelUnit(Unit):
                     axis=node,
                 )
         for node in self._axes.beside:
-            self._refuse(command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is done", axis=node)
+            self._refuse(
+                command, NOT_NOW, f"{NOT_AT_END.format(node)}; try again when the program is finished", axis=node
+            )
         for node in self.lost:
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
-                self._refuse(command, AXIS_NOT_READY, f"'{node}' sends nothing any more", unit=node)
+                self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
         ready = self._ready(command, program, modal)
         if ready is not None:
             blocks, modal = ready.blocks, ready.modal_at_end
@@ -334,7 +336,7 @@ class ChannelUnit(Unit):
         self._just_started = True
 
     def _ready(self, command: str, program: Program, modal: ModalState) -> PreparedProgram | None:
-        """What was interpreted before, if it was from where things stand now."""
+        """What was interpreted ahead, if that was from the present positions and state."""
         ready = self._prepared
         if ready is None or command != "start" or ready.program is not program or ready.modal != modal:
             return None
@@ -346,9 +348,9 @@ class ChannelUnit(Unit):
         self._motion.set_factor(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
-        """An axis on the path that may not go on in its direction holds the path; a warning once an element.
+        """An axis on the path without feed release in its direction holds the path; one warning per element.
 
-        An element that brakes for its end runs on; the next one is held if it goes in that direction, too.
+        An element that brakes for its end continues; the next one is held if it goes in that direction, too.
         """
         can_be_held = self._motion.can_be_held and not self._element_begins
         line, before = self._sequence.source.line, self._axes.withheld
@@ -359,7 +361,7 @@ class ChannelUnit(Unit):
             self._apply_override()
 
     def _read_feedback(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
-        """Takes over what axes and spindles reported for the block before."""
+        """Takes over what axes and spindles reported for the previous block."""
         self._feedback = inputs
         self._read_releases(first_cycle, inputs)
         for reason in self._axes.read(inputs, just_started=self._just_started):
@@ -376,7 +378,7 @@ class ChannelUnit(Unit):
         self._tell_held(first_cycle)
 
     def _tell_held(self, cycle: int) -> None:
-        """Where override 0 lets the program wait, which may be for ever: what it waits for, once."""
+        """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
         held = [f"{what}, which is held by override 0" for what in self._sequence.held_by_override(cycle)]
         if self._path_held():
             held.append("a path override above 0")
@@ -388,12 +390,12 @@ class ChannelUnit(Unit):
         self._held = held
 
     def _path_held(self) -> bool:
-        """The path stands within an element because of override 0 alone; a feed hold tells of itself."""
+        """Override 0 alone has stopped the path within an element; a feed hold is visible anyway."""
         held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
         return held and self._override_percent == 0.0 and not self._feed_hold
 
     def _check_member(self, first_cycle: int, node: str, block: CycleBlock) -> None:
-        """Axes and spindles must be without error, and axes on the path that the block before gave them."""
+        """Axes and spindles must be without error, and axes on the path that the previous block gave them."""
         if not isinstance(block, (AxisBlock, SpindleBlock)):
             return
         if block.error_id[-1]:
@@ -407,7 +409,7 @@ class ChannelUnit(Unit):
             self._fault(first_cycle, AXIS_NOT_FOLLOWING, f"{node} does not follow the path, it is in {state}")
 
     def _check_refused(self, first_cycle: int, node: str, block: SpindleBlock) -> None:
-        """A spindle has refused what this channel asked it for: it is at work for somebody else, for instance."""
+        """A spindle has refused a command of this channel: it is active for another source, for instance."""
         refusal = next((refusal for refusal in block.refused if refusal.source == self.name), None)
         if refusal is not None:
             reason = f"{node} has refused a command, P-ERR-{refusal.number} {refusal.text}"

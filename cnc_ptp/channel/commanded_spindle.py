@@ -1,20 +1,20 @@
-"""What a channel knows of one of its spindles: what it has commanded, and what the spindle has reported since.
+"""One spindle as its channel knows it: what was commanded, and what the spindle has reported since.
 
-A function counts from the block on with which it goes out. It may be refused, overtaken or withdrawn, so only a report
+A function counts from the block with which it goes out. It may be refused, overtaken or withdrawn, so only a report
 of the spindle ends the channel's responsibility for it. Source: TF5200 spindle 2.4.3 (a reset always stops the
 spindles), 2.8 (couplings).
 
 | transition | direction | responsible | master | expectation |
 |---|---|---|---|---|
-| `turn` (M03, M04) | cw, ccw | from the next block on | | |
-| `hold` (M05, M19, G74) | none | from the next block on | | |
+| `turn` (M03, M04) | cw, ccw | from the next block | | |
+| `hold` (M05, M19, G74) | none | from the next block | | |
 | `hand_over` (M05 of the PLC's own spindle) | none | up to the next block | | |
-| `change_gear` | kept, but starts anew | from the next block on | | |
-| `couple`, `release` | | from `release` on, if it was coupled | set, none | |
-| `expect` | | | | from the next block on |
-| `withdraw` | | what has not gone out is not sent | | what has not gone out is not sent |
-| `forget` | none | no more | | |
-| `read` | | until it stands | none once others have decoupled it | |
+| `change_gear` | kept, but starts again | from the next block | | |
+| `couple`, `release` | | from `release`, if it was coupled | set, none | |
+| `expect` | | | | from the next block |
+| `withdraw` | | functions not sent yet are dropped | | functions not sent yet are dropped |
+| `forget` | none | no longer | | |
+| `read` | | until it is at a standstill | none once others have decoupled it | |
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ BEFORE_THE_RUN = -1
 class CommandedSpindle:
     """One spindle of a channel.
 
-    direction        cw or ccw while the program has it turning, else empty
+    direction        cw or ccw while it turns for the program, else empty
     starts_anew      a gear change has ended its rotation: the next speed starts it again
     full_override    G167 is active: its override is suppressed
-    master           what it follows, from the block with the coupling on
+    master           which spindle it follows, from the block with the coupling
     leader           its master in a coupling that has ended with the program
-    expectation      what it is to report of the last command that has gone out
+    expectation      what it is to report on the last command that has gone out
     """
 
     def __init__(
         self, parameters: ChannelSpindle, unit: SpindleParameters | None, *, channel: str, ranks: Iterator[int]
     ) -> None:
-        """`unit` is None for a spindle that only the PLC knows; `channel`: for whom the spindle reports to be active.
+        """`unit` is None for a spindle that only the PLC knows; `channel`: its source name.
 
         `ranks`: numbers that all spindles of the channel draw from.
         """
@@ -59,7 +59,7 @@ class CommandedSpindle:
         self.starts_anew = False
         self.full_override = False
         self.turning_rank = self.coupling_rank = 0
-        """Which of the channel's spindles has begun to turn, or to follow its master, before which."""
+        """The order in which the channel's spindles have started to turn, or to follow their masters."""
         self.master: CommandedSpindle | None = None
         self.leader: CommandedSpindle | None = None
         self.coupled = False
@@ -68,7 +68,7 @@ class CommandedSpindle:
         self._sent_cycle: int | None = None
         """First cycle of the block with the last function for which the channel is responsible."""
         self._responsible_next: bool | None = None
-        """What becomes of that with the next block; None is no change."""
+        """The change of that with the next block; None is no change."""
         self.expectation = NOTHING
         self._expected_since: int | None = None
         """First cycle of the block with which the command has gone out; None while nothing is expected."""
@@ -80,17 +80,17 @@ class CommandedSpindle:
 
     @property
     def turns(self) -> bool:
-        """The program has it turning."""
+        """It turns for the program."""
         return bool(self.direction)
 
     @property
     def follows(self) -> bool:
-        """A slave: the PLC hears of its master only (2.8.3)."""
+        """A slave: the PLC is notified of its master only (2.8.3)."""
         return self.master is not None
 
     @property
     def responsible(self) -> bool:
-        """The channel has set it in motion and has to stop it with its program."""
+        """The channel has started it and has to stop it with its program."""
         return self._sent_cycle is not None
 
     @property
@@ -111,11 +111,11 @@ class CommandedSpindle:
 
     @property
     def title(self) -> str:
-        """What the PLC knows it by: its node, or its own name where it has none."""
+        """The name by which the PLC knows it: its node, or its own name if it has none."""
         return self.node or self.parameters.own_name or self.name
 
     def acts(self, function: SpindleFunction) -> bool:
-        """False for an S word while the spindle stands: the speed counts for the next M03 or M04."""
+        """False for an S word while the spindle is at a standstill: the speed counts for the next M03 or M04."""
         return function.m is not None or (self.turns and function.speed_rpm is not None)
 
     def answers(self) -> Iterator[int | None]:
@@ -134,27 +134,27 @@ class CommandedSpindle:
         self._responsible_next = True
 
     def hold(self) -> None:
-        """M05, M19, G74: it turns no longer, and is on its way until it reports a standstill."""
+        """M05, M19, G74: it no longer turns, and is in motion until it reports a standstill."""
         self.direction = ""
         self._responsible_next = True
 
     def hand_over(self) -> None:
-        """M05 of a spindle that only the PLC knows: nobody else can say when it stands."""
+        """M05 of a spindle that only the PLC knows: nobody else knows when it is at a standstill."""
         self.direction = ""
         self._responsible_next = False
 
     def change_gear(self) -> None:
-        """What was turning stands then: the words of the block say what comes after."""
+        """The rotation has ended then: the words of the block say what comes next."""
         self.starts_anew |= self.turns
         self._responsible_next = True
 
     def start(self) -> bool:
-        """A speed goes out; true where it has to be a start, because a gear change has ended the rotation."""
+        """A speed goes out; true if it has to be a start, because a gear change has ended the rotation."""
         anew, self.starts_anew = self.starts_anew, False
         return anew
 
     def switch_override(self, *, full: bool) -> bool:
-        """G167 holds for what its block commands; true where that is a change."""
+        """G167 applies to the commands of its block; true if that is a change."""
         changed, self.full_override = full != self.full_override, full
         return changed
 
@@ -169,7 +169,7 @@ class CommandedSpindle:
         self.master = master
 
     def release(self) -> None:
-        """The coupling ends; whoever has coupled the slave is responsible for what it goes on with."""
+        """The coupling ends; whoever has coupled the slave is responsible for its further motion."""
         if self.coupled and self._sent_cycle is None:
             self._sent_cycle = BEFORE_THE_RUN
         self.master, self.coupled, self._link_sent = None, False, False
@@ -177,12 +177,12 @@ class CommandedSpindle:
     # ends
 
     def withdraw(self) -> None:
-        """What has not gone out is not sent."""
+        """Functions that have not gone out are dropped."""
         self._responsible_next = None
         self._expected_next = []
 
     def forget(self) -> None:
-        """The channel is responsible no longer, and for its program the spindle does not turn."""
+        """The channel is no longer responsible, and the spindle does not turn for its program."""
         self.dismiss()
         self.direction, self.starts_anew = "", False
 
@@ -197,7 +197,7 @@ class CommandedSpindle:
     # from block to block
 
     def send(self, first_cycle: int) -> None:
-        """What was commanded goes out with the block that begins at `first_cycle`."""
+        """The commands go out with the block that starts at `first_cycle`."""
         if self._responsible_next is not None:
             self._sent_cycle = first_cycle if self._responsible_next else None
         self._responsible_next = None
@@ -208,7 +208,7 @@ class CommandedSpindle:
         self._expected_next = []
 
     def read(self, cycle: int, block: CycleBlock | None) -> str:
-        """What the spindle has reported before `cycle`; a text when others have ended a coupling of the channel."""
+        """Reads the report for the cycles before `cycle`; a text when others have ended a coupling of the channel."""
         self.block = block if isinstance(block, SpindleBlock) else None
         if self.block is None:
             return ""
@@ -223,11 +223,11 @@ class CommandedSpindle:
             self.coupled = True
         elif self.coupled:
             self.release()
-            return f"spindle {self.node} does not follow {master.node} any more"
+            return f"spindle {self.node} no longer follows {master.node}"
         return ""
 
     def lost_speed(self, cycle: int, *, watched: bool) -> str:
-        """A text, once, when it does not turn as commanded before `cycle` any longer and the channel has `watched`.
+        """A text, once, when before `cycle` it no longer turned as commanded and the channel has `watched`.
 
         A command that still waits behind others is not lost; one that was carried out is, in a gear change too.
         """

@@ -1,7 +1,7 @@
 """Feedforward and compensations of a program as commands for the nodes of axes and spindles.
 
 They are functions without synchronisation: they go out with the next block of cycles, and nothing waits for spindles.
-The next motion of the path begins in that block at the earliest, with what they have switched in the axes.
+The next motion of the path starts in that block at the earliest, with what they have switched in the axes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from cnc_ptp.protocol.blocks import Command
 
 
 def control_commands(channel: ChannelParameters, function: ControlFunction) -> list[Command]:
-    """One command for each axis or spindle that the function concerns."""
+    """One command for each axis or spindle of the function."""
     if isinstance(function, AxisFeedforward):
         return _axis_feedforward(channel, function)
     if isinstance(function, SpindleFeedforward):

@@ -1,4 +1,4 @@
-"""The cycles of a block of the channel while they are made."""
+"""The rows of a cycle block of the channel while they are made."""
 
 from __future__ import annotations
 

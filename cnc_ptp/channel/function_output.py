@@ -1,4 +1,4 @@
-"""M, S, T and D functions of an NC block: what goes out to spindles and PLC, when, and what the path waits for.
+"""Output of the M, S, T and D functions of an NC block to spindles and PLC, and the waits of the path for them.
 
 Synchronisation types: TF5200 spindle 2.5. Before the motion go all types but MNS_SNS (after it) and MNE_SNS (with the
 measuring event). The path waits before the motion for MVS_SVS, at the block's end for MVS_SNS, MNS_SNS and MNE_SNS,
@@ -59,7 +59,7 @@ class FunctionOutput:
         return outgoing
 
     def at_program_start(self) -> list[Command]:
-        """What a program start sets back to its initial state."""
+        """Resets what a program start sets back to its initial state."""
         return reset_commands(self._channel)
 
     def moment(self, function: Function) -> Moment:
@@ -67,7 +67,7 @@ class FunctionOutput:
         return goes_out(self._synchronisation(function))
 
     def gear_change(self, block: CanonicalBlock) -> Outgoing:
-        """The gear that the block needs: all else of it comes when the spindle is in that gear."""
+        """The gear that the block needs: everything else of the block follows when the spindle is in that gear."""
         outgoing = Outgoing()
         for function in block.functions:
             change = self.spindles.change_gear(function) if isinstance(function, GearChange) else None
@@ -93,13 +93,13 @@ class FunctionOutput:
             wait.request_id = request.id
 
     def at_program_end(self, source: Source) -> Outgoing:
-        """M05 for the spindles that the PLC wants stopped with the program (2.4.3); the others turn on."""
+        """M05 for the spindles that the PLC wants stopped with the program (2.4.3); the others continue to turn."""
         stopped = [spindle for spindle in self.spindles.turning if (spindle.leader or spindle).stops_at_program_end]
         self._forget_leaders()
         return self._stop(stopped, source, homes=True)
 
     def at_abort(self, source: Source, keep: Container[str] = ()) -> Outgoing:
-        """M05 for every spindle that the channel has set in motion, except the nodes in `keep`; couplings end first,
+        """M05 for every spindle that the channel has started, except the nodes in `keep`; couplings end first,
         so that a slave stops whoever has commanded its master.
         """
         self._forget_leaders()
@@ -127,7 +127,7 @@ class FunctionOutput:
                 spindle.expect_nothing()
 
     def acknowledged(self, request: HandshakeRequest) -> None:
-        """A spindle that only the PLC knows has come to its position: it stands."""
+        """A spindle that only the PLC knows has reached its position: it is at a standstill."""
         for spindle in self.spindles:
             if (request.kind, request.number, request.spindle) == ("M", 19, spindle.title) and spindle.unit is None:
                 spindle.dismiss()
@@ -192,7 +192,7 @@ class FunctionOutput:
         if tool and tool not in self._channel.tool_records:
             known = ", ".join(f"D{number}" for number in sorted(self._channel.tool_records)) or "none"
             text = f"D{tool} in line {source.line} has no record wz[{tool}] in the machine file"
-            outgoing.notes.append((NO_TOOL_RECORD, f"{text}, nothing of the tool counts. Known: {known}"))
+            outgoing.notes.append((NO_TOOL_RECORD, f"{text}, no data of the tool apply. Known: {known}"))
 
     def _spindle_function(self, function: SpindleFunction, source: Source, outgoing: Outgoing) -> None:
         spindle, synchronisation = self.spindles[function.spindle], self._synchronisation(function)
@@ -224,7 +224,7 @@ class FunctionOutput:
     def _ask(
         self, request: HandshakeRequest, synchronisation: Synchronisation, expected: Expectation, outgoing: Outgoing
     ) -> None:
-        """The PLC is told; where it has to acknowledge, the path waits for that too."""
+        """The PLC is notified; if it has to acknowledge, the path waits for that too."""
         outgoing.requests.append(request)
         if request.acknowledge_needed:
             outgoing.add_wait(synchronisation, expected, request.id)
@@ -232,7 +232,7 @@ class FunctionOutput:
     def _request(
         self, source: Source, kind: str, spindle: str, number: int, *, waits: bool, **words: Any
     ) -> HandshakeRequest:
-        """`words`: value, position and direction, where the function has them."""
+        """`words`: value, position and direction, if the function has them."""
         return HandshakeRequest(
             cycle=UNSENT,
             id=next(self._request_numbers),

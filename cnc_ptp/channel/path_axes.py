@@ -1,7 +1,7 @@
-"""The axes of a channel: on its path, beside it, or moved by others; and which of them may not go on.
+"""The axes of a channel: on its path, off it, or moved by others; and those without feed release.
 
-While the channel has no motion, its axes are where others have put them, and the next program begins there. On the path
-a superposition (external setpoints, a flying saw) may put an axis beside its setpoint; it is taken over from where it
+While the channel has no motion, its axes are where others have put them, and the next program starts there. On the path
+a superposition (external setpoints, a flying saw) may move an axis off its setpoint; it is taken over from where it
 is when the program has finished.
 """
 
@@ -14,13 +14,13 @@ from cnc_ptp.path.path_motion import AxisStates, PathMotion
 from cnc_ptp.protocol.axis_states import AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 
-NOT_AT_END = "axis {} was moved away from the end of the path before"
+NOT_AT_END = "axis {} was moved away from the end of the previous path"
 
 
 class PathAxes:
     """The path axes of one channel, in its order.
 
-    on_path    the block before was one of path motion: the axes are where its last setpoint has put them
+    on_path    the previous block was one of path motion: the axes are where its last setpoint has put them
     beside     axes that are not, until the channel has taken over where they are
     withheld   axes whose feed release the path waits for
     """
@@ -38,11 +38,11 @@ class PathAxes:
         self._given = motion.states
 
     def give(self, setpoints: AxisStates, *, on_path: bool) -> None:
-        """The last setpoints of a block, one for each axis."""
+        """Keeps the last setpoints of a block, one for each axis."""
         self.on_path, self._given = on_path, setpoints
 
     def read(self, inputs: Mapping[str, CycleBlock], *, just_started: bool) -> Iterator[str]:
-        """What the axes have reported for the block before; reasons for a fault of a program that has just started."""
+        """Reads the axes' reports for the previous block; gives reasons for a fault of a program just started."""
         read = self._read_on_path if self.on_path else self._read_at_rest
         yield from read(inputs, just_started)
 
@@ -67,7 +67,7 @@ class PathAxes:
             self._motion.place(index, position)
 
     def read_releases(self, inputs: Mapping[str, CycleBlock], *, can_be_held: bool) -> list[str]:
-        """Finds the axes on the path that may not go on in their direction; those of them that could before."""
+        """Finds the axes on the path without feed release in their direction; returns those that had it before."""
         before, nodes = self.withheld, self.nodes if can_be_held and self.on_path else ()
         self.withheld = [node for node in nodes if lacks_release(inputs.get(node))]
         return [node for node in self.withheld if node not in before]

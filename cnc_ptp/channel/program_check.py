@@ -29,7 +29,7 @@ from cnc_ptp.parameters import (
     SpindleParameters,
     catalogue,
 )
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
@@ -41,7 +41,7 @@ NO_CHANNEL = 26112
 
 
 class PreparedProgram(NamedTuple):
-    """A program that was interpreted before its load, from the position `start` and the modal state `modal`."""
+    """A program that was interpreted ahead of its load, from the position `start` and the modal state `modal`."""
 
     text: str
     program: Program
@@ -52,7 +52,7 @@ class PreparedProgram(NamedTuple):
 
 
 class ProgramCheck:
-    """What a machine says to a program: soft limits, speeds that the spindles reach, M functions it knows."""
+    """Checks a program against a machine: soft limits, speeds that the spindles reach, M functions it knows."""
 
     def __init__(
         self,
@@ -101,7 +101,7 @@ class ProgramCheck:
         return tuple(axis.start_position for axis in self._axes)
 
     def initial_state(self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs]) -> ModalState:
-        """The modal state in which programs begin: gears as the spindles report them, coupling groups as defined."""
+        """The modal state in which programs start: gears as the spindles report them, coupling groups as defined."""
         state = ModalState()
         state.spindle.gears = self.gears(feedback)
         state.spindle.links = dict(links)
@@ -161,7 +161,7 @@ class ProgramCheck:
             raise ProgramError(UNKNOWN_M_FUNCTION, text, source, column_of(source, f"M{function.number}"))
 
     def _compensation(self, function: CompensationSwitch, source: Source) -> None:
-        """Raises ProgramError 70495 where friction compensation is switched on that the axis does not permit."""
+        """Raises ProgramError 70495 when friction compensation is switched on for an axis that does not permit it."""
         axis = self._axes[self._axis_names.index(function.axis)]
         if function.on and not axis.control.friction.permitted:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
@@ -169,7 +169,7 @@ class ProgramCheck:
             raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))
 
     def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
-        """A spindle without actual position can be neither positioned nor homed (TF5200 spindle 2.2.4)."""
+        """Vetoes M19 and G74 of a spindle without actual position (TF5200 spindle 2.2.4)."""
         spindle = self._units.get(self._nodes[function.spindle])
         if spindle is None or spindle.has_position:
             return

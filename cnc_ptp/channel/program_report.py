@@ -1,4 +1,4 @@
-"""What is told of the programs of the channels when a run has ended."""
+"""Summary of the channels' programs at the end of a run."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.notes import Note
 
 CUT_OFF = 26121
-"""Warning: a program was not through when the duration of the run was over."""
+"""Warning: a program was not finished at the end of the run's duration."""
 
 
 @dataclass
 class ProgramReport:
-    """The program of one channel: cycles that it took so far, and where it is."""
+    """The program of one channel: its cycles so far, and where it is."""
 
     cycles: int = 0
     done: bool = True
@@ -29,14 +29,14 @@ class ProgramReport:
 
 
 def time_lines(programs: Mapping[str, ProgramReport], cycle_time: float) -> Iterator[str]:
-    """Program time, with several channels that of each; `cycle_time` in s."""
+    """Program time, of each if there are several channels; `cycle_time` in s."""
     for name, program in programs.items():
         channel = f" {name}:" if len(programs) > 1 else ""
         yield f"program time{channel} {program.cycles * cycle_time:.3f} s"
 
 
 def cut_off_notes(programs: Mapping[str, ProgramReport], duration: float | None) -> Iterator[Note]:
-    """A warning for each program that was not through when the `duration` (s) was over."""
+    """A warning for each program that was not finished after the `duration` (s)."""
     for name, program in programs.items():
         if duration is not None and not program.done:
             where = f"in line {program.line}, state {ChannelStateCode(program.state).name}"

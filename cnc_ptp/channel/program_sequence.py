@@ -1,15 +1,15 @@
-"""The sequence of a program: NC block after NC block its functions, its motion and what the path waits for.
+"""Program sequence: the functions, motion and waits of one NC block after the other.
 
 | phase | what happens | next |
 |---|---|---|
 | NEXT | the next block is taken; its gear change goes out | WAIT_GEAR, WAIT_BEFORE, at the end WAIT_END |
 | WAIT_GEAR | the path waits for the gear; then the functions before the motion go out | WAIT_BEFORE |
-| WAIT_BEFORE | the path waits for what has to come before the motion | MOTION, without one WAIT_AFTER |
+| WAIT_BEFORE | the path waits for all that must precede the motion | MOTION, without one WAIT_AFTER |
 | MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
 | WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
-| WAIT_END | a program without M30: the path waits for all that is still open | IDLE |
-| STOPPED | M00, M01, single block: `resume` goes on | NEXT |
-| RAMP_DOWN | the program was aborted, the path is on its ramp | IDLE |
+| WAIT_END | a program without M30: the path waits for all that is still pending | IDLE |
+| STOPPED | M00, M01, single block: `resume` continues | NEXT |
+| RAMP_DOWN | the program was aborted, the path stops on its ramp | IDLE |
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import CycleBlock, HandshakeRequest
 
 ENDS = ("stop", "decouple")
-"""Commands that go out although the program was aborted."""
+"""Commands that are sent although the program was aborted."""
 NO_SOURCE = Source("", 0, 0, "")
 NO_MEASURING_EVENT = 22017
 COMMANDED_BY_OTHERS = 22022
@@ -48,14 +48,14 @@ class Phase(Enum):
 
 WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
 ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
-"""What the path need not wait for in its own block, at the end of the program it does."""
+"""What the path waits for at the end of the program, but not in its own block."""
 
 
 class ProgramSequence:
     """Runs canonical blocks.
 
     `go_on` makes one step that takes no time; it returns False when only time, the PLC or a spindle can help. While
-    `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` tells when it has finished.
+    `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` reports that it has finished.
     """
 
     def __init__(self, motion: PathMotion, functions: FunctionOutput) -> None:
@@ -65,7 +65,7 @@ class ProgramSequence:
         self.blocks: Sequence[CanonicalBlock] = ()
         self.blocks_done = 0
         self.source = NO_SOURCE
-        """Where the running block comes from, after the end the last one."""
+        """Source of the active block; after the end, of the last one."""
         self.single_block = False
         self.optional_stop = False
         self._block: CanonicalBlock | None = None
@@ -73,19 +73,19 @@ class ProgramSequence:
         self._outgoing = Outgoing()
         self._waits: list[Wait] = []
         self._due: frozenset[Moment] = frozenset()
-        """The moments that have come: the path waits for what waits until one of them."""
+        """The moments that have come: the path waits for the functions of these moments."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
         self.open_requests: dict[int, HandshakeRequest] = {}
         """Handshake requests by number that the PLC has not acknowledged."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self.notes: list[tuple[int, str]] = []
-        """What the channel is to warn of: number and text."""
+        """Warnings for the channel to publish: number and text."""
 
     # from outside
 
     def begin(self, blocks: Sequence[CanonicalBlock], *, program: bool) -> None:
-        """Starts from the first block; a `program` begins with feedforward off, MDI blocks with what is set."""
+        """Starts from the first block; a `program` starts with feedforward off, MDI blocks leave it unchanged."""
         if program:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
@@ -94,7 +94,7 @@ class ProgramSequence:
         self.phase = Phase.NEXT
 
     def resume(self) -> None:
-        """Goes on after M00, M01 or in single block."""
+        """Resumes after M00, M01 or in single block."""
         self.phase = Phase.NEXT
 
     def ramp_down(self, *, keep: Container[str] = ()) -> None:
@@ -125,21 +125,21 @@ class ProgramSequence:
         return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
 
     def _stop_spindles(self) -> None:
-        """M05 for the spindles that the channel has set in motion, except those to keep; its couplings end."""
+        """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
         self._functions.expect_nothing(self._keep)
         self._queue(self._functions.at_abort(self.source, self._keep))
 
     @property
     def spindles_move(self) -> bool:
-        """The channel has set spindles in motion."""
+        """The channel has started spindles."""
         return any(spindle.responsible for spindle in self._functions.spindles)
 
     def end_couplings(self) -> None:
-        """Couplings that manual blocks have left end before a program begins."""
+        """Ends the couplings that MDI blocks have left, before a program starts."""
         self._outgoing.commands += self._functions.spindles.decouple_all()
 
     def measuring_event(self) -> bool:
-        """The functions of type MNE_SNS of the running motion go out; False when there are none."""
+        """The functions of type MNE_SNS of the active motion go out; False when there are none."""
         if not self._awaits_event or self._block is None:
             return False
         self._awaits_event = False
@@ -152,11 +152,11 @@ class ProgramSequence:
         return next((request for request in sent if cycle - request.cycle >= limit), None)
 
     def acknowledge(self, request_id: int) -> None:
-        """The PLC has carried out what it was asked for."""
+        """The PLC has acknowledged a request."""
         self._functions.acknowledged(self.open_requests.pop(request_id))
 
     def take_outgoing(self, first_cycle: int) -> Outgoing:
-        """What is to go out with the block of cycles that begins at `first_cycle`; from there on its waits count."""
+        """Commands and requests of the cycle block that starts at `first_cycle`; its waits count from there."""
         outgoing, self._outgoing = self._outgoing, Outgoing()
         for request in outgoing.requests:
             request.cycle = first_cycle
@@ -167,28 +167,28 @@ class ProgramSequence:
         return outgoing
 
     def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
-        """Blocks that the spindles have reported for the cycles before `cycle`."""
+        """Reads the spindles' blocks for the cycles before `cycle`."""
         self._feedback = feedback
         spindles = self._functions.spindles
         ended = spindles.read(cycle, feedback)
-        self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program goes on") for text in ended]
+        self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues") for text in ended]
         runs = self.phase not in (Phase.IDLE, Phase.RAMP_DOWN)
         for spindle in spindles:
             lost = spindle.lost_speed(cycle, watched=runs and spindle.node not in self._speeds_waited_for())
             if lost:
-                self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program goes on"))
+                self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program continues"))
 
     def _waited_for(self) -> list[Wait]:
-        """What holds the path now."""
+        """The waits that hold the path now."""
         return [wait for wait in self._waits if wait.until in self._due] if self.phase in WAITING else []
 
     def _speeds_waited_for(self) -> set[str]:
-        """Nodes of the spindles whose speed holds the path: that it is not reached is noticed there."""
+        """Nodes of the spindles whose speed the path waits for: a missed speed is noticed there."""
         expected = [wait.expected for wait in self._waited_for()]
         return {expectation.spindle for expectation in expected if expectation.condition is Condition.SPEED}
 
     def waits_for(self) -> str:
-        """What the program waits for that does not come with time alone; empty when it goes on by itself."""
+        """What the program waits for that does not come with time alone; empty when it continues without help."""
         if self.phase is Phase.STOPPED:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
@@ -227,11 +227,11 @@ class ProgramSequence:
         return True
 
     def _wait(self, phase: Phase, *moments: Moment) -> None:
-        """From now on the path waits for what waits until one of these moments."""
+        """From now on the path waits for the functions of these moments."""
         self.phase, self._due = phase, frozenset(moments)
 
     def motion_ended(self) -> None:
-        """The motion of the block, or the ramp of an aborted program, has finished: the axes stand."""
+        """The motion of the block, or the ramp of an aborted program, has finished: the axes are at a standstill."""
         if self.phase is Phase.RAMP_DOWN:
             self._motion.abandon()
             self._end_program()
@@ -251,7 +251,7 @@ class ProgramSequence:
             self._wait(Phase.WAIT_AFTER, Moment.AFTER)
 
     def _await_answers(self) -> None:
-        """The program ends when the spindles have had a block in which to refuse what was commanded."""
+        """The program ends when the spindles have had one block in which to refuse their commands."""
         for spindle in self._functions.spindles:
             self._waits += [
                 Wait(Moment.AFTER, Expectation(spindle.node), sent_cycle=cycle) for cycle in spindle.answers()
@@ -272,7 +272,7 @@ class ProgramSequence:
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
 
     def _functions_before(self) -> None:
-        """Functions that go out before the motion, and all that the motion has to wait for."""
+        """Sends the functions that precede the motion; the path waits for all that the motion needs."""
         block = self._block
         assert block is not None
         self._queue(self._functions.of_block(block, Moment.BEFORE))
@@ -312,7 +312,7 @@ class ProgramSequence:
     def _queue(self, outgoing: Outgoing) -> None:
         """Functions go out with the next block; the path waits for them if their synchronisation type says so.
 
-        A newer function of a spindle takes the place of what the path is still to wait for.
+        A newer function of a spindle replaces the wait for an older one.
         """
         self._outgoing.commands += outgoing.commands
         self._outgoing.requests += outgoing.requests
@@ -326,7 +326,7 @@ class ProgramSequence:
 
 
 def moments_before(block: CanonicalBlock) -> list[Moment]:
-    """The moments that have come when the motion of the block may begin."""
+    """The moments that have come when the motion of the block may start."""
     moments = [Moment.BEFORE]
     if block.motion is not None:
         moments.append(Moment.NEXT_MOTION)

@@ -1,4 +1,4 @@
-"""The spindles of a channel: their functions become commands to the units, and what is expected of them.
+"""Spindle functions of a channel: commands to the spindle units, and the reports expected of them.
 
 Three kinds of spindles: NC spindles carry out commands and report; axis-specific PLC spindles (P-AXIS-00015 0x40000) do
 so too, but their PLC alone acknowledges; channel-specific ones (P-CHAN-00069) have no unit, all goes to the PLC.
@@ -41,18 +41,18 @@ class SpindleFunctions:
 
     @property
     def turning(self) -> list[CommandedSpindle]:
-        """Those that turn as the program knows it, the first to turn first."""
+        """Those that turn for the program, the first to start first."""
         return sorted((spindle for spindle in self if spindle.turns), key=lambda spindle: spindle.turning_rank)
 
     # from block to block
 
     def send(self, first_cycle: int) -> None:
-        """What was commanded goes out with the block that begins at `first_cycle`."""
+        """The commands go out with the block that starts at `first_cycle`."""
         for spindle in self:
             spindle.send(first_cycle)
 
     def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> list[str]:
-        """Blocks for the cycles before `cycle`; a text for each coupling of the channel that others have ended."""
+        """Reads the blocks before `cycle`; a text for each coupling of the channel that others have ended."""
         texts = {spindle.name: spindle.read(cycle, feedback.get(spindle.node)) for spindle in self}
         return [texts[name] for name in sorted(texts) if texts[name]]
 
@@ -66,7 +66,7 @@ class SpindleFunctions:
     def command(self, function: SpindleFunction) -> tuple[list[Command], Expectation | None]:
         """Commands for the spindle, and what it is to report; None for a speed that only counts for the next M03, M04.
 
-        A slave gets no command but for its override: it does what its master does (2.8.3).
+        A slave gets no command except for its override: it follows its master (2.8.3).
         """
         spindle = self[function.spindle]
         acts = spindle.acts(function)
@@ -112,22 +112,22 @@ class SpindleFunctions:
         return self._command(spindle, "orient", **words)
 
     def _command(self, spindle: CommandedSpindle, command: str, **arguments: Any) -> Command:
-        """Says where motion commands come from, so that a spindle can refuse a second commander."""
+        """Adds the source to motion commands, so that a spindle can refuse a second one."""
         if "source" in COMMANDS["spindle"][command]:
             arguments["source"] = self._channel.name
         return Command(spindle.node, command, arguments)
 
     def without_effect(self, function: SpindleFunction) -> str:
-        """What people should hear of a speed that commands nothing now; empty where M03 or M04 is simply to come."""
+        """Warning of a speed that commands nothing now; empty if M03 or M04 is simply still to come."""
         spindle = self[function.spindle]
         master, speed = spindle.master, function.speed_rpm
         if speed is None or spindle.unit is None or (master is not None and not master.turns):
             return ""
         words = f"S{speed:g} is without effect on spindle {spindle.node}"
         if master is not None:
-            return f"{words}, which stands; M03 or M04 of its master {master.node} sets it turning"
+            return f"{words}, which is at a standstill; M03 or M04 of its master {master.node} starts it"
         if spindle.block is not None and turns(spindle.block):
-            return f"{words}, which this channel has not set turning; it counts for its next M03 or M04"
+            return f"{words}, which this channel has not started; it counts for its next M03 or M04"
         return ""
 
     # without speed and position
@@ -151,7 +151,7 @@ class SpindleFunctions:
     # gears
 
     def change_gear(self, change: GearChange) -> tuple[Command, Expectation] | None:
-        """The command for another gear and what it makes expect; None where the spindle is in that gear."""
+        """The command for another gear and the expected report; None if the spindle is in that gear."""
         spindle = self[change.spindle]
         if spindle.in_gear(change.stage):
             return None
@@ -163,7 +163,7 @@ class SpindleFunctions:
     # synchronous operation
 
     def link(self, link: SpindleLink) -> tuple[list[Command], Expectation]:
-        """Begin and end of a coupling: the path goes on when the slave reports it. What others have ended is over."""
+        """Start and end of a coupling: the path waits for the slave's report. A coupling ended by others is gone."""
         slave, master = self[link.slave], self[link.master]
         if not link.on:
             return self._decouple(slave), Expectation(slave.node)
@@ -183,19 +183,19 @@ class SpindleFunctions:
     # ends
 
     def decouple_all(self) -> list[Command]:
-        """Ends all couplings of the channel at once: its program was aborted."""
+        """Ends all couplings of the channel immediately: its program was aborted."""
         slaves = sorted((spindle for spindle in self if spindle.follows), key=lambda spindle: spindle.coupling_rank)
         return [command for slave in slaves for command in self._decouple(slave)]
 
     def stop(self, spindle: CommandedSpindle, *, homes: bool) -> list[Command]:
-        """M05, unless somebody else has commanded the spindle since; none where there is no unit."""
+        """M05, unless somebody else has commanded the spindle since; none if there is no unit."""
         spindle.forget()
         spindle.expect(Expectation(spindle.node))
         return [] if spindle.unit is None else [self._command(spindle, "stop", own=True, homes=homes)]
 
 
 def expected(spindle: CommandedSpindle, function: SpindleFunction) -> Expectation:
-    """What the spindle reports when it has carried out the function; for PLC spindles the PLC says so."""
+    """The report when the spindle has carried out the function; of PLC spindles the PLC reports it."""
     if spindle.reported_to_plc or spindle.unit is None:
         return Expectation(spindle.node)
     if function.m == 5:

@@ -1,7 +1,7 @@
-"""Does a spindle do what a channel has commanded? The answers from the block that it reports (TF5200 spindle 2.5).
+"""Expected reports of a spindle: does its block show what a channel has commanded? (TF5200 spindle 2.5)
 
-A report counts for the path only while the spindle carries out the command of the channel: one that stands because
-somebody else has stopped it has reached no speed.
+A report counts for the path only while the spindle carries out the command of the channel: a spindle at a
+standstill because somebody else has stopped it has reached no speed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SAME_POSITION = 1e-3
 
 
 class Condition(Enum):
-    """What a spindle has to report."""
+    """The quantity that a spindle has to report."""
 
     NONE = ""
     SPEED = "the speed of spindle {spindle}"
@@ -36,12 +36,12 @@ COMMANDED = {
     Condition.POSITION: "go to {value:g} deg",
     Condition.GEAR: "change to gear {value}",
 }
-"""What the spindle was commanded to do."""
+"""The command in words, by quantity."""
 
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What a spindle (node) is to report when it has carried out a command.
+    """The report that a spindle (node) owes for a command.
 
     `value`: speed in rpm (+ = M03), position in ° modulo `turn`, or gear stage; `master`: node of its master.
     """
@@ -53,7 +53,7 @@ class Expectation:
     master: str = ""
 
     def carried_out(self, block: SpindleBlock) -> bool:
-        """The spindle does at the end of its block what was commanded: on its way there, or there."""
+        """At the end of its block the spindle carries out the command, or has carried it out."""
         state, mode = block.state[-1], block.mode[-1]
         match self.condition:
             case Condition.SPEED:
@@ -71,7 +71,7 @@ class Expectation:
         return True
 
     def reached(self, block: SpindleBlock) -> bool:
-        """It reports speed, standstill or position, and nothing else comes first; a stop (M05) never waits."""
+        """It reports speed, standstill or position, and nothing else precedes that; a stop (M05) never waits."""
         if self.condition is not Condition.STANDSTILL and must_wait(block):
             return False
         match self.condition:
@@ -84,30 +84,30 @@ class Expectation:
         return True
 
     def awaited(self) -> str:
-        """What is waited for."""
+        """What is waited for, in words."""
         return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
 
     def missed(self) -> str:
-        """What the spindle does not do, for the text of an error or a warning."""
+        """The command that the spindle does not carry out, for the text of an error or a warning."""
         commanded = COMMANDED[self.condition].format(value=self.value)
-        return f"spindle {self.spindle} does not {commanded} as it was told"
+        return f"spindle {self.spindle} does not {commanded} as commanded"
 
 
 NOTHING = Expectation()
 
 
 def orders_wait(block: SpindleBlock) -> bool:
-    """Commands wait in the spindle; the one that is asked about may be among them."""
+    """Commands wait in the spindle; the one in question may be among them."""
     return bool(block.status_bits[-1] & SpindleBit.ORDERS_WAIT)
 
 
 def must_wait(block: SpindleBlock) -> bool:
-    """The path has to: commands wait in the spindle, or a gear is changed, after which its rotation goes on."""
+    """The path has to wait: commands wait in the spindle, or a gear is changed, after which its rotation continues."""
     return orders_wait(block) or block.gear_change_active[-1]
 
 
 def stands(block: SpindleBlock, channel: str) -> bool:
-    """Stands, and has nothing to do: nothing waits, no gear is changed, nothing is done for `channel`."""
+    """At a standstill without a job: nothing waits, no gear is changed, nothing is active for `channel`."""
     return block.state[-1] in (S.STANDSTILL, S.DISABLED) and not must_wait(block) and block.source != channel
 
 
@@ -117,7 +117,7 @@ def turns(block: SpindleBlock) -> bool:
 
 
 def current_activity(block: SpindleBlock) -> str:
-    """What the spindle does instead of what was commanded."""
+    """What the spindle does instead of the command, in words."""
     state = block.state[-1]
     if block.gear_change_active[-1]:
         return "its gear is being changed"

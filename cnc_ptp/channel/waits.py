@@ -1,4 +1,4 @@
-"""What a path waits for, and until when: reports of spindles and acknowledgements of the PLC.
+"""Waits of a path and their moments: reports of spindles and acknowledgements of the PLC.
 
 Source: TF5200 spindle 2.5 (synchronisation types).
 """
@@ -28,7 +28,7 @@ T = Synchronisation
 WAITING = T.MVS_SVS | T.MVS_SNS | T.MNS_SNS | T.MNE_SNS | T.MVS_SLM | T.MVS_SLP
 """Types for which the path waits, and the PLC has to acknowledge."""
 OUTPUT = WAITING | T.MOS
-"""Types that go out to the PLC."""
+"""Types of which the PLC is notified."""
 
 
 class Moment(Enum):
@@ -64,7 +64,7 @@ def waits_until(synchronisation: Synchronisation) -> Moment | None:
 
 @dataclass(slots=True)
 class Wait:
-    """Something the path waits for at the moment `until`: a report of a spindle, the acknowledgement of a request."""
+    """A wait of the path at the moment `until`: a report of a spindle, the acknowledgement of a request."""
 
     until: Moment
     expected: Expectation = NOTHING
@@ -72,12 +72,12 @@ class Wait:
     sent_cycle: int | None = None
     """First cycle of the block in which the function went out; what was reported for earlier cycles does not count."""
     until_sent: bool = False
-    """Axes take the function over at that cycle; nobody has to report anything."""
+    """Axes take the function over at that cycle; no report is needed."""
 
     def fulfilled(self, cycle: int, spindles: Mapping[str, CycleBlock], open_requests: Container[int]) -> bool:
-        """Raises CncError: 22019 for a coupling that did not come about, 22021 for a spindle that does something else.
+        """Raises CncError: 22019 for a coupling that was not made, 22021 for a spindle that does something else.
 
-        A spindle that does something else is found out while the PLC has not acknowledged, too.
+        A spindle that does something else is noticed also while the PLC has not acknowledged.
         """
         if self.until_sent:
             return self.sent_cycle is not None
@@ -112,8 +112,8 @@ class Wait:
     def renew(self, newer: Expectation, *, waits_too: bool) -> None:
         """The spindle was commanded something else.
 
-        A new speed is what the path waits for now; all else makes the report of the older function meaningless.
-        Before a gear change: what comes after it decides about the speed.
+        The path now waits for a new speed; any other command makes the report of the older function meaningless.
+        Before a gear change: the functions after it decide about the speed.
         """
         if not newer.spindle or self.expected.spindle != newer.spindle:
             return
@@ -134,7 +134,7 @@ class Wait:
         return self.expected.awaited()
 
     def held(self, cycle: int, spindles: Mapping[str, CycleBlock]) -> str:
-        """What does not come because override 0 holds the spindle, if so."""
+        """The report that does not come because override 0 holds the spindle; empty otherwise."""
         block = spindles.get(self.expected.spindle)
         waits = self._sent_before(cycle) and self.expected.condition is not Condition.MASTER
         held = waits and isinstance(block, SpindleBlock) and not block.gear_request and held_by_override(block)
@@ -143,9 +143,9 @@ class Wait:
 
 @dataclass(slots=True)
 class Outgoing:
-    """What goes out at one moment of an NC block, and the waits that belong to it.
+    """The output of one moment of an NC block, and the waits that belong to it.
 
-    expected    what the spindles are to report, whether the path waits for it or not
+    expected    reports expected of the spindles, whether the path waits for them or not
     notes       number and text of warnings
     """
 

@@ -1,4 +1,4 @@
-"""What the shell completes: units of the running machine or of --machine, their commands and arguments."""
+"""Shell completion: units of the running machine or of --machine, their commands and arguments."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from click.shell_completion import CompletionItem
 from cnc_ptp.errors import CncError
 
 PATIENCE = 1.5
-"""Seconds that a running machine is looked for."""
+"""Seconds to look for a running machine."""
 
 
 def complete_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -18,7 +18,7 @@ def complete_unit(context: click.Context, parameter: click.Parameter, incomplete
 
 
 def complete_shown_unit(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Units that have a state to look at."""
+    """Units that have a state to show."""
     return matching({unit: kind for unit, kind in unit_kinds_of(context).items() if kind != "plc"}, incomplete)
 
 
@@ -65,7 +65,7 @@ def matching(words: Mapping[str, str], incomplete: str) -> list[CompletionItem]:
 
 
 def unit_kinds_of(context: click.Context) -> dict[str, str]:
-    """Unit -> kind; nothing where neither a machine file nor a running machine can be asked."""
+    """Unit -> kind; empty without a machine file and a running machine."""
     try:
         if context.params.get("machine"):
             from cnc_ptp.machine.wiring import unit_kinds

@@ -1,4 +1,4 @@
-"""What the commands print in common: refusals, faults; and the exit statuses."""
+"""Common output of the commands: refusals, faults; and the exit statuses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def print_error(error: CncError) -> None:
 
 
 def print_note_of_idle_run(*job: object, options: str = "--program, --scenario or --duration") -> None:
-    """Where none of the `options` was given, that there was nothing to do."""
+    """A note that there was nothing to do, because none of the `options` was given."""
     if all(part is None for part in job):
         text = f"note: there was nothing to do, give {options}"
         Console(highlight=False, soft_wrap=True).print(text, style="yellow")
@@ -36,7 +36,7 @@ def print_faults(
 ) -> None:
     """Errors of a run, on standard error; commands that were refused, with their number, or carried out with a warning.
 
-    `stopped`: everything was stopped; that some axes stood already then is no news.
+    `stopped`: everything was stopped; that some axes were at a standstill already is not worth a note.
     """
     console_of_errors = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     for text in errors:

@@ -1,4 +1,4 @@
-"""Files that a command makes: they must not overwrite what it is given, and it is told when they cannot be written."""
+"""Output files of commands: they must not overwrite an input, and errors of writing are reported."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OVERWRITES = 26117
 
 
 def check_output(output: str | None, **inputs: str | None) -> None:
-    """Raises CncError 27030 when `output` is one of the inputs, each given by what it is: machine_file="…"."""
+    """Raises CncError 27030 when `output` is one of the inputs, each by its kind: machine_file="…"."""
     if output is None:
         return
     if not Path(output).absolute().parent.is_dir():
@@ -40,7 +40,7 @@ def _overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Whether both are one file, or would be: links of either kind count, and files that are not there yet."""
+    """Whether both are one file, or would be: links of either kind count, and files that do not exist yet."""
     return one.resolve() == other.resolve() or (one.exists() and other.exists() and one.samefile(other))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from cnc_ptp.protocol.command_texts import COMMAND_TEXTS, argument_text
+from cnc_ptp.protocol.command_help import COMMAND_TEXTS, argument_text
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL, OF_CHANNELS, OF_PLC, Argument
 
 INTRODUCTION = """\
@@ -21,11 +21,11 @@ A command changes the state of a unit at the first cycle of its next cycle block
 | the command line ([cli.md](cli.md)) | `cnc_ptp do channel set_override 60` |
 | a service ([interfaces.md](interfaces.md#services)) | `/channel/set_override` |
 
-In a scenario, `at` is in seconds; the command acts at the first cycle block that begins at or after it. `to` is the
+In a scenario, `at` is in seconds; the command acts at the first cycle block that starts at or after it. `to` is the
 name of a unit (axes, spindles and channels of the machine file, and `plc`), `do` the command. Times need not ascend.
 Answers and refusals are recorded. A refused command changes nothing.
 
-Switches are `on` and `off` (or `true` and `false`). Optional arguments stand in brackets; the table of arguments says
+Switches are `on` and `off` (or `true` and `false`). Optional arguments are in brackets; the table of arguments says
 what happens when they are left out. Files are relative to the scenario.
 """
 HEADLINES = {"axis": "Axis", "spindle": "Spindle", "channel": "Channel", "plc": "PLC"}
@@ -39,7 +39,7 @@ TYPES = {
 }
 HIDDEN = OF_PLC | OF_CHANNELS
 EITHER = {"setpoints": "file", "table": "file"}
-"""Arguments instead of which a file may be given."""
+"""Arguments that a file may replace."""
 
 
 def reference_markdown() -> str:
@@ -85,7 +85,7 @@ def argument_list(kind: str, command: str) -> str:
 
 
 def argument_lines(kind: str) -> Iterator[str]:
-    """One row for each argument that means the same in all commands named."""
+    """One row for each argument with one meaning in all commands named."""
     rows: dict[tuple[str, ...], list[str]] = {}
     for command in commands(kind):
         for name, argument in arguments(kind, command).items():

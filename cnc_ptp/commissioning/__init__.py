@@ -1,1 +1,1 @@
-"""Commissioning: what recorded motions say about an axis. Pure analysis on arrays; mm, s, deg, N or Nm."""
+"""Commissioning: analysis of recorded motions of an axis. Pure functions of arrays; mm, s, deg, N or Nm."""

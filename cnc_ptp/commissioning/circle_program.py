@@ -1,8 +1,8 @@
-"""The NC program of a circle test, and what of its run is evaluated.
+"""The NC program of a circle test, and the evaluated part of its run.
 
-Each circle begins and ends at rest, and what starting and stopping does is not to be measured. So each direction turns
-twice, from opposite starting points between the quadrants, and of each turn the half opposite its start counts: 90° of
-run-in, 180° measured, 90° of run-out. Both halves make a whole circle.
+Each circle starts and ends at rest, and the effects of starting and stopping are not to be measured. So each direction
+turns twice, from opposite starting points between the quadrants, and of each turn the half opposite its start counts:
+90° of run-in, 180° measured, 90° of run-out. Both halves make a whole circle.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def circle_program(
             blocks.append(f"{'G02' if clockwise else 'G03'} {to_centre} F{feed:.10g}")
     blocks += [f"G04 {DWELL:g}", "M30"]
     lines += [f"N{10 * number} {block}" for number, block in enumerate(blocks, start=1)]
-    # Line 1 is the name, block 0 stands in line 2.
+    # Line 1 is the name, block 0 is in line 2.
     placed = tuple(Turn(block + 2, clockwise, start) for block, clockwise, start in turns)
     return CircleProgram("\n".join([*lines, ""]), placed, plane, centre, radius)
 
@@ -108,9 +108,9 @@ def _word(letter: str, value: float) -> str:
 def measured_turn(
     program: CircleProgram, clockwise: bool, line: npt.NDArray[np.int64], points: Array
 ) -> npt.NDArray[np.bool_]:
-    """Which cycles count for a direction: `line` (n,) of the program in work, `points` (n, 2) actual positions, mm.
+    """The cycles that count for a direction: `line` (n,) of the active program, `points` (n, 2) actual positions, mm.
 
-    Raises CncError 27022 where a turn was not driven to its end.
+    Raises CncError 27022 if a turn was not driven to its end.
     """
     chosen = np.zeros(len(line), dtype=bool)
     for turn in (turn for turn in program.turns if turn.clockwise == clockwise):

@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 from cnc_ptp.commissioning.trace import Array
 
 CLOSE = 1e-12
-"""Relative to the radius: a centre that moves less is found."""
+"""Relative to the radius: a centre that moves less has been found."""
 MOST_ROUNDS = 50
 FIRST_POINTS = 64
 
@@ -57,8 +57,8 @@ def minimum_zone(points: Array) -> Zone:
     """The two concentric circles closest to each other with all `points` (n, 2) between them.
 
     Minimises outer - inner over centre, inner and outer radius. About a centre c the distances are r_i - u_i·dc in
-    first order, so each round is a linear program, and c moves until it stays. Of many points only those are taken
-    along that some round had outside its ring.
+    first order, so each round is a linear program, and c moves until it converges. Of many points only those are
+    used that were outside the ring in some round.
     """
     centre = np.array(least_squares_circle(points).centre)
     chosen = np.unique(np.linspace(0, len(points) - 1, min(len(points), FIRST_POINTS)).astype(int))
@@ -86,7 +86,7 @@ def _polar(points: Array, centre: Array) -> tuple[Array, Array]:
 def _narrowest(directions: Array, radii: Array) -> tuple[Array, float, float]:
     """Step of the centre, inner and outer radius: least outer - inner with inner <= r - u·step <= outer.
 
-    Distances are counted from their mean in units of their spread, so that the solver's tolerances do not count.
+    Distances are counted from their mean in units of their spread, so that the solver's tolerances do not matter.
     """
     mean, spread = float(np.mean(radii)), float(np.ptp(radii))
     if spread == 0.0:

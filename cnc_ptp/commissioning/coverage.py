@@ -1,4 +1,4 @@
-"""Which speeds a recording lacks for a friction table, and how to drive them."""
+"""Speeds that a recording lacks for a friction table, and a scenario that drives them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from cnc_ptp.commissioning.excitation import Motion, Room
 
 WIDEST_STEP = 1.6
-"""Ratio of neighbouring speeds up to which a curve with a Stribeck minimum is told well enough."""
+"""Ratio of neighbouring speeds up to which a curve with a Stribeck minimum is covered well enough."""
 
 
 def missing_speeds(wanted: Sequence[float], found: Sequence[float]) -> list[float]:
@@ -20,7 +20,7 @@ def _near(speed: float, other: float) -> bool:
 
 
 def scenario_lines(room: Room, motions: Sequence[Motion]) -> list[str]:
-    """The motions as lines of a scenario file, from a standing, powered axis at `room.position`."""
+    """The motions as lines of a scenario file, from a powered axis at a standstill at `room.position`."""
     return [
         f"- {{at: {motion.at:.3f}, to: {room.axis}, do: move_relative, distance: {motion.distance:.4f}, "
         f"velocity: {motion.velocity:g}}}"

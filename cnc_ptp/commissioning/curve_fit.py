@@ -56,7 +56,7 @@ class CurveFit:
         return raw_pieces(self.parameters, inf)[1]
 
     def acceleration(self, speed: float) -> float:
-        """What the spindle has at `speed`, with the floor where there is one."""
+        """The acceleration of the spindle at `speed`, with the floor if there is one."""
         if speed <= self.parameters.limit_speed:
             return self.parameters.constant
         return max(self.law.acceleration(speed), self.parameters.minimum or -inf)
@@ -151,7 +151,7 @@ FITS: Mapping[str, Callable[[CurvePoint, Sequence[CurvePoint]], Coefficients]] =
 }
 
 
-# ---------------------------------------------------------------- is it a curve for a spindle?
+# ---------------------------------------------------------------- whether a spindle can run on it
 
 
 def curve_fault(fit: CurveFit) -> CncError | None:
@@ -160,7 +160,7 @@ def curve_fault(fit: CurveFit) -> CncError | None:
 
 
 def _pole(fit: CurveFit) -> CncError | None:
-    """Where the denominator of a hyperbola comes to 0, the acceleration grows without end."""
+    """A pole: where the denominator of a hyperbola is 0, the acceleration is infinite."""
     law = fit.law
     low = next((n for n in fit.turns() if value(law.denominator, n - law.origin) <= 0.0), None)
     if low is None:

@@ -34,7 +34,7 @@ STEPS_PER_DEG_S = 1000
 SAME = 1e-9
 """Relative; a speed in rpm is the same in °/s up to this."""
 NEEDED_ABOVE = {"polynomial": 3, "hyperbola": 2}
-"""Points above the limit speed that make the curve; with more of them it is a least squares fit."""
+"""Points above the limit speed that determine the curve; with more of them it is a least squares fit."""
 
 
 class CurvePoint(NamedTuple):
@@ -84,7 +84,7 @@ def _speed_unit(names: Sequence[str], fault: Fault) -> str:
 
 
 def _point(speed: str, acceleration: str, unit: str, no_numbers: str) -> CurvePoint:
-    """Raises ValueError for what is no point, with the text `no_numbers` where they are none."""
+    """Raises ValueError unless it is a point, with the text `no_numbers` unless both are numbers."""
     try:
         given, point_acceleration = float(speed), float(acceleration)
     except ValueError:
@@ -110,7 +110,7 @@ def _file_fault(file: str, line: int, reason: str) -> CncError:
 
 
 def limit_index(points: Sequence[CurvePoint], kind: str, limit_speed: float | None) -> int:
-    """Which of the points is the limit of the constant range: the one at `limit_speed` (°/s), else the first.
+    """Index of the point at the limit of the constant range: the one at `limit_speed` (°/s), else the first.
 
     Raises CncError 27043 unless the speeds ascend, 27045 without a point at the limit, 27044 with too few above it.
     """

@@ -2,7 +2,7 @@
 
 Model, exact for a command that is held over a cycle: v[k+1] = g·u[k-d] + (v[k] - g·u[k-d])·exp(-T/Ta); T cycle time,
 u command velocity, d dead time in cycles, g gain (1 where the scaling is right). Source: TF5200 feedforward, figure 1.
-Where the telegram carries no velocity, the actual one is the way of a cycle by its time, m[k+1] = g·u[k-d] +
+If the telegram carries no velocity, the actual one is the distance of a cycle by its time, m[k+1] = g·u[k-d] +
 (v[k] - g·u[k-d])·L/T with L = Ta·(1 - exp(-T/Ta)).
 The sum of the squares of (simulated - recorded velocity) is the smallest possible (output error), so that noise on the
 recorded velocity does not bend the result.
@@ -34,7 +34,7 @@ STILL_POSSIBLE = 1.5
 """… and up to which another one has to be reckoned with."""
 NO_LAG = 1e-9
 NEGLIGIBLE = 1e-12
-"""What is left of a start velocity after so many cycles that it does not count."""
+"""Remaining part of a start velocity below which it does not count."""
 AFTERWARDS = 0.1
 """Seconds after the end of a motion that still belong to it."""
 MOST_CYCLES = 20_000
@@ -43,12 +43,12 @@ CORRELATED = 0.02
 LARGEST_MISFIT = 0.2
 """Misfit above which the drive is no first-order lag at all."""
 LEAST_CHANGE = 0.05
-"""Part of the velocity that has to change within the recording: a constant one says nothing about a lag."""
+"""Part of the velocity that has to change within the recording: a constant one shows no lag."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveFit:
-    """What was found. Times in s.
+    """Result of the fit. Times in s.
 
     `deviation`: two standard deviations of Ta with this dead time. `speed`: the highest, mm/s (deg/s).
     `misfit`: root mean square of (simulated - recorded velocity) over that of (velocity - its mean).
@@ -167,9 +167,9 @@ def _pieces(trace: AxisTrace) -> list[_Piece]:
 
 
 def _moving(trace: AxisTrace, span: Span) -> list[Span]:
-    """Stretches in which the axis is to move, and what follows of it for AFTERWARDS seconds.
+    """Stretches in which the axis is to move, and the AFTERWARDS seconds after each.
 
-    At rest, friction holds an axis whatever small velocity is commanded: that is no lag.
+    At rest, friction holds an axis against any small velocity command: that is no lag.
     """
     first, end = span
     tail = round(AFTERWARDS / trace.cycle_time)
@@ -218,7 +218,7 @@ def _errors(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[float, fl
 def _residuals(pieces: Sequence[_Piece], pole: float, dead: int) -> tuple[Array, float]:
     """Simulated less recorded velocity of all pieces, and the best gain.
 
-    The simulated velocity is g · forced part + what is left of the velocity at the beginning of its piece, which is
+    The simulated velocity is g · forced part + the rest of the velocity at the start of its piece, which is
     unknown: its share p^k is taken out of both sides.
     """
     forced, wanted = [np.zeros(0)], [np.zeros(0)]
@@ -248,7 +248,7 @@ def _cycles_to_rest(pole: float) -> int:
 
 
 def _without(free: Array, velocity: Array) -> Array:
-    """The part of a velocity that no multiple of `free` at its beginning explains."""
+    """The part of a velocity that no multiple of `free` at its start explains."""
     rest = velocity.copy()
     rest[: len(free)] -= free * (np.sum(free * rest[: len(free)]) / np.sum(free * free))
     return rest

@@ -1,4 +1,4 @@
-"""Motions that excite an axis for its identification: forth and back from one place, within its limits."""
+"""Motions that excite an axis for its identification: back and forth from one position, within its limits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cnc_ptp.commissioning.timing import Seconds
 EDGE = 0.01
 """Part of the travel that stays free at either end."""
 PAUSE = 0.2
-"""Seconds of rest between two motions, beside the settling."""
+"""Seconds of rest between two motions, besides the settling."""
 SPEEDS = 30
 RANGE = 5000.0
 """Highest over lowest speed."""
@@ -24,7 +24,7 @@ LOWEST_SPEED = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Room:
-    """Where and how fast an axis may move; mm, s (deg, s). An axis without soft limits has infinite ones."""
+    """Travel and velocity that an axis may use; mm, s (deg, s). An axis without soft limits has infinite ones."""
 
     axis: str
     unit: str
@@ -37,7 +37,7 @@ class Room:
     jerk: float
     encoder_increment: float = 0.0
     limited_by: str = "P-AXIS-00212"
-    """What the highest velocity comes from."""
+    """The parameter that limits the highest velocity."""
 
     @property
     def travel(self) -> float:
@@ -46,7 +46,7 @@ class Room:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One motion: begins `at` s, goes `distance` (with sign) at `velocity`, lasts `duration` s."""
+    """One motion: starts at `at` s, goes `distance` (with sign) at `velocity`, lasts `duration` s."""
 
     at: float
     distance: float
@@ -70,7 +70,7 @@ def steady_time(room: Room, velocity: float, steady: float) -> float:
     """Seconds of constant velocity, at least `steady`.
 
     A start reduces a velocity that ramps with the smaller acceleration on both sides could not reach (TX1250 2.1), so
-    the way has to be long enough for those.
+    the distance has to be long enough for those.
     """
     ramps = ramp_times(room, velocity)
     return max(steady, max(ramps) - 0.5 * sum(ramps))
@@ -101,7 +101,7 @@ def highest_velocity(room: Room, steady: Seconds) -> float:
 def speed_ladder(room: Room, steady: Seconds) -> list[float]:
     """Speeds from slow to as fast as there is room for, evenly spaced in their logarithm, with three digits.
 
-    Raises CncError 27010 where there is no room to move.
+    Raises CncError 27010 if there is no room to move.
     """
     high = highest_velocity(room, steady)
     low = max(high / RANGE, LOWEST_INCREMENTS * room.encoder_increment, LOWEST_SPEED)
@@ -131,14 +131,14 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: Seconds) -> list[f
             raise refusal(
                 BAD_VELOCITIES,
                 room.axis,
-                f"{speed:g} {room.unit}/s need {needed:.4g} {room.unit} of way, the soft limits leave {usable:.4g} "
+                f"{speed:g} {room.unit}/s need {needed:.4g} {room.unit} of travel, the soft limits leave {usable:.4g} "
                 f"{room.unit} (P-AXIS-00177, P-AXIS-00178); nothing was started",
             )
     return sorted(set(speeds))
 
 
 def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest: float) -> list[Motion]:
-    """A motion to where there is room, then each speed forth and back; `rest` s before each motion."""
+    """A motion to where there is room, then each speed back and forth; `rest` s before each motion."""
     longest = max(way(room, speed, steady(speed)) for speed in speeds)
     start, side = _start(room, longest)
     motions: list[Motion] = []
@@ -146,7 +146,7 @@ def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest
     if start != room.position:
         distance = start - room.position
         velocity = room.max_velocity
-        # At most the whole way at velocity and both ramps, even if the velocity is not reached.
+        # At most the whole distance at velocity and both ramps, even if the velocity is not reached.
         duration = abs(distance) / velocity + motion_time(room, velocity, 0.0)
         motions.append(Motion(time, distance, velocity, duration))
         time += duration + PAUSE + rest
@@ -159,7 +159,7 @@ def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest
 
 
 def _start(room: Room, longest: float) -> tuple[float, float]:
-    """Where to start and in which direction first: where the axis stands, if there is room."""
+    """Start position and first direction: the present position, if there is room."""
     if math.isinf(room.travel):
         return room.position, 1.0
     edge = EDGE * room.travel

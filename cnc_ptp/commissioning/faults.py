@@ -1,4 +1,4 @@
-"""Numbers of what commissioning refuses. Each text says what is missing and what to do."""
+"""Error numbers of commissioning. Each text says what is missing and what to do."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class FrictionPoint:
 
 @dataclass(frozen=True, slots=True)
 class FrictionCurve:
-    """What a recording says about friction: points in ascending order, and the speeds that were no use."""
+    """The friction in a recording: points in ascending order, and the speeds that could not be used."""
 
     axis: str
     points: tuple[FrictionPoint, ...]
@@ -78,7 +78,7 @@ class _Sample:
 
 
 def friction_curve(trace: AxisTrace, *, settling: Seconds, half_digit: float = 0.0) -> FrictionCurve:
-    """The friction curve of a recording; `settling`: seconds thrown away at the beginning of each phase, by speed.
+    """The friction curve of a recording; `settling`: seconds dropped at the start of each phase, by speed.
 
     `half_digit` of the recorded torque in N (Nm): a steady torque in whole digits may be off by that without a sign.
     Raises CncError 27003 too short, 27004 no motion, 27005 no torque, 27006 nothing steady, 27007 one direction only.
@@ -109,7 +109,7 @@ def friction_curve(trace: AxisTrace, *, settling: Seconds, half_digit: float = 0
             ONE_DIRECTION,
             trace.axis,
             f"no speed was driven in both directions (constant velocities: {shown}); weight and friction "
-            "cannot be told apart, no table was made, drive each speed forth and back",
+            "cannot be told apart, no table was made, drive each speed in both directions",
         )
     return FrictionCurve(trace.axis, points, one_way, uneven, held)
 
@@ -171,7 +171,7 @@ def stands(trace: AxisTrace, phase: SteadyPhase) -> bool:
 
 
 def moves_evenly(trace: AxisTrace, phase: SteadyPhase) -> bool:
-    """Whether the axis moves in a phase as it was set to, without sticking."""
+    """Whether the axis moves in a phase at its set velocity, without sticking."""
     speed, position = abs(phase.velocity), trace.actual_position[phase.first : phase.end]
     distance, time = float(position[-1] - position[0]), (len(phase) - 1) * trace.cycle_time
     mean = distance / time if len(phase) > 1 else float(trace.actual_velocity[phase.first])
@@ -179,7 +179,7 @@ def moves_evenly(trace: AxisTrace, phase: SteadyPhase) -> bool:
 
 
 def _ripple(trace: AxisTrace, phase: SteadyPhase) -> float:
-    """Standard deviation of the velocity, or of the distance of EVEN seconds by its time where that is steadier.
+    """Standard deviation of the velocity, or of the distance of EVEN seconds by its time if that is steadier.
 
     Noise of a measured velocity is no motion, digits of a position are none either; sticking shows in both.
     """

@@ -12,7 +12,7 @@ from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
 
 MODE = 3
 SCALES = (1000, 100, 10, 1)
-"""P-COMP-00045 in 0.1 %: table values may be 1, 10, 100 or 1000 times what goes to the drive."""
+"""P-COMP-00045 in 0.1 %: table values may be 1, 10, 100 or 1000 times the value for the drive."""
 FINE_ENOUGH = 0.0025
 """Half a digit of the table over its smallest value."""
 LARGEST = 2**31 - 2
@@ -50,7 +50,7 @@ class FrictionTable:
     scaling_factor: int
     entries: tuple[TableEntry, ...]
     dropped: int
-    """Measured points that the table does not hold, because the curve runs straight there …"""
+    """Measured points that the table does not hold, because the curve is straight there …"""
     without_friction: tuple[float, ...] = ()
     """… and speeds at which there is none: 0 or less."""
 
@@ -59,7 +59,7 @@ def friction_table(curve: FrictionCurve, scaling: Scaling, *, max_points: int) -
     """The table of at most `max_points` entries: out = friction · digits · 1000 / scaling_factor, in = 1000 · speed.
 
     The scaling factor is the largest of 100, 10, 1, 0.1 % that keeps rounding to whole digits below FINE_ENOUGH.
-    Raises CncError 27008 without friction, 27009 where the scaling of the torque is not usable.
+    Raises CncError 27008 without friction, 27009 if the scaling of the torque is not usable.
     """
     _require_scale(curve.axis, scaling)
     points = [point for point in curve.points if round(point.speed * FROM_MM_S) > 0]
@@ -130,7 +130,7 @@ def _distinct(points: Sequence[FrictionPoint]) -> list[FrictionPoint]:
 
 
 def _thin(points: list[FrictionPoint], most: int) -> list[FrictionPoint]:
-    """At most `most` points: beginning with the ends, the one that a table of those before would miss most is added."""
+    """At most `most` points: starting with the ends, always the one that the table so far would miss most is added."""
     if len(points) <= most:
         return points
     speeds = np.array([point.speed for point in points])

@@ -3,14 +3,14 @@
 Summing avoids differentiating the velocity: over a window of cycles 1 … n that does not change direction,
 T·ΣM = k·(v_n - v_0) + c·(±nT) + b·(x_n - x_0) + load·nT + d·(M_n - M_0); d is the time by which the torque is older
 than its row, as far as the sum is. The measured columns are noisy, which would draw k towards 0 in a least squares
-fit. So each has an instrument, the same column of the velocity that the axis was to have, behind the lag of its
+fit. So each has an instrument, the same column of the set velocity, behind the lag of its
 position loop, which knows nothing of that noise: Zᵀ·(columns·solution - impulses) = 0.
 Friction is no straight line at low speeds, so the windows contradict each other more than noise would have it: how much
 k differs between speeding up and slowing down, and between slow and fast, belongs to its deviation.
 A drive may report the torque at the end of each cycle instead of the mean of it, then d is T/2 more. As the command is
 held, the torque has a ripple of period T in a ramp, of which such samples see one phase only: k comes out too small,
 and no other k fits better. The ripple bends d, too: behind a filter Ta of the command k lacks T/Ta·|1/2 - d/T| of
-itself where the current follows at once (Euler-Maclaurin: k·Kp·T²/(12·Ta), d by Kp·T²/12), less where it lags. That
+itself if the current follows immediately (Euler-Maclaurin: k·Kp·T²/(12·Ta), d by Kp·T²/12), less where it lags. That
 much belongs to the deviation.
 Source: instrumental variables, Söderström and Stoica, System Identification, 8.
 """
@@ -31,11 +31,11 @@ WINDOW = 0.01
 LOWEST_PART = 0.05
 """Of the highest speed: slower windows are left out, there friction is no straight line."""
 LEAST_TIME = 0.2
-"""Seconds that all windows together must begin in."""
+"""Seconds in which all windows together must start."""
 CORRELATED = 0.1
-"""Seconds after which what the model does not explain is taken for independent."""
+"""Seconds after which residuals of the model are taken for independent."""
 CHANGING = 0.2
-"""Part of the largest change of velocity above which a window says something about the inertia."""
+"""Part of the largest change of velocity above which a window is used for the inertia."""
 LARGEST_UNCERTAINTY = 0.3
 LAGS = np.concatenate([[0.0], np.geomspace(5e-4, 0.5, 40)])
 """Seconds; lags of the position loop that are tried."""

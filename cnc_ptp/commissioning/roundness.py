@@ -12,9 +12,9 @@ from cnc_ptp.commissioning.circles import Circle, least_squares_circle, minimum_
 from cnc_ptp.commissioning.trace import Array
 
 BEFORE, AFTER = 4.0, 20.0
-"""Degrees before and after a reversal in which its peak is looked for."""
+"""Degrees before and after a reversal in which its peak is searched."""
 HARMONICS = 2
-"""Waves a turn of the shape without peaks: centre, squareness, different gains and lags of the axes."""
+"""Waves per turn of the shape without peaks: centre, squareness, different gains and lags of the axes."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ class SteadyPhase:
 def steady_phases(trace: AxisTrace, *, settling: Seconds, shortest: float) -> list[SteadyPhase]:
     """Phases in which the set velocity is constant and not zero, without their first `settling(speed)` seconds.
 
-    What then lasts less than `shortest` seconds is left out.
+    Shorter ones than `shortest` seconds are left out.
     """
     least = max(1, round(shortest / trace.cycle_time))
     phases = []
@@ -58,7 +58,7 @@ def _moving(trace: AxisTrace) -> Iterator[Span]:
 
 
 def _constant(values: Array, span: Span) -> list[Span]:
-    """Stretches of `span` in which a value stays as it is from cycle to cycle and does not drift away slowly."""
+    """Stretches of `span` in which a value is constant from cycle to cycle and does not drift slowly."""
     first, end = span
     part = values[first:end]
     steps = np.abs(np.diff(part)) > SAME * np.abs(part[1:])

@@ -1,4 +1,4 @@
-"""How long a motion at constant velocity settles and is measured."""
+"""Settling and measuring times of a motion at constant velocity."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LAGS = 10.0
 BREAKING_TIME, BREAKING_WAY = 0.2, 1.0
 """Seconds, and mm (deg) after which they are not needed: a slow drive has to build up torque against the friction."""
 LONGEST, SHORTEST, MEASURED_WAY = 0.5, 0.1, 50.0
-"""Seconds that are measured: a way of 50 mm (deg), but neither longer nor shorter than that."""
+"""Seconds that are measured: a distance of 50 mm (deg), but within these limits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +22,11 @@ class Timing:
     kv: float
 
     def settling(self, speed: float) -> float:
-        """Seconds to throw away."""
+        """Seconds of settling, not used."""
         return LAGS / self.kv + min(BREAKING_TIME, BREAKING_WAY / speed)
 
     def steady(self, speed: float) -> float:
-        """Seconds of constant velocity: settling and what is measured."""
+        """Seconds of constant velocity: settling and measuring."""
         return self.settling(speed) + min(LONGEST, max(SHORTEST, MEASURED_WAY / speed))
 
 
@@ -36,4 +36,4 @@ def always(seconds: float) -> Seconds:
 
 
 DYNAMIC_STEADY = always(0.05)
-"""Of motions that show the dynamics of a drive."""
+"""Times of motions that show the dynamics of a drive."""

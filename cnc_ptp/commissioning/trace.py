@@ -1,4 +1,4 @@
-"""One axis over time as arrays: what all analyses start from."""
+"""One axis over time as arrays, the input of all analyses."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Span = tuple[int, int]
 class AxisTrace:
     """Columns (n,) with one value a cycle, in the order of the cycles; mm, s, N (linear) or deg, s, Nm.
 
-    `actual_torque` is None where no torque was recorded. A row holds what the drive reported before its cycle and what
-    it was commanded in it.
+    `actual_torque` is None if no torque was recorded. A row holds the drive's report before its cycle and its
+    command in that cycle.
     """
 
     axis: str
@@ -33,7 +33,7 @@ class AxisTrace:
     additive_velocity: Array
     actual_torque: Array | None
     mean_velocity: bool = False
-    """The actual velocity is not the momentary one but the way of the cycle that is over, by its time: so it is where
+    """The actual velocity is not the momentary one but the distance of the previous cycle by its time: so if
     the telegram carries no velocity."""
 
     @classmethod

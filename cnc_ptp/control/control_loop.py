@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from cnc_ptp.control.drives import Drive, VirtualDrive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
+from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.control.friction_compensation import FrictionCompensation
-from cnc_ptp.control.lag_monitor import LagMonitor
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
 from cnc_ptp.motion.profile import MotionState
@@ -58,7 +58,7 @@ class ControlLoop:
         self.drive = drive
         self._virtual = drive if isinstance(drive, VirtualDrive) else None
         self.kv = parameters.kv
-        self.monitor = LagMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
+        self.monitor = FollowingErrorMonitor(parameters.monitoring, kv=parameters.kv, cycle_time=cycle_time)
         self.delay_cycles = parameters.delay_cycles
         scaling = parameters.scaling
         self.feedforward = Feedforward(

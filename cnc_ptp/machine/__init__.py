@@ -1,1 +1,1 @@
-"""The machine: units wired together, run in step with each other or offline; the job of a run."""
+"""The machine: units wired together, run in step or offline; program and scenario of a run."""

@@ -1,4 +1,4 @@
-"""The gate of a unit: holds ticks and blocks back until all that one block of cycles needs is there."""
+"""The gate of a unit: holds ticks and blocks back until all that one cycle block needs is there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class BlockGate:
 
     `begin` opens a tick when the blocks are there that commands come in; `complete` closes it when the block of the
     master is there too, which may have been named by one of these commands. A source whose needed block was skipped (a
-    later one came) or that its watchdog gave up is dropped for good.
+    later one came) or that its watchdog gave up is dropped permanently.
     """
 
     def __init__(self, inputs: Inputs) -> None:
@@ -34,7 +34,7 @@ class BlockGate:
     def add_tick(self, tick: CycleTick) -> bool:
         """Takes a tick; False when ticks before it are missing: then it is not used.
 
-        A tick without cycles says that the run is over once the ticks before it are computed.
+        A tick without cycles ends the run once the ticks before it are computed.
         """
         expected = self._ticks[-1].first_cycle + self._ticks[-1].count if self._ticks else self._next_cycle
         if tick.first_cycle > expected:
@@ -59,11 +59,11 @@ class BlockGate:
         waiting[block.first_cycle] = block
 
     def follow(self, master: str | None) -> None:
-        """The axis whose blocks are needed from the open tick on; None: of no one."""
+        """The axis whose blocks are needed from the open tick on; None: no axis."""
         self._master = master
 
     def add_master_block(self, master: str, block: CycleBlock) -> None:
-        """Takes a block of an axis that is, was or will be the master; one from before the next tick is of no use."""
+        """Takes a block of an axis that is, was or will be the master; one of an earlier tick is not used."""
         if block.first_cycle >= self._needed_of_master():
             self._master_blocks.setdefault(master, {})[block.first_cycle] = block
 
@@ -129,7 +129,7 @@ class BlockGate:
         return tick, inputs
 
     def drop(self, source: str) -> None:
-        """Goes on without `source` from now on."""
+        """Continues without `source` from now on."""
         self._upstream = [name for name in self._upstream if name != source]
         self._feedback = [name for name in self._feedback if name != source]
         self._blocks.pop(source, None)

@@ -12,11 +12,11 @@ from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTic
 from cnc_ptp.protocol.unit import Unit
 
 STUCK_TIME = 10.0
-"""Seconds for which nothing may happen at all while a program waits for something that nobody will give."""
+"""Seconds without any motion after which a program that waits is aborted: nobody will help it."""
 
 
 class Output:
-    """What a unit gives for one tick: its block, and the events and command records that led to it."""
+    """The output of a unit for one tick: its block, and the events and command records that led to it."""
 
     __slots__ = ("block", "events", "name", "records")
 
@@ -80,7 +80,7 @@ class OfflineMachine:
         return {name: Output(runner.unit, self._blocks[name]) for name, runner in self._runners.items()}
 
     def _compute_slave(self, tick: CycleTick, name: str, waiting: Mapping[str, Mapping[str, CycleBlock]]) -> None:
-        """After its master. Couplings never run in a circle: the PLC says to each what is above its master."""
+        """After its master. Couplings never form a circle: the PLC gives each the masters above its master."""
         master = self._runners[name].master
         if name in self._blocks or master is None:
             return
@@ -92,8 +92,8 @@ class OfflineMachine:
     def run(self, *, cycles: int | None = None) -> Iterator[Outputs]:
         """Ticks until the PLC ends the run, or for `cycles` cycles (rounded up to whole blocks).
 
-        Without `cycles`, a run that nothing can bring on any more (the scenario is through, a program waits for a start
-        or an acknowledgement) is aborted: nobody is there to help it.
+        Without `cycles`, a run that can no longer continue (the scenario is finished, a program waits for a start or
+        an acknowledgement) is aborted: nobody is there to help it.
         """
         while cycles is None or self._first_cycle < cycles:
             outputs = self.tick()
@@ -109,11 +109,11 @@ class OfflineMachine:
         self._stuck_cycles = self._stuck_cycles + plc.count if reason else 0
         if self._stuck_cycles >= self._stuck_limit:
             self._stuck_cycles = 0
-            text = f"{reason}, but the scenario is through"
+            text = f"{reason}, but the scenario is finished"
             self._runners[PLC].command(Command(PLC, "abort", {"reason": text}))
 
     def _what_is_waited_for(self, outputs: Outputs) -> str:
-        """Empty while anything moves or goes on by itself; for axes that are led their channel or master speaks."""
+        """Why the run cannot continue; empty while anything moves. Channel or master answer for their axes."""
         reasons = []
         for output in outputs.values():
             unit = self._runners[output.name].unit

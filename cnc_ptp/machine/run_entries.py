@@ -1,4 +1,4 @@
-"""The job of a run: an NC program and a scenario, read and checked before anything starts."""
+"""Program and scenario of a run, read and checked before anything starts."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def read_entries(
 ) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
-    `may_be_empty`: a scenario without entries is none. Loads carry the text of their program; a path in a scenario,
-    relative to its file, becomes one from here.
+    `may_be_empty`: a scenario may have no entries. Loads carry the text of their program; a path in a scenario,
+    relative to its file, becomes one relative to the working directory.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
     """
     entries: list[Entry] = []

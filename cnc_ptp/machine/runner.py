@@ -18,7 +18,7 @@ class UnitRunner:
     """A unit with the cycle number at which the next command would act."""
 
     def __init__(self, unit: Unit, *, watchdog_cycles: int) -> None:
-        """`watchdog_cycles`: a life sign of the PLC that stands still for so long is lost."""
+        """`watchdog_cycles`: a life sign of the PLC that does not change for that long is lost."""
         self.unit = unit
         self.next_cycle = 0
         self._life_sign = -1
@@ -30,7 +30,7 @@ class UnitRunner:
         return self.unit.command(command, self.next_cycle)
 
     def run(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
-        """Applies the commands that `inputs` carry for this unit, then computes the block."""
+        """Applies the commands that `inputs` carry to this unit, then computes the block."""
         self.apply(tick, inputs)
         return self.compute(tick, inputs)
 

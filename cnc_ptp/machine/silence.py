@@ -1,4 +1,4 @@
-"""Who has fallen silent: one watch for life signs, topics and blocks, in whatever unit of time it is given."""
+"""Watch for sources that fall silent: life signs, topics and blocks, in any unit of time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from math import inf
 
 
 class Silence:
-    """Watches sources from the first time that they are heard; one that falls silent is told once, until heard again.
+    """Watches sources from their first message; one that falls silent is reported once, until its next message.
 
     Times and patience in seconds or cycles, as the caller counts.
     """
@@ -19,13 +19,13 @@ class Silence:
         self._watched: set[str] = set()
 
     def heard(self, source: str, now: float) -> None:
-        """Something has come."""
+        """A message has come."""
         if not self._rhythm or now - self._heard.get(source, -inf) < self._patience:
             self._watched.add(source)
         self._heard[source] = now
 
     def forget(self, source: str) -> None:
-        """Watches `source` no more, until it is heard again."""
+        """Stops watching `source` until its next message."""
         self._watched.discard(source)
 
     def is_heard(self, source: str, now: float) -> bool:
@@ -33,7 +33,7 @@ class Silence:
         return source in self._watched and now - self._heard[source] <= self._patience
 
     def fallen_silent(self, now: float) -> list[str]:
-        """Each source once, in the order in which they were heard first."""
+        """Each silent source once, in the order of their first messages."""
         silent = [source for source in self._heard if source in self._watched and not self.is_heard(source, now)]
         self._watched.difference_update(silent)
         return silent

@@ -1,4 +1,4 @@
-"""Who needs whose blocks: the one description of the data flow that offline run, composed run and graph share."""
+"""The data flow between units: which blocks each needs, in offline run, composed run and graph alike."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNKNOWN_UNIT = 26111
 
 @dataclass(frozen=True, slots=True)
 class Inputs:
-    """What a unit waits for before it computes block n."""
+    """The blocks that a unit waits for before it computes block n."""
 
     upstream: tuple[str, ...]
     """Units whose block n is needed: they act in the same cycles."""
@@ -55,9 +55,9 @@ def wiring(machine: MachineParameters) -> dict[str, Inputs]:
 def build_unit(
     machine: MachineParameters, name: str, *, scenario: Iterable[Entry] = (), end_when_idle: bool = True
 ) -> Unit:
-    """The unit `name` of the machine, at position 0, standing. `scenario` and `end_when_idle` are for the PLC.
+    """The unit `name` of the machine, at position 0, at a standstill. `scenario` and `end_when_idle` are for the PLC.
 
-    The PLC, whose parameters are those of /machine, tells what deserves a look in the whole machine file.
+    The PLC, whose parameters are those of /machine, publishes the warnings of the whole machine file.
     """
     cycle_time = machine.cycle_time_us * 1e-6
     kinds = unit_kinds(machine)

@@ -6,7 +6,7 @@ else, which also finds the column of an error.
 
 from collections.abc import Sequence
 
-from cnc_ptp.nc import compensation, faults, feedforward
+from cnc_ptp.nc import faults, feedforward, friction_switch
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.hash_commands import hash_block
 from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, normalise, tokens
@@ -177,7 +177,7 @@ class _BlockWords:
     def bracket(self, token: Token) -> None:
         """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
         if token.name[0] in AXIS_LETTERS:
-            self.controls.append(compensation.bracket(token, self.source))
+            self.controls.append(friction_switch.bracket(token, self.source))
             return
         if token.name[0] == "S" and feedforward.is_in(token):
             self.controls.append(feedforward.bracket(token, self.source))

@@ -14,7 +14,7 @@ from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
 from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
-from cnc_ptp.parameters.units import LARGEST_POSITION
+from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 
 DIRECTIONS = {3: "cw", 4: "ccw"}

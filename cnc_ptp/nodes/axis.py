@@ -7,7 +7,7 @@ from typing import Any
 from cnc_ptp import action
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments
+from cnc_ptp.nodes import node_command_line
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
@@ -25,7 +25,7 @@ class AxisNode(UnitNode):
     """
 
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
-        arguments.require_unit(machine, name, ["axis"])
+        node_command_line.require_unit(machine, name, ["axis"])
         super().__init__(machine, build_unit(machine, name), **options)
 
     def setup(self) -> None:
@@ -53,7 +53,7 @@ class AxisNode(UnitNode):
     def _move_result(self, block: CycleBlock, result: Any) -> bool | None:
         """The move has ended when the axis has neither job nor motion; in full unless it was stopped or has an error.
 
-        Where it ends may be changed on the way: by a new target, a compensation, external setpoints.
+        Its target may change on the fly: by a new target, a compensation, external setpoints.
         """
         if not isinstance(block, AxisBlock) or block.state[-1] in MOVING or block.set_velocity[-1] != 0.0:
             return None
@@ -70,7 +70,7 @@ class AxisNode(UnitNode):
             self._move_job.after_block(block)
 
 
-main = arguments.unit_main(AxisNode, "axis")
+main = node_command_line.unit_main(AxisNode, "axis")
 
 if __name__ == "__main__":
     main()

@@ -13,7 +13,7 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import PLC, unit_kinds
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
@@ -32,11 +32,11 @@ class ClockNode(Node):
 
     Publishes /clock/tick (CycleTick). Subscriptions: /clock/report, /heartbeat (BlockReport), /plc/block (PlcBlock, for
     the end).
-    Starts when every expected node has said that it is ready; ends when the PLC ends the run or after `duration`.
+    Starts when every expected node has reported that it is ready; ends when the PLC ends the run or after `duration`.
     A node that is silent for the watchdog time no longer holds up a free run. While a free run waits, /heartbeat says
-    that the clock lives.
-    The stamp of a cycle is the time at which it counts: that at which the first tick is due, and a cycle time for each
-    cycle since. In free run too, so that stamps run ahead of the wall clock there, as far as the run is faster.
+    that the clock is alive.
+    The stamp of a cycle is the time at which it counts: the instant of the first tick plus one cycle time for each
+    cycle since. Likewise in free run, so that stamps are ahead of the wall clock there, as far as the run is faster.
     """
 
     def __init__(
@@ -179,13 +179,13 @@ class ClockNode(Node):
 
 
 def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
-    """Cycles of a run of `duration` seconds, None when the run ends by itself."""
+    """Cycles of a run of `duration` seconds, None when the run ends automatically."""
     return None if duration is None else round(duration * 1e6 / machine.cycle_time_us)
 
 
 @click.command()
-@arguments.MACHINE
-@click.option("--duration", type=DURATION, help="Seconds; without it the run ends by itself.")
+@node_command_line.MACHINE
+@click.option("--duration", type=DURATION, help="Seconds; without it the run ends automatically.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @click.option("--free-run", is_flag=True, help="As fast as all nodes report their blocks.")
 def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:
@@ -206,7 +206,7 @@ def command(machine: str, duration: float | None, wait_for: tuple[str, ...], fre
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

@@ -31,9 +31,9 @@ UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 def run_composed(
     machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
-    """Runs the job in this process; `show` is called about 20 times a second; `watched`: somebody looks at units.
+    """Runs the job in this process; `show` is called about 20 times a second; `watched`: units are shown.
 
-    Returns what went wrong besides.
+    Returns what went wrong outside the units.
     """
     with only_run(job):
         return _run(machine, job, show, watched)
@@ -85,7 +85,7 @@ def _run(
 
 
 def stopped(end: EndRequest, nodes: list[Node], *, note: Callable[[], None]) -> bool:
-    """After an interrupt, which is `told` once: everything is stopped on its ramps, at most for STOP_TIMEOUT."""
+    """After an interrupt, reported once (`told`): everything stops on its ramps, at most for STOP_TIMEOUT."""
     if not end.given:
         return False
     if end.deadline == 0.0:

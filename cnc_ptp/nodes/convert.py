@@ -1,4 +1,4 @@
-"""Between the kernel's blocks and ROS messages: same field names, arrays copied, nothing computed."""
+"""Conversion of the kernel's blocks to ROS messages and back: same field names, arrays copied, nothing computed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events go out on /events; warnings and errors on /rosout too, where rqt_console shows them."""
+"""Publisher of events: all on /events; warnings and errors on /rosout too, where rqt_console shows them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LEVELS = {Severity.WARNING: (Log.WARN, "P-WARN"), Severity.ERROR: (Log.ERROR, "P
 
 
 class EventPublisher:
-    """Publishes what happens at a node.
+    """Publishes the events of a node.
 
     The nodes' own loggers stay off /rosout: they would print to stderr and write files as well.
     """

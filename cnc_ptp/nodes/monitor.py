@@ -1,4 +1,4 @@
-"""What a run shows of itself: progress, events, statistics; collected from the topics of the graph."""
+"""Monitor of a run: progress, events, statistics; collected from the topics of the graph."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ class RunMonitor(Node):
     def __init__(self, machine: MachineParameters) -> None:
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
         self.cycle = 0
-        """So far is the run."""
+        """The last cycle of the run so far."""
         self.programs = {channel: ProgramReport() for channel in machine.channels}
         self.errors: list[str] = []
         self.notes = Notes()
         self.refused = 0
         self.run_done = False
         self.ending = ""
-        """How a run that stays was ended, when everything stood."""
+        """How a run that stays was ended, with everything at a standstill."""
         self._latest: LatestBlocks | None = None
         self._machine = machine
         self._plc_block = 0
@@ -73,7 +73,7 @@ class RunMonitor(Node):
 
     @property
     def run_failed(self) -> bool:
-        """The PLC knows of a fault a block later, which may not come any more."""
+        """The PLC knows of a fault one block later, and that block may no longer come."""
         return self._plc_knows_failure or self._last_fault >= self._plc_block
 
     def _need(self, block_type: Any, topic: str, received: Any) -> None:
@@ -86,19 +86,19 @@ class RunMonitor(Node):
             self._report_publisher.publish(msg.BlockReport(source=MONITOR, first_cycle=-1))
 
     def watch_standstill(self, units: list[str]) -> None:
-        """Follows from now on whether `units`, axes and spindles, stand (`standing`)."""
+        """Follows from now on whether `units`, axes and spindles, are at a standstill (`standing`)."""
         for unit in units:
             self.standing[unit] = False
             block_type = msg.AxisBlock if unit in self._machine.axes else msg.SpindleBlock
             self.create_subscription(block_type, block_topic(unit), self._standstill_callback(unit), BLOCKS)
 
     def watch_units(self) -> None:
-        """Keeps from now on what people look at of all units."""
+        """Keeps the newest view of all units from now on."""
         rotary = [name for name, axis in self._machine.axes.items() if axis.rotary]
         self._latest = LatestBlocks(self, unit_kinds(self._machine), rotary=rotary)
 
     def views(self) -> list[UnitView]:
-        """Newest of each unit, while they are watched."""
+        """The newest view of each unit, while they are watched."""
         return [] if self._latest is None else self._latest.views()
 
     def busy_units(self) -> list[str]:
@@ -106,11 +106,11 @@ class RunMonitor(Node):
         return [view.name for view in self.views() if view.busy]
 
     def note_ending(self, signal_name: str) -> bool:
-        """A run that stays was told to end: no failure (True) if all units have said that they stand."""
+        """A run that stays gets a signal to end: no failure (True) if all units have reported a standstill."""
         views = self.views()
         if len(views) < len(unit_kinds(self._machine)) - 1 or self.busy_units():
             return False
-        self.ending = f"the machine was ended ({signal_name}) while all units stood"
+        self.ending = f"the machine was ended ({signal_name}) with all units at a standstill"
         return True
 
     def _standstill_callback(self, unit: str) -> Any:

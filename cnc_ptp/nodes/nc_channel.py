@@ -12,7 +12,7 @@ from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments, convert
+from cnc_ptp.nodes import convert, node_command_line
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
@@ -29,7 +29,7 @@ class ChannelNode(UnitNode):
 
     def __init__(self, machine: MachineParameters, name: str, *, program: str | None = None, **options: Any) -> None:
         """`program`: a file that the PLC will load first; it is interpreted here, before the clock starts."""
-        arguments.require_unit(machine, name, ["channel"])
+        node_command_line.require_unit(machine, name, ["channel"])
         unit = build_unit(machine, name)
         if program is not None and isinstance(unit, ChannelUnit):
             unit.prepare(program, read_file("NC program", program))
@@ -66,7 +66,7 @@ class ChannelNode(UnitNode):
         return super().command(command)
 
     def complete_commands(self, block: PlcBlock) -> None:
-        """The text of a program does not travel in blocks; a file that has gone leaves a load that the unit refuses."""
+        """The text of a program does not travel in blocks; a missing file leaves a load that the unit refuses."""
         for command in block.commands:
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
@@ -91,7 +91,7 @@ def program_feedback(block: CycleBlock, feedback: Any) -> None:
 
 
 def program_result(block: CycleBlock, result: Any) -> bool | None:
-    """The program has ended when the channel is done; in full when all its blocks are through without an error."""
+    """The program has ended when the channel is done; in full when all its blocks are finished without an error."""
     if not isinstance(block, ChannelBlock) or not block.done:
         return None
     result.error_id = block.error_id[-1]
@@ -102,7 +102,7 @@ def program_result(block: CycleBlock, result: Any) -> bool | None:
 
 
 PROGRAM = click.Option(["--program"], help="NC program that will be loaded first: interpreted before the clock starts.")
-main = arguments.unit_main(ChannelNode, "NC channel", PROGRAM)
+main = node_command_line.unit_main(ChannelNode, "NC channel", PROGRAM)
 
 if __name__ == "__main__":
     main()

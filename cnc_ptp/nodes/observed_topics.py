@@ -1,4 +1,4 @@
-"""Topics that a recording keeps as they come: what the PLC writes, joint states, handshakes."""
+"""Topics that a recording keeps unchanged: the PLC's inputs, joint states, handshakes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.parameters import MachineParameters
 
 INPUTS = {of.__name__ for topics in PLC_TOPICS.values() for of in topics.values()} | {msg.LifeSign.__name__}
-"""Message types of the topics that the PLC writes: a machine obeys them."""
+"""Message types of the topics that the PLC writes: they move a machine."""
 
 
 class Observed(NamedTuple):
@@ -35,7 +35,7 @@ class Observed(NamedTuple):
 
 
 def observed_topics(machine: MachineParameters) -> Iterator[Observed]:
-    """All of a machine, whether somebody publishes on them or not."""
+    """All such topics of a machine, whether anybody publishes on them or not."""
     for channel in machine.channels:
         yield Observed(handshake_topic(channel), msg.HandshakeRequest, EVENTS)
     for unit, kind in unit_kinds(machine).items():

@@ -1,4 +1,4 @@
-"""`player RUN.mcap`: puts the topics of a recording back on the graph, at the pace at which they were recorded."""
+"""`player RUN.mcap`: publishes the topics of a recording again, at the pace at which they were recorded."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.observed_topics import is_input
 from cnc_ptp.nodes.topics import block_topic, published_topic
 from cnc_ptp.nodes.unit.claim import claim_unit
@@ -102,7 +102,7 @@ class PlayerNode(Node):
             self._next = next(self._messages, None)
 
     def _await_subscribers(self, now: float) -> None:
-        """Begins when there are some and no more come, at the latest at the deadline: what goes out earlier is lost."""
+        """Starts when no more subscribers come, at the latest at the deadline: earlier messages are lost."""
         subscribers = sum(publisher.get_subscription_count() for publisher in self._played.values())
         if subscribers != self._subscribers:
             self._subscribers, self._settled = subscribers, now + SETTLED
@@ -123,7 +123,7 @@ def message_class(type_name: str) -> Any:
 
 
 def qos_of(info: TopicInfo) -> QoSProfile:
-    """What the recording says of the publisher of a topic."""
+    """The quality of service of a topic's publisher according to the recording."""
     offered = parse_profiles(info.qos, info.type_name)
     return QoSProfile(
         depth=offered.depth,
@@ -134,7 +134,7 @@ def qos_of(info: TopicInfo) -> QoSProfile:
 
 
 class _Show:
-    """Says what is published and where, how far it is (on a terminal), and at the end what was published."""
+    """Prints what is published and where, the progress (on a terminal), and at the end what was published."""
 
     def __init__(self, path: str, rate: float) -> None:
         self._path = path
@@ -187,8 +187,8 @@ def _left_out(node: PlayerNode) -> str:
 def publish_recording(path: str, *, rate: float, inputs: bool = False) -> int:
     """Plays a recording to its end; returns the exit status.
 
-    The domain and the units of the recording are held as by a run: nodes would take the recorded blocks for theirs.
-    Raises CncError 26107 and 26141 when somebody has them.
+    The domain and the units of the recording are held as by a run: nodes would take the recorded blocks for their own.
+    Raises CncError 26107 and 26141 when another process has them.
     """
     show = _Show(path, rate)
 
@@ -219,7 +219,7 @@ def command(recording: str, rate: float, inputs: bool) -> None:
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

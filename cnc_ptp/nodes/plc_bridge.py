@@ -16,7 +16,7 @@ from cnc_ptp.axis.jog_commands import JOG
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.silence import Silence
 from cnc_ptp.machine.wiring import PLC, build_unit
-from cnc_ptp.nodes import arguments, process
+from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.bridge.coupling_services import CouplingServices
 from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as JOG_PATIENCE
 from cnc_ptp.nodes.bridge.jog_topics import JogTopics
@@ -41,11 +41,11 @@ class PlcBridgeNode(UnitNode):
     Publishes besides: /joint_states (sensor_msgs/JointState) of all axes and spindles, while somebody subscribes.
     Subscriptions besides: /<channel|axis|spindle>/override (Override), /<channel>/feed_hold (Switch),
     /<axis|spindle>/enable (Switch), /<axis>/feed_release (FeedRelease), /<axis>/external_setpoint (ExternalSetpoint),
-    /<axis>/jog (Jog), /plc/life_sign (LifeSign). A jog ends when its messages stay away. Of overrides, switches and
+    /<axis>/jog (Jog), /plc/life_sign (LifeSign). A jog ends when its messages stop. Of overrides, switches and
     releases a value counts when it changes; the last one holds when messages stop; `valid` = false means 100 %, no feed
-    hold, enabled, released, and nothing on a topic that was never valid. An override of a spindle that came in a rhythm
-    and falls silent is an event. A life sign that was seen once and then stays away for P-MACH life_sign_timeout_ms
-    sets feed hold on all channels.
+    hold, enabled, released, and has no effect on a topic that was never valid. An override of a spindle that
+    came in a rhythm and falls silent is an event. A life sign that was seen once and then is silent for P-MACH
+    life_sign_timeout_ms sets feed hold on all channels.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class PlcBridgeNode(UnitNode):
         return self.unit
 
     def _receiver(self, unit: str, name: str) -> Callable[[Any], None]:
-        """What is done with the messages of a topic in PLC_TOPICS."""
+        """The callback for the messages of a topic in PLC_TOPICS."""
         series = {"external_setpoint": self._on_external_setpoint, "jog": self._on_jog}
         if name in series:
             return partial(series[name], unit)
@@ -111,7 +111,7 @@ class PlcBridgeNode(UnitNode):
         if message.valid:
             self._served.add(topic)
         elif topic not in self._served:
-            return  # an empty message of somebody who has never served the topic releases nothing
+            return  # an empty message of a client that has never served the topic releases nothing
         command = command_of(unit, message)
         if command is not None and self._last.get(topic) != command.arguments_json:
             self._last[topic] = command.arguments_json
@@ -133,7 +133,7 @@ class PlcBridgeNode(UnitNode):
         return Command(unit, "set_feed_release", released)
 
     def _coupling_factor(self, unit: str, message: msg.CyclicCouplingFactor) -> Command | None:
-        """Not valid, no number, or no slave: nothing changes."""
+        """If not valid, no number, or no slave: nothing changes."""
         topic = f"/{unit}/coupling_factor"
         coupled = self.plc.is_coupled(unit)
         if not coupled:
@@ -153,14 +153,14 @@ class PlcBridgeNode(UnitNode):
         self._watch_factors()
 
     def _watch_factors(self) -> None:
-        """A factor whose topic falls silent freezes: the last one holds, and people are told."""
+        """A factor whose topic falls silent freezes: the last one holds, with a warning."""
         for topic in self._factors.fallen_silent(time.monotonic()):
-            self._warn(FACTOR_STALE, f"plc: no message on {topic} for {self._silence}; the factor stays as it is")
+            self._warn(FACTOR_STALE, f"plc: no message on {topic} for {self._silence}; the factor is unchanged")
 
     def _watch_overrides(self) -> None:
-        """The last override of a spindle holds when its topic falls silent, and people are told."""
+        """The last override of a spindle holds when its topic falls silent, with a warning."""
         for topic in sorted(self._overrides.fallen_silent(time.monotonic())):
-            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {self._silence}; the override stays as it is")
+            self._warn(OVERRIDE_STALE, f"plc: no message on {topic} for {self._silence}; the override is unchanged")
 
     @property
     def _silence(self) -> str:
@@ -182,12 +182,12 @@ class PlcBridgeNode(UnitNode):
             self.input(Command(axis, JOG, {"velocity": velocity}))
 
     def _watch_jogs(self) -> None:
-        """Nothing moves without a living hand on it."""
+        """A jog moves only while its messages come."""
         for axis in self._jogs.fallen_silent(time.monotonic()):
             self.input(Command(axis, JOG, {"velocity": 0.0}))
 
     def input(self, command: Command) -> None:
-        """A command of a person or an outside PLC, for the next block."""
+        """A command of a person or an external PLC, for the next block."""
         self.plc.input(command)
 
     def run_ended(self) -> None:
@@ -206,7 +206,7 @@ class PlcBridgeNode(UnitNode):
             self._joints.publish(self.plc.reported, self.stamp(block.first_cycle - 1))
 
     def stop_all(self) -> None:
-        """Controlled stop of everything; the run ends when all stands, with or without a duration."""
+        """Controlled stop of everything; the run ends when all is at a standstill, with or without a duration."""
         self.command(Command(PLC, "stop_all", {}))
 
     def _on_life_sign(self, message: msg.LifeSign) -> None:
@@ -215,7 +215,7 @@ class PlcBridgeNode(UnitNode):
             self._life_signs.heard(LIFE_SIGN, time.monotonic())
 
     def _watch_life_sign(self) -> None:
-        """The external PLC: its silence holds the feed, which only its next command takes away."""
+        """The external PLC: its silence sets feed hold, which only its next command ends."""
         if not self._life_signs.fallen_silent(time.monotonic()):
             return
         for channel in self._channels:
@@ -239,12 +239,12 @@ def without_text(entry: Entry) -> Entry:
 
 
 @click.command()
-@arguments.MACHINE
+@node_command_line.MACHINE
 @click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
-@click.option("--stay", is_flag=True, help="Go on when everything stands, instead of ending the run.")
-@arguments.RECORDERS
-@arguments.STATE_RATE
+@click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
+@node_command_line.RECORDERS
+@node_command_line.STATE_RATE
 def command(
     machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int, state_rate: float | None
 ) -> None:
@@ -266,7 +266,7 @@ def command(
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What every node process shares: start of ROS, spinning, orderly end."""
+"""Frame of every node process: start of ROS, spinning, orderly end."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ NO_ROS = 26108
 HIGHEST_DOMAIN = 232
 """The UDP port numbers of DDS end there."""
 PRIORITY = 5
-"""Of 1 ... 99: above all ordinary programs, below what the kernel runs at 50."""
+"""Of 1 ... 99: above all ordinary programs, below the threads that the kernel runs at 50."""
 SPIN_TIMEOUT = 0.1
-"""Seconds after which a spinning process looks whether it was told to end."""
+"""Seconds after which a spinning process checks for a signal to end."""
 START_PATIENCE = 2.0
 """Seconds that a node may take for its first block, if the watchdog time is shorter: processes are still busy with each
 other's start, and nothing has moved yet."""
 READY_PERIOD = 0.05
-"""Seconds between two looks of a node that waits until everybody is there."""
+"""Seconds between two checks of a node that waits for all others."""
 PATIENCE = 3.0
-"""Seconds that a process which was told to end may take to bring its work to an end."""
+"""Seconds that a process may take to finish its work after a signal to end."""
 
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 PROFILE = "FASTDDS_DEFAULT_PROFILES_FILE"
 OWN_SETTINGS = (PROFILE, "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_BUILTIN_TRANSPORTS", "ROS_LOCALHOST_ONLY")
-"""Who sets one of these has decided how messages travel."""
+"""If the user sets one of these, the choice of transport is theirs."""
 ROS_HINTS = {
     "Value type 'bool'": BARE_WORDS,
     "Expecting token or wildcard": "a name with a number in it, like getriebe.0.kv, goes into a --params-file only",
@@ -68,8 +68,8 @@ def set_environment(environment: MutableMapping[str, str], rmw: str) -> None:
 def take_priority() -> None:
     """Real-time scheduling for the threads of this process, where the system allows it.
 
-    Root may, and users to whom limits.conf gives rtprio; a node then keeps its time beside other busy programs. Threads
-    and processes that come later do not inherit it.
+    Root may, and users to whom limits.conf gives rtprio; a node then keeps its time besides other busy programs. Later
+    threads and processes do not inherit it.
     """
     for thread in os.listdir("/proc/self/task"):
         with suppress(PermissionError, ProcessLookupError):
@@ -98,7 +98,7 @@ def initialise() -> None:
 def claim_domain() -> socket.socket:
     """Holds the ROS domain of this machine, or one namespace of it, for one run, until the process ends.
 
-    The nodes of two runs there would hear each other. Raises CncError 26107 when it is taken.
+    The nodes of two runs there would receive each other's messages. Raises CncError 26107 when it is taken.
     """
     domain = rclpy.get_default_context().get_domain_id()
     namespace = ros_arguments().namespace
@@ -134,7 +134,7 @@ def spin(
     wait: Callable[[], float] = lambda: SPIN_TIMEOUT,
     after: Callable[[], None] = lambda: None,
 ) -> None:
-    """Runs nodes in one executor until `done`; calls `after` after each wait. Ends ROS.
+    """Spins nodes in one executor until `done`; calls `after` after each wait. Ends ROS.
 
     A CncError that a node keeps in `failure` is raised here: out of a callback the executor would print a traceback.
     EventsExecutor.spin() delivers nothing in these wheels, so this loops over spin_once.
@@ -167,7 +167,7 @@ def run_node(
 ) -> int:
     """Makes a node and spins it until `done(node)`, or until a signal came and the node has `settled`.
 
-    `name`: what the node must be called, because others know it by that; None = as the user likes.
+    `name`: the name that the node must have, because others know it by that; None = any.
     Returns the exit status: 0 done, 1 an error during the work, 2 refused start, 128 + n ended by signal n.
     """
     end = EndRequest()

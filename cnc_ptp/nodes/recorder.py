@@ -21,7 +21,7 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nodes import arguments, convert, process
+from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.topics import (
@@ -46,7 +46,7 @@ from cnc_ptp.recording.writer import Recording
 NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
 QUIET = 0.2
-"""Seconds without a message after which a recorder that was told to end has seen everything."""
+"""Seconds without a message after which a recorder that is to end has seen everything."""
 FLUSH_PERIOD = 0.25
 
 
@@ -54,8 +54,8 @@ class RecorderNode(Node):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
-    what observed_topics names, and of /rosout what the nodes of its namespace say: these come as raw bytes and are
-    stamped with the time of their arrival, in free run with that of the last tick.
+    the topics of observed_topics, and of /rosout the messages of the nodes of its namespace: these come as raw bytes
+    and are stamped with the time of their arrival, in free run with that of the last tick.
     Publishes /clock/report: ready, and in free run every tick that is recorded completely; /events: blocks that did not
     arrive. A block that comes twice is recorded once.
     """
@@ -77,7 +77,7 @@ class RecorderNode(Node):
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
-        """Why nothing more can be written."""
+        """The error that ended the writing."""
         self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)]
         for unit, kind in self._units.items():
             block_type = BLOCK_TYPES[kind]
@@ -159,7 +159,7 @@ class RecorderNode(Node):
         self._note_complete(message.first_cycle)
 
     def _is_new(self, unit: str, message: Any) -> bool:
-        """False for a block that is recorded already; tells when blocks before it have not come."""
+        """False for a block that is recorded already; an event when earlier blocks are missing."""
         cycle, expected = message.first_cycle, self._next_cycle[unit]
         if cycle > expected:
             text = f"recorder: blocks of '{unit}' from cycle {expected} to {cycle - 1} are missing in the recording"
@@ -189,12 +189,12 @@ class RecorderNode(Node):
         self._single(lambda: self._recorded.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
-        """A PLC may go on writing when the run is over, so this does not count as hearing something."""
+        """A PLC may continue to publish when the run is over, so this does not count as a message of the run."""
         stamp_ns = self._tick_ns if self._free_run else time.time_ns()
         self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
 
     def _on_log(self, data: bytes) -> None:
-        """The topic is one for all namespaces; what nodes of others say is left out."""
+        """The topic is one for all namespaces; messages of nodes of other namespaces are left out."""
         if _namespace(deserialize_message(data, Log).name) == _namespace(self.get_logger().name):
             self._on_observed(ROSOUT, type_name(Log), data)
 
@@ -220,8 +220,8 @@ class RecorderNode(Node):
 
 
 def require_writable(path: str) -> None:
-    """Raises CncError 26113 when no file can be made at `path`; what is there, or not, stays until the first tick."""
-    file = Path(os.path.realpath(path))  # a link stays too
+    """Raises CncError 26113 when no file can be made at `path`; an existing file is unchanged until the first tick."""
+    file = Path(os.path.realpath(path))  # a link is kept too
     try:
         exists = file.exists()
         with file.open("ab"):
@@ -239,7 +239,7 @@ def _namespace(logger: str) -> str:
 
 
 @click.command()
-@arguments.MACHINE
+@node_command_line.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
 def command(machine: str, output: str) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
@@ -251,7 +251,7 @@ def command(machine: str, output: str) -> None:
 
 
 def main() -> None:
-    arguments.call(command)
+    node_command_line.call(command)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from typing import Any
 
 from cnc_ptp import action
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes import arguments
+from cnc_ptp.nodes import node_command_line
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
@@ -22,7 +22,7 @@ class SpindleNode(UnitNode):
     """
 
     def __init__(self, machine: MachineParameters, name: str, **options: Any) -> None:
-        arguments.require_unit(machine, name, ["spindle"])
+        node_command_line.require_unit(machine, name, ["spindle"])
         super().__init__(machine, build_unit(machine, name), **options)
         self._numbers: dict[str, int] = {}
 
@@ -62,7 +62,7 @@ class SpindleNode(UnitNode):
         return [Command(self.spindle.name, command, arguments)]
 
     def _result(self, command: str, block: CycleBlock, result: Any) -> bool | None:
-        """In full when the job has come to its end; not when something else has taken its place, or it was refused."""
+        """In full when the job is finished; not when another job has replaced it, or it was refused."""
         number = self._numbers[command]
         done = self.spindle.outcome(number)
         if done is None or not isinstance(block, SpindleBlock):
@@ -101,14 +101,14 @@ def positioning_ended(block: SpindleBlock) -> str:
 
 def homing_ended(block: SpindleBlock) -> str:
     if block.referenced[-1]:
-        return "the homing was given up, the previous reference point remains valid"
+        return "the homing was aborted, the previous reference point remains valid"
     return "the homing has ended without a reference"
 
 
 ENDED = {"orient": positioning_ended, "home": homing_ended}
-"""What people hear of a job that something else has ended."""
+"""The message about a job that something else has ended."""
 
-main = arguments.unit_main(SpindleNode, "spindle")
+main = node_command_line.unit_main(SpindleNode, "spindle")
 
 if __name__ == "__main__":
     main()

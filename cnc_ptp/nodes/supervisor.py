@@ -1,4 +1,4 @@
-"""Runs the graph: starts one process a node, watches them, ends them in order; leaves no orphan."""
+"""Runs the graph: starts one process per node, watches them, ends them in order; leaves no orphan."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc":
 
 @dataclass(frozen=True)
 class RunOrder:
-    """What is to be run, as paths for the node processes."""
+    """Machine, program, scenario and options of a run, as paths for the node processes."""
 
     machine: str
     program: str | None = None
@@ -54,7 +54,7 @@ class RunOrder:
     record: str | None = None
     free_run: bool = False
     stay: bool = False
-    """Go on when everything stands, until it is told to end."""
+    """Continue when everything is at a standstill, until a signal."""
     state_rate: float | None = None
     """Live states a second, None = as the machine file says."""
 
@@ -65,7 +65,7 @@ class Supervisor:
     def __init__(
         self, machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
     ) -> None:
-        """`show` is called about 20 times a second with the monitor; `watched`: somebody looks at units there."""
+        """`show` is called about 20 times a second with the monitor; `watched`: units are shown."""
         self._machine = machine
         self._moving_units = [*machine.axes, *machine.spindles]
         self._job = job
@@ -80,7 +80,7 @@ class Supervisor:
         self.failures: list[str] = []
 
     def run(self) -> RunMonitor:
-        """Runs the job to its end; `failures` then says what went wrong with processes."""
+        """Runs the job to its end; `failures` then lists what went wrong with processes."""
         with only_run(self._job):
             return self._run()
 
@@ -152,7 +152,7 @@ class Supervisor:
             self._fail(NODE_DIED, text)
 
     def _fail(self, error_id: int, text: str) -> None:
-        """Notes a failure, tells it to the graph, and has everything that still lives stopped."""
+        """Notes a failure, publishes it, and has everything that is still alive stopped."""
         self.failures.append(f"P-ERR-{error_id} {text}")
         event = Event(self._monitor.cycle, SUPERVISOR, Severity.ERROR, error_id, text)
         self._event_publisher.publish(convert.event_to_message(event, convert.time_message(time.time_ns())))
@@ -171,11 +171,11 @@ class Supervisor:
         return "everything stops on its ramps" if self._monitor.cycle else "nothing has moved yet"
 
     def _note_signal(self, number: int, frame: object) -> None:
-        """Only notes it: a handler runs in the midst of whatever the process does."""
+        """Only notes it: a handler may interrupt anything that the process does."""
         self._signals.append(number)
 
     def _note_interrupt(self) -> None:
-        """First interrupt: controlled stop; second: at once."""
+        """First interrupt: controlled stop; second: immediately."""
         if self._signals and not self._interrupted:
             self._interrupted = True
             name = signal.Signals(self._signals[0]).name
@@ -203,7 +203,7 @@ class Supervisor:
                     child.wait()
 
     def _close_recording(self) -> None:
-        """What a recorder that was killed has left open, so that every reader opens it."""
+        """Closes the recording of a recorder that was killed, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
         closed = recorder is None or recorder.returncode in (0, process.SIGNALLED + signal.SIGTERM)
         if self._job.record is None or closed or not self._monitor.cycle:
@@ -238,7 +238,7 @@ def command_lines(
 
 @contextmanager
 def only_run(job: RunOrder) -> Iterator[None]:
-    """ROS with its domain for this run alone; only then is the recording touched.
+    """ROS with its domain for this run alone; only then is the recording opened.
 
     Raises CncError 26107, 26108 (process) and 26113 (recorder).
     """
@@ -263,7 +263,7 @@ def die_with_parent() -> None:
 
 
 def how_ended(status: int) -> str:
-    """What the return code of a process says; SIGNALLED + n is how our nodes report signal n."""
+    """The return code of a process in words; SIGNALLED + n is how our nodes report signal n."""
     if status < 0 or status > process.SIGNALLED:
         return f"was ended by {signal.Signals(-status if status < 0 else status - process.SIGNALLED).name}"
     return f"ended with exit status {status}"

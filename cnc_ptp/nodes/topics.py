@@ -22,11 +22,11 @@ EVENTS = QoSProfile(
 """Events and command records: late joiners see what has happened."""
 
 PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
-"""Cyclic values that PLC programmers write: `ros2 topic pub` works as it is."""
+"""Cyclic values that PLC programmers write: `ros2 topic pub` works without options."""
 
 RECORDER = "recorder"
 MONITOR = "run_monitor"
-"""Nodes besides the units that say when they are ready."""
+"""Nodes besides the units that report when they are ready."""
 
 TICK = "clock/tick"
 REPORT = "clock/report"
@@ -37,7 +37,7 @@ COMMAND = "commands"
 DIAGNOSTICS = "diagnostics"
 JOINT_STATES = "joint_states"
 LIFE_SIGN = "plc/life_sign"
-"""Names are relative: they stand in the namespace of the nodes."""
+"""Names are relative: they are in the namespace of the nodes."""
 
 BLOCK_TYPES: dict[str, Any] = {
     "plc": msg.PlcBlock,

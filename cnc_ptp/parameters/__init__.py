@@ -1,8 +1,8 @@
-"""Parameter lists by stage; each imports from those before it only.
+"""Parameter lists in stages; each stage imports only from those before it.
 
-declare/    what there is: names, types, ranges, units, texts (declarations.yaml)
-read/       a machine file -> one ParameterSet a node, each value checked against its declaration
-view/       parameter sets -> what the kernel uses: AxisParameters and others, in kernel units
+declare/    the declarations of all parameters: names, types, ranges, units, texts (declarations.yaml)
+read/       a machine file -> one ParameterSet per node, each value checked against its declaration
+view/       parameter sets -> the parameters of the kernel: AxisParameters and others, in kernel units
 check/      parameters against each other: problems, and notices for the log
 
 errors.py and units.py are below all of them, loader.py above: `load_machine(text, file)` is pure, `read_machine(path)`

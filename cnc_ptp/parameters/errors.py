@@ -1,4 +1,4 @@
-"""What can be wrong with a machine file: one error number a kind, one line a problem, all problems in one exception."""
+"""Errors of a machine file: one number per kind, one line per problem, all problems in one exception."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,13 +16,13 @@ OUT_OF_RANGE = 25008  # below, above, none of the choices, wrong form
 CONTRADICTION = 25009  # the limit is another parameter
 DUPLICATE_NUMBER = 25010  # logical axis number given twice
 AXIS_TYPE = 25011  # spindle as path axis, path axis as spindle
-COUNT = 25012  # spdl_anzahl, achs_anzahl against what is listed
+COUNT = 25012  # spdl_anzahl, achs_anzahl against the number listed
 MAIN_SPINDLE = 25013  # no main spindle among the spindles of a channel
 NO_SUCH_AXIS = 25014  # the channel names a number that no unit has
 UNIT_NAME = 25015  # names of units, axes and spindles
 RESOLUTION = 25016  # encoder resolution zero or given twice
 UNREADABLE = 25017  # the file cannot be read
-UNKNOWN_PARAMETER = 25018  # asked for in the reference
+UNKNOWN_PARAMETER = 25018  # looked up in the reference
 DENOMINATOR = 25019  # a denominator is zero
 TELEGRAM = 25020  # objects of a telegram, drive type and operation mode
 
@@ -52,10 +52,10 @@ class Problem(NamedTuple):
 
 
 class ParameterError(CncError):
-    """A machine file that no node accepts; `problems` has every one, in the order of the file.
+    """A machine file that no node accepts; `problems` has all of them, in the order of the file.
 
-    The message has one line a problem, each with file, line and column. The error number is that of the first problem,
-    the following lines begin with their own.
+    The message has one line per problem, each with file, line and column. The error number is that of the first
+    problem, the following lines begin with their own.
     """
 
     def __init__(self, problems: Sequence[Problem]) -> None:

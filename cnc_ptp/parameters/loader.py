@@ -1,4 +1,4 @@
-"""Machine file -> MachineParameters: read, check every value and values against each other, or refuse, saying all."""
+"""Machine file -> MachineParameters: read, check each value and values against each other, or report all problems."""
 
 from pathlib import Path
 

@@ -14,10 +14,10 @@ CHANGES_OF_COUPLINGS = COUPLINGS | {"decouple", "set_coupling_factor", "set_cycl
 
 
 class AxisGroups:
-    """Who is whose master, from what the axes reported for the block before and from the commands of this one.
+    """Who is whose master, from the axes' reports for the previous block and the commands of this one.
 
-    An error of an axis reaches the others of its group by `group_error`: at once, or after the delay of the axis, and
-    then those that are still in the group.
+    An error of an axis reaches the others of its group by `group_error`: immediately, or after the delay of the axis,
+    and then those that are still in the group.
     """
 
     def __init__(self, axes: Mapping[str, AxisParameters], *, cycle_time: float, spindles: Container[str] = ()) -> None:
@@ -29,10 +29,10 @@ class AxisGroups:
         self._leads: dict[str, str] = {}
         self._blocks: dict[str, AxisBlock] = {}
         self._errors: dict[str, int | None] = {}
-        """Axes in error -> cycle at which the others are told, None when they have been."""
+        """Axes in error -> cycle at which the others are notified, None when they have been."""
 
     def report(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Iterator[Command]:
-        """Takes the blocks before `first_cycle`; gives the commands that follow from them."""
+        """Takes the blocks of the cycles before `first_cycle`; gives the commands that follow from them."""
         self._blocks = {name: block for name, block in inputs.items() if isinstance(block, AxisBlock)}
         self._masters = {name: block.master for name, block in self._blocks.items() if block.master}
         for name, block in self._blocks.items():
@@ -46,7 +46,7 @@ class AxisGroups:
                 yield from self._spread(name)
 
     def _delay(self, name: str) -> int:
-        """None for the slave of a gantry pair, which in error goes on with its master until that stops."""
+        """None for the slave of a gantry pair, which in error continues with its master until that stops."""
         parameters = self._axes[name]
         waits = self._blocks[name].state[-1] == AxisStateCode.SYNCHRONIZED_MOTION
         if waits or not parameters.error_propagation_delayed:
@@ -74,7 +74,7 @@ class AxisGroups:
     def complete(self, commands: Iterable[Command], lost: Container[str]) -> tuple[list[Command], list[Command]]:
         """The commands of a block, and those that have to wait for the next one.
 
-        Couplings get what their axis needs to know; masters are told of their slaves.
+        Couplings get what their axis needs to know; masters are notified of their slaves.
         """
         block = CommandsOfBlock(self._masters)
         for command in commands:
@@ -101,7 +101,7 @@ class AxisGroups:
         return still and (slave or block.state[-1] in REST_STATES)
 
     def _lead_commands(self) -> Iterator[Command]:
-        """Tells masters whom they have got and lost."""
+        """Notifies masters of the slaves that they have got and lost."""
         now = {slave: master for slave, master in self._masters.items() if master in self._axes}
         for slave, master in self._leads.items():
             if now.get(slave) != master:
@@ -123,7 +123,7 @@ class CommandsOfBlock:
         self.completed: list[Command] = []
         self.waiting: list[Command] = []
         self._waiting_axes: set[str] = set()
-        """Axes that a coupling which waits concerns."""
+        """Axes of the couplings that wait."""
         self._certain = {slave: [master] for slave, master in masters.items()}
         self._possible = {slave: [*above] for slave, above in self._certain.items()}
 
@@ -134,8 +134,8 @@ class CommandsOfBlock:
     def must_wait(self, command: Command) -> bool:
         """Keeps back a coupling that runs in a circle only if others of this block are carried out, or refused.
 
-        Starts of these axes and changes of their couplings wait behind it, so that the order stays. All else goes out
-        at once, stops above all, unless a start of the same axis waits.
+        Starts of these axes and changes of their couplings wait behind it, so that the order is kept. All else goes out
+        immediately, stops above all, unless a start of the same axis waits.
         """
         axis, master = command.target, master_in(command)
         waits = self._is_behind(command)
@@ -171,7 +171,7 @@ class CommandsOfBlock:
 
 
 def starts(command: Command) -> bool:
-    """It may move a standing axis; a jog with velocity 0 ends one."""
+    """It may move an axis at a standstill; a jog with velocity 0 ends one."""
     ends_jog = command.command == "jog" and command.arguments.get("velocity") == 0.0
     return command.command in STARTS and not ends_jog
 

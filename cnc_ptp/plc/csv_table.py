@@ -15,7 +15,7 @@ Fault = Callable[[int, str], CncError]
 
 
 def table_lines(text: str, columns: Sequence[str], fault: Fault) -> Iterator[tuple[int, list[str]]]:
-    """Number and values of each line that is not empty, the values as `columns` stand. Raises what `fault` makes."""
+    """Number and values, in the order of `columns`, of each line that is not empty. Raises what `fault` makes."""
     lines = _reader(text)
     try:
         places = _places(next(lines, []), columns, fault)
@@ -30,7 +30,7 @@ def table_lines(text: str, columns: Sequence[str], fault: Fault) -> Iterator[tup
 
 
 def table_names(text: str, fault: Fault) -> list[str]:
-    """What the first line names. Raises what `fault` makes."""
+    """The columns that the first line names. Raises what `fault` makes."""
     try:
         return _names(next(_reader(text), []))
     except csv.Error as error:
@@ -46,7 +46,7 @@ def _names(header: Sequence[str]) -> list[str]:
 
 
 def _places(header: Sequence[str], columns: Sequence[str], fault: Fault) -> list[int]:
-    """Where in a line the columns stand."""
+    """Index of each column in a line."""
     names = _names(header)
     for column in columns:
         if names.count(column) != 1:

@@ -1,4 +1,4 @@
-"""The PLC: plays the scenario, hands on what comes from topics, acknowledges M functions, ends the run."""
+"""The PLC: plays the scenario, passes on commands from topics, acknowledges M functions, ends the run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cnc_ptp.plc.axis_groups import AxisGroups
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.plc.setpoint_file import placed
 from cnc_ptp.plc.setpoint_queue import SetpointQueue
-from cnc_ptp.plc.spindle_groups import spindle_answers
+from cnc_ptp.plc.spindle_answers import spindle_answers
 from cnc_ptp.protocol.axis_states import REST_STATES, AxisStateCode, StatusBit
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -31,7 +31,7 @@ from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
 NOTHING_TO_ACKNOWLEDGE = 22013
 CANNOT_GO_ON = 22014
 SETTLING_TIME = 0.2
-"""Seconds that everything must have stood before a run ends, so that the drives have come to rest."""
+"""Seconds that everything must have been at a standstill before a run ends, so that the drives have come to rest."""
 
 SPINDLE_AT_WORK = (AxisStateCode.DISCRETE_MOTION, AxisStateCode.HOMING, AxisStateCode.STOPPING)
 STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
@@ -40,7 +40,7 @@ STOP_COMMAND = {"axis": "stop", "spindle": "stop", "channel": "reset"}
 class PlcUnit(Unit):
     """Commands of the scenario and of the outside world go out in PlcBlocks and act in the same block everywhere.
 
-    What the PLC knows of the units is what they reported for the block before.
+    The PLC knows of the units what they reported for the previous block.
     """
 
     kind: ClassVar[str] = "plc"
@@ -57,7 +57,7 @@ class PlcUnit(Unit):
     ) -> None:
         """`kinds`: unit name -> axis, spindle, channel; `axes`: parameters by name. `cycle_time` in s.
 
-        `end_when_idle`: the run ends by itself.
+        `end_when_idle`: the run ends automatically.
         """
         super().__init__(name)
         self._kinds = {unit: kind for unit, kind in kinds.items() if kind != "plc"}
@@ -78,7 +78,7 @@ class PlcUnit(Unit):
         self._lost: set[str] = set()
         self._failed = False
         self.reported: Mapping[str, CycleBlock] = {}
-        """The units' blocks before the one computed last."""
+        """The units' blocks previous to the one computed last."""
 
     def is_coupled(self, axis: str) -> bool:
         """True for a slave, as it has reported."""
@@ -115,7 +115,7 @@ class PlcUnit(Unit):
         self._outgoing.append(Command(request.channel, "acknowledge", {"id": id}))
 
     def do_auto_acknowledge(self, cycle: int, *, enabled: bool) -> None:
-        """Acknowledges every request by itself (the default), or leaves that to `acknowledge`."""
+        """Acknowledges every request automatically (the default), or leaves that to `acknowledge`."""
         self._auto_acknowledge = enabled
 
     def do_set_life_sign(self, cycle: int, *, enabled: bool) -> None:
@@ -125,8 +125,8 @@ class PlcUnit(Unit):
     def do_stop_all(self, cycle: int) -> None:
         """Controlled stop of everything: channels are reset, axes and spindles stopped on their ramps.
 
-        Left out is what stops with its channel (axes on the path) and channels in error, which stop by themselves;
-        external setpoints on top of a path are disabled.
+        Left out is what stops with its channel (axes on the path) and channels in error, which stop on their own;
+        external setpoints superimposed on a path are disabled.
         """
         self._scenario.clear()
         self.setpoints.clear()
@@ -140,19 +140,19 @@ class PlcUnit(Unit):
                 self._outgoing.append(Command(unit, "external_disable", {}))
 
     def _let_go(self, unit: str, block: CycleBlock) -> bool:
-        """True for a slave that has not reported yet that it was decoupled: nobody stops it any more."""
+        """True for a slave that has not reported yet that it was decoupled: no other unit stops it."""
         if not (isinstance(block, AxisBlock) and block.master):
             return False
         now = any(command.target == unit and command.command == "decouple" for command in self._outgoing)
         return now or not self._groups.above(unit)
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
-        """The watchdog: `source` reports no more; the run is a failed one."""
+        """Watchdog: `source` is lost; the run has failed."""
         self._lost.add(source)
         self._fail(cycle, UPSTREAM_LOST, f"no block of '{source}' came within the watchdog time")
 
     def do_abort(self, cycle: int, *, reason: str) -> None:
-        """The harness: the run cannot go on; it is a failed one."""
+        """Harness: the run cannot continue; it has failed."""
         self._fail(cycle, CANNOT_GO_ON, reason)
 
     def _fail(self, cycle: int, error_id: int, reason: str) -> None:
@@ -167,7 +167,7 @@ class PlcUnit(Unit):
     # one block
 
     def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> PlcBlock:
-        """Computes one block from the units' blocks before."""
+        """Computes one block from the units' previous blocks."""
         first_cycle, count = tick
         self.reported = inputs
         self._outgoing += self._groups.report(first_cycle, inputs)
@@ -208,14 +208,14 @@ class PlcUnit(Unit):
         for name, block in inputs.items():
             if isinstance(block, ChannelBlock):
                 self._pending |= {request.id: request for request in block.requests if request.acknowledge_needed}
-                if block.done:  # a program that is through, or was aborted, waits for nothing
+                if block.done:  # a program that is finished, or was aborted, waits for nothing
                     self._pending = {n: r for n, r in self._pending.items() if r.channel != name}
         if self._auto_acknowledge:
             for request_id in list(self._pending):
                 self.do_acknowledge(cycle, id=request_id)
 
     def _run_done(self, count: int, inputs: Mapping[str, CycleBlock]) -> bool:
-        """Everything has stood for the settling time; spindles that still turn are stopped first."""
+        """Everything has been at a standstill for the settling time; spindles that still turn are stopped first."""
         expected = set(self._kinds) - self._lost
         idle = not (self._scenario or self._outgoing or self.setpoints) and expected <= inputs.keys()
         idle = idle and all(at_rest(block) for block in inputs.values())
@@ -232,14 +232,14 @@ class PlcUnit(Unit):
 
 
 def at_rest(block: CycleBlock) -> bool:
-    """True when a unit has nothing to do by itself; a spindle at constant speed counts as at rest here."""
+    """True when a unit has no job of its own; a spindle at constant speed counts as at rest here."""
     if isinstance(block, ChannelBlock):
         return block.done
     if isinstance(block, AxisBlock):
         bits = block.status_bits[-1]
         held = bits & StatusBit.HAS_JOB and (block.override_percent[-1] == 0.0 or bits & StatusBit.FEED_WITHHELD)
         if bits & StatusBit.PROTECTED and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION:
-            return block.set_velocity[-1] == 0.0  # a slave: its master says whether there is more to come
+            return block.set_velocity[-1] == 0.0  # a slave: its master knows whether there is more to come
         waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))
         return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in REST_STATES)
     if isinstance(block, SpindleBlock):

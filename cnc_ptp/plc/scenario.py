@@ -41,14 +41,14 @@ class ScenarioError(CncError):
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A command of the scenario; `at` in s, takes effect at the first block that begins at or after it."""
+    """A command of the scenario; `at` in s, takes effect at the first block that starts at or after it."""
 
     at: float
     command: Command
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML as people write it: `on` is a word (not true), 1e3 is a number."""
+    """YAML as people write it: `on` is a word (not true), 1e3 a number."""
 
 
 _Loader.yaml_implicit_resolvers = {
@@ -165,7 +165,7 @@ def _construct(node: yaml.Node) -> dict[str, Any]:
     keys = [key.value for key, _ in node.value]
     for key in keys:
         if keys.count(key) > 1:
-            raise CncError(BAD_SCENARIO, f"'{key}' stands twice in the entry")
+            raise CncError(BAD_SCENARIO, f"'{key}' appears twice in the entry")
     try:
         value = _Loader("").construct_object(node, deep=True)
     except (yaml.YAMLError, ValueError, TypeError) as error:

@@ -17,7 +17,7 @@ SetpointRow = list[float]
 
 
 def parse_setpoints(text: str, file: str) -> list[SetpointRow]:
-    """The rows of a file; mm, mm/s, mm/s² (deg). The columns stand in the first line, in any order; others are ignored.
+    """The rows of a file; mm, mm/s, mm/s² (deg). The first line names the columns, in any order; others are ignored.
 
     Raises CncError 25102 with file, line and value.
     """
@@ -37,7 +37,7 @@ def parse_setpoints(text: str, file: str) -> list[SetpointRow]:
 
 
 def _row(values: Sequence[str]) -> SetpointRow:
-    """Raises ValueError for what is no setpoint."""
+    """Raises ValueError if the values are not a setpoint."""
     cycle, position, velocity, acceleration, direction = values
     row = [int(cycle), float(position), float(velocity), float(acceleration), int(direction)]
     read_setpoint(row)
@@ -49,6 +49,6 @@ def _fault(file: str, line: int, reason: str) -> CncError:
 
 
 def placed(rows: Sequence[SetpointRow], cycle: int) -> list[SetpointRow]:
-    """The rows of a file whose command acts at `cycle`: where they begin before it, they count from it on."""
+    """The rows of a file whose command acts at `cycle`: if they start before it, they count from it."""
     shift = cycle if rows and rows[0][0] < cycle else 0
     return [[row[0] + shift, *row[1:]] for row in rows]

@@ -1,4 +1,4 @@
-"""External setpoints on their way through the PLC: each goes out with the block of its cycle."""
+"""Queue of external setpoints in the PLC: each goes out with the block of its cycle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, Command, CycleBlock
 
 HORIZON = 60.0
-"""Seconds that a setpoint of a topic may lie ahead."""
+"""Seconds that a setpoint of a topic may be ahead."""
 
 Warn = Callable[[int, int, str], None]
 """Takes a warning: cycle, number, text."""
@@ -28,7 +28,7 @@ class SetpointQueue:
     """
 
     def __init__(self, *, cycle_time: float, warn: Warn) -> None:
-        """`cycle_time` in s; `warn` hears of rows of topics that are dropped."""
+        """`cycle_time` in s; `warn` gets the rows of topics that are dropped."""
         self._warn = warn
         self._horizon = round(HORIZON / cycle_time)
         self._waiting: dict[str, Waiting] = {}
@@ -66,7 +66,7 @@ class SetpointQueue:
     def take(self, first_cycle: int, count: int) -> Iterator[Command]:
         """The commands of a block of `count` cycles; late rows go out too.
 
-        A row that was overtaken goes out by itself: the axis refuses a command as a whole.
+        A row that was overtaken goes out separately: the axis refuses a command as a whole.
         """
         for axis, arrived in self._arrived.items():
             self._place(axis, arrived, first_cycle, count)
@@ -86,7 +86,7 @@ class SetpointQueue:
                 yield Command(axis, SETPOINTS, {"setpoints": rows})
 
     def _place(self, axis: str, arrived: list[SetpointRow], first_cycle: int, count: int) -> None:
-        """An end of the motion takes back what was sent for later; a row too far ahead is dropped."""
+        """An end of the motion withdraws the rows for later cycles; a row too far ahead is dropped."""
         unplaced = [row for row in arrived if not row[0]][-count:]
         spread = {id(row): first_cycle + n * count // len(unplaced) for n, row in enumerate(unplaced)}
         for row in arrived:

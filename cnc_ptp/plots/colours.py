@@ -1,4 +1,4 @@
-"""Colours of all figures: on light pages, and beside each what becomes of it on dark ones."""
+"""Colours of all figures: on light pages, and next to each its colour on dark ones."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ YELLOW = Pair("#c08a00", "#e5b93d")
 PURPLE = Pair("#6a3fa0", "#b48fe3")
 TEAL = Pair("#0f7276", "#5cc2c6")
 BY_AXIS = (BLUE, RED, GREEN, PURPLE, YELLOW, TEAL)
-"""Several axes in one figure: a colour an axis instead of one a quantity."""
+"""Several axes in one figure: one colour per axis instead of one per quantity."""
 
 DARK = {
     PAPER: "#14191f",

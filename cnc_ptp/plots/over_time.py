@@ -16,12 +16,12 @@ from cnc_ptp.plots.sheet import LETTER, PLOT, RIGHT, note, write_value
 Column = npt.NDArray[np.float64]
 LABEL_LINE = 13.0
 FINE = 0.1
-"""mm; what stays below is shown in µm."""
+"""mm; smaller values are shown in µm."""
 
 
 @dataclass(frozen=True, slots=True)
 class Marker:
-    """A command that took effect, or an error that is shown: when (s) and what."""
+    """A command that took effect, or an error that is shown: time (s) and text."""
 
     time: float
     text: str
@@ -39,13 +39,13 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """What was commanded at one moment (s); `row` is counted upwards from the panel, so that no two overlap."""
+    """The commands of one moment (s); `row` is counted upwards from the panel, so that no two overlap."""
 
     time: float
     text: str
     row: int
     at_left: bool
-    """Of its line, where the right edge is near."""
+    """Distance of a label from its line near the right edge."""
 
 
 def label_rows(markers: Iterable[Marker], begin: float, end: float) -> list[Label]:

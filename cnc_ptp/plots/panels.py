@@ -1,4 +1,4 @@
-"""What can be drawn of a unit over time: panels by kind of unit, each with its fields of the unit's block."""
+"""Panels of a unit over time, by kind of unit, each with its fields of the unit's block."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class UnitKind:
 
 
 def columns(block: type) -> tuple[str, ...]:
-    """Fields of a block with a number a cycle; the others are of the block as a whole."""
+    """Fields of a block with one number per cycle; the others are of the block as a whole."""
     return tuple(name for name, of in get_type_hints(block).items() if of in (list[float], list[int], list[bool]))
 
 

@@ -41,14 +41,14 @@ BY_QUANTITY = {quantity(field)[0]: panel for panel in (*SPINDLE.values(), *AXIS.
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """What stands above the plots."""
+    """The text above the plots."""
 
     title: str
     caption: str
 
 
 def draw_rows(recorded: Recorded, rows: Sequence[PlotRow], heading: Heading, span: Sequence[float]) -> Figure:
-    """The rows one above the other; `span`: begin and end in s."""
+    """The rows one above the other; `span`: start and end in s."""
     labels = command_labels(recorded, span)
     above = label_height(labels)
     panels = [panel_of(row) for row in rows]
@@ -90,7 +90,7 @@ def draw_row(plot: Axes, row: PlotRow, panel: Panel, cycle_time: float, *, room_
 
 
 def curves(row: PlotRow, panel: Panel, lines: Iterable[tuple[Line, Column]]) -> Iterator[Curve]:
-    """The colours of the quantity; where several units share a row, a colour a unit."""
+    """The colours of the quantity; one colour per unit if several share a row."""
     units: dict[int, int] = {}
     for line in row.lines:
         units.setdefault(id(line.rows), len(units))
@@ -102,7 +102,7 @@ def curves(row: PlotRow, panel: Panel, lines: Iterable[tuple[Line, Column]]) -> 
 
 
 def command_labels(recorded: Recorded, span: Sequence[float]) -> list[Label]:
-    """What was commanded, in few rows: what finds no room there has only its line; of very many not even that."""
+    """The commands, in few rows: one without room has only its line; very many have not even that."""
     cycle_time = recorded.cycle_time_ns * 1e-9
     targets = {command.target for command in recorded.commands}
     markers = [

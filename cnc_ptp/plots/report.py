@@ -90,7 +90,7 @@ summary { cursor: pointer; font-weight: 600; }
 
 
 def report_page(recorded: Recorded, *, program: str = "", date: str = "") -> str:
-    """The page as text. `program` and `date` stand in its head; any text in it is escaped."""
+    """The page as text. `program` and `date` are in its head; any text in it is escaped."""
     recorded = in_machine_order(recorded)
     figures = summary(recorded)
     title = program or recorded.path.name
@@ -119,7 +119,7 @@ def plots_page(recorded: Recorded, rows: list[PlotRow], *, title: str) -> str:
 
 
 def page_head(title: str, details: Sequence[str] = ()) -> str:
-    """All of a page before its main part."""
+    """The page before its main part."""
     below = f"<p>{' · '.join(map(escape, details))}</p>" if details else ""
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'

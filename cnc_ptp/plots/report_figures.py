@@ -58,7 +58,7 @@ SEVERITY_COLOURS = {Severity.INFO: "#5b6b7f", Severity.WARNING: "#e0a100", Sever
 def rows_figure(recorded: Recorded, rows: Sequence[PlotRow]) -> go.Figure:
     """States, events and commands, and below them the rows; zooming one of them zooms all.
 
-    The lines are thinned out; report.js takes their place by those of `time_columns` as the page is zoomed.
+    The lines are thinned out; report.js replaces them by those of `time_columns` as the page is zoomed.
     """
     count = len(rows) + 1
     first = max(ROW_HEIGHT, BAND_HEIGHT * (2 + len(recorded.states)))
@@ -97,7 +97,7 @@ def rows_figure(recorded: Recorded, rows: Sequence[PlotRow]) -> go.Figure:
 
 
 def time_range(recorded: Recorded) -> list[float]:
-    """Begin and end of the states in s."""
+    """Start and end of the states in s."""
     first = min((int(rows["cycle"].min()) for rows in recorded.states.values()), default=0)
     cycle_time = recorded.cycle_time_ns * 1e-9
     return [first * cycle_time, max((recorded.last_cycle + 1) * cycle_time, first * cycle_time + 1e-3)]
@@ -165,7 +165,7 @@ def _mark_commands(figure: go.Figure, recorded: Recorded) -> None:
 
 
 def _compact(values: npt.NDArray[np.float64], *, precise: bool) -> npt.NDArray[Any]:
-    """Seven digits are enough for what is only looked at."""
+    """Seven digits are enough for the eye."""
     return values if precise else values.astype(np.float32)
 
 
@@ -213,7 +213,7 @@ def _add_bands(figure: go.Figure, state: str, bands: list[tuple[str, float, floa
 
 
 def state_bands(rows: Records, codes: type[IntEnum], cycle_time: float) -> Iterator[tuple[str, float, float]]:
-    """Stretches of one state: name, begin and end in s. Of more than MOST_BANDS the shortest are left out."""
+    """Stretches of one state: name, start and end in s. Of more than MOST_BANDS the shortest are left out."""
     if len(rows) == 0:
         return
     states = rows["state"]
@@ -249,7 +249,7 @@ def _add_events(figure: go.Figure, recorded: Recorded) -> None:
 
 
 def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
-    """A mark for each moment at which something was commanded; report.js writes the words where there is room."""
+    """A mark for each moment with a command; report.js writes the words where there is room."""
     moments: dict[int, list[CommandRecord]] = {}
     for command in recorded.commands:
         moments.setdefault(command.cycle, []).append(command)
@@ -281,7 +281,7 @@ def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
 
 
 def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
-    """The axes of the path plot: x, y, z where they move, otherwise the first three linear axes that do."""
+    """The axes of the path plot: x, y, z if they move, otherwise the first three linear axes that do."""
     still = standing(recorded)
     axes = recorded.of_type(AXIS_STATE)
     names = [name for name in axes if units.get(name, "mm") == "mm" and name not in still]
@@ -293,7 +293,7 @@ def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
 def path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
     """The actual path in the plane of the first two axes and, with a third axis, in space; coloured by feed.
 
-    None where no channel moves along a path.
+    None if no channel moves along a path.
     """
     axes = path_axes(recorded, units)
     on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())

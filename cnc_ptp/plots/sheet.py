@@ -1,4 +1,4 @@
-"""The sheet of a picture: card, title and caption, places for plots, and how plots and the words in them look."""
+"""The sheet of a picture: card, title and caption, places for plots, and the style of plots and their texts."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ SMALL, NORMAL, LARGE = 8.5, 9.5, 14.0
 LETTER = 5.0
 """Width of a small letter, generously: nothing is placed by measured text, so viewers may have other fonts."""
 TITLE_OFFSET = 7.0
-"""Of a plot's title above the plot."""
+"""Height of a plot's title above the plot."""
 
 
 class Titled(Protocol):
-    """What stands above the plots."""
+    """Height of the texts above the plots."""
 
     @property
     def title(self) -> str: ...
@@ -60,16 +60,16 @@ class Sheet:
         return self.drawing.add_axes(place, projection="polar" if polar else None)
 
     def write(self, x: float, y: float, words: str, **style: Any) -> None:
-        """Text at `x`, `y`; `style` as Matplotlib has it."""
+        """Text at `x`, `y`; `style` as in Matplotlib."""
         style = {"color": SOFT, "fontsize": NORMAL, **style}
         self.drawing.text(x / WIDTH, 1.0 - y / self.height, words, **style)
 
     def write_below(self, words: str) -> None:
-        """What the lowest scale shows."""
+        """Label of the lowest scale."""
         self.write(LEFT + 0.5 * PLOT, self.height - 17.0, words, ha="center")
 
     def _draw_card(self) -> None:
-        """The figure brings its own background, whatever page it stands on."""
+        """The figure has its own background, on any page."""
         inset, corner = 1.0 / POINTS_PER_INCH, 10.0 / POINTS_PER_INCH
         width, tall = WIDTH / POINTS_PER_INCH - 2 * inset, self.height / POINTS_PER_INCH - 2 * inset
         shape = f"round,pad=0,rounding_size={corner}"

@@ -36,7 +36,7 @@ def svg_text(drawing: Figure, *, title: str) -> str:
 
 
 def short_numbers(tag: str) -> str:
-    """Coordinates to a hundredth of a point; what stands between tags are words."""
+    """Coordinates to a hundredth of a point; the text between tags is words."""
     return LONG_NUMBER.sub(lambda match: f"{float(match[0]):.2f}", tag)
 
 

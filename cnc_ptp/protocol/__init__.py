@@ -1,1 +1,1 @@
-"""What units hand each other: blocks, commands, states; and the base of all units."""
+"""The exchange between units: blocks, commands, states; and the base of all units."""

@@ -19,7 +19,7 @@ class AxisStateCode(IntEnum):
 
 
 REST_STATES = (AxisStateCode.DISABLED, AxisStateCode.STANDSTILL, AxisStateCode.ERROR_STOP)
-"""In which nothing is to move; in ErrorStop the error ramp may still run."""
+"""States in which nothing is to move; in ErrorStop the error ramp may still be active."""
 
 
 class StatusBit(IntEnum):

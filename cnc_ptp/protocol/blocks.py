@@ -1,4 +1,4 @@
-"""What units hand each other: one block per tick, field for field the messages of msg/.
+"""Cycle blocks that units exchange: one per tick, field for field the messages of msg/.
 
 Per-cycle fields are lists of `count` values; the channel's setpoints are axis-major (axis index * count + cycle).
 Units: mm, s, deg and their derivatives; the .msg files say the rest.
@@ -35,7 +35,7 @@ class Command:
 
     @property
     def arguments_json(self) -> str:
-        """The arguments as JSON; what JSON does not know (nan, inf) as text, which every unit refuses as well."""
+        """The arguments as JSON; values unknown to JSON (nan, inf) as text, which every unit refuses as well."""
         try:
             return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
         except ValueError:
@@ -49,7 +49,7 @@ class Command:
 
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:
-        """The command that a record was made of; older ones name the file of a table besides."""
+        """The command of a record; older records name the file of a table in addition."""
         arguments = json.loads(record.arguments_json)
         if "table" in arguments:
             arguments.pop("file", None)
@@ -69,11 +69,11 @@ class CommandRecord:
     message: str
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
-    """Of the unit that has refused the command, the values of its text; messages do not hold them."""
+    """Values of the refusal's text, in the unit that has refused; messages do not hold them."""
 
 
 class EventValue(NamedTuple):
-    """A number that an event tells of (EventValue.msg)."""
+    """A number in the text of an event (EventValue.msg)."""
 
     name: str
     value: float
@@ -95,7 +95,7 @@ class Event:
 
 @dataclass(slots=True)
 class HandshakeRequest:
-    """An M/S/T/D output of the channel that may wait for the PLC (HandshakeRequest.msg)."""
+    """An M/S/T/D output of the channel, for which it may wait (HandshakeRequest.msg)."""
 
     cycle: int
     id: int
@@ -190,7 +190,7 @@ class AxisBlock:
 
 
 class Refusal(NamedTuple):
-    """A spindle's refusal of what `source` has commanded; a message has it as one text."""
+    """A spindle's refusal of a command of `source`; a message has it as one text."""
 
     source: str
     number: int

@@ -1,4 +1,4 @@
-"""The commands of the scenario table as data: what each kind of unit understands, with which arguments.
+"""The commands as data: those that each kind of unit understands, with their arguments.
 
 Scenarios are checked against it before a run starts, units before they change anything, services are made from it.
 """
@@ -20,8 +20,8 @@ UNKNOWN_COMMAND = 22002
 class Argument:
     """One argument of a command. `kind`: number, integer, switch, text, rows or source; `choices` limits a text.
 
-    `positive`: only a number above 0 makes sense, so that a service can say with 0 that it is left out.
-    `lenient`: the command is carried out whatever the value is; it says what it makes of it.
+    `positive`: only a number above 0 makes sense, so that 0 in a service means that it is left out.
+    `lenient`: the command is carried out with any value and reports the one it uses.
     """
 
     kind: str
@@ -44,9 +44,9 @@ LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
-"""For whom a spindle is to do it: the name of a channel, or plc for the external commanding of the PLC."""
+"""Source of a spindle command: the name of a channel, or plc for the PLC's own commands."""
 OWNER: Arguments = {"owner": Argument("source", required=False)}
-"""Whose coupling it is."""
+"""Source of the coupling."""
 OPTIONAL_SWITCH = Argument("switch", required=False)
 CAM: Arguments = {"table": ROWS, "file": OPTIONAL_TEXT}
 COUPLING: Arguments = {
@@ -55,7 +55,7 @@ COUPLING: Arguments = {
     "master_stands": OPTIONAL_SWITCH,
     "master_lost": OPTIONAL_SWITCH,
 }
-"""A master, and what the PLC fills in: the masters of the master, whether it stands, whether its node is lost."""
+"""A master, and what the PLC fills in: the master's masters, whether it is at a standstill, whether it is lost."""
 
 FEEDFORWARD: Arguments = {"enabled": OPTIONAL_SWITCH, "weight_percent": OPTIONAL_NUMBER}
 
@@ -180,10 +180,10 @@ OF_CHANNELS = frozenset({"own", "homes", "owner"})
 """Arguments of spindle commands that only channels give; neither services nor scenarios have them."""
 
 FILE_CONTENTS = frozenset({"table", "setpoints"})
-"""Arguments that a file may hold: who reads it gives them instead of `file`."""
+"""Arguments that a file may hold: its reader gives them instead of `file`."""
 
 FORMER_NAMES = {"on": "enabled"}
-"""Arguments that had another name once: scenarios and recordings may still use it. (`on:` is true to YAML 1.1.)"""
+"""Arguments with a former name: scenarios and recordings may still use it. (`on:` is true to YAML 1.1.)"""
 
 TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}
 
@@ -200,7 +200,7 @@ def check_command(
 ) -> None:
     """Raises CncError (22001 argument, 22002 command) when a unit of `kind` cannot understand the command.
 
-    `sources`: who may command a spindle of this machine; without them every name is taken.
+    `sources`: who may command a spindle of this machine; without them every name is accepted.
     """
     specification = COMMANDS[kind].get(command)
     if specification is None:
@@ -218,7 +218,7 @@ def check_command(
 def check_arguments(
     where: str, specification: Arguments, arguments: Mapping[str, Any], sources: Collection[str] = ()
 ) -> None:
-    """Raises CncError 22001 for what `specification` does not know, lacks or does not take; `where` begins the text."""
+    """Raises CncError 22001 for an argument that is unknown, missing or not permitted; `where` begins the text."""
     for name in arguments:
         if name not in specification:
             known = ", ".join(known for known in specification if known not in OF_PLC) or "none"

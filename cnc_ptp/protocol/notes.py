@@ -1,4 +1,4 @@
-"""What people are told of a run: refused commands and warnings, each once; and its errors."""
+"""Notes of a run for its user: refused commands and warnings, each once; and its errors."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Note:
     text: str
     refused: bool = False
     idle_stop: bool = False
-    """A stop of an axis that stands already."""
+    """A stop of an axis that is at a standstill already."""
 
     def __str__(self) -> str:
         if self.refused:
@@ -46,7 +46,7 @@ class Note:
 class Notes:
     """Notes in the order in which they came, each once.
 
-    A refused command is an event too: it is told as refused, in whatever order the two come.
+    A refused command is an event too: it is noted as refused, in whatever order the two come.
     """
 
     def __init__(self) -> None:
@@ -71,6 +71,6 @@ def without_effect(axis: str, command: str, state: AxisStateCode) -> str:
 
 
 def error_text(event: Any) -> str:
-    """`event`: an error (Event or its message), told with its cycle, and the line of the program where there is one."""
+    """`event`: an error (Event or its message), with its cycle, and the line of the program if there is one."""
     where = f"cycle {event.cycle}, line {event.line}" if event.line else f"cycle {event.cycle}"
     return f"P-ERR-{event.error_id} {event.text} ({where})"

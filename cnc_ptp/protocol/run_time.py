@@ -1,4 +1,4 @@
-"""How long a run may be."""
+"""The longest run."""
 
 LONGEST_RUN = 1e7
 """Seconds of machine time, 115 days."""

@@ -9,7 +9,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 
 
 class Transition(NamedTuple):
-    """From one of the states `sources` to `target`; `cause` is what diagrams write at the arrow."""
+    """From one of the states `sources` to `target`; `cause` is the label of the arrow in diagrams."""
 
     cause: str
     sources: frozenset[AxisStateCode]
@@ -22,7 +22,7 @@ def transition(cause: str, *sources: AxisStateCode, to: AxisStateCode) -> Transi
 
 
 def state_diagram(transitions: Iterable[Transition]) -> str:
-    """A Mermaid diagram with one arrow for each pair of states; its causes stand at it in the order of the table."""
+    """A Mermaid diagram with one arrow for each pair of states; labelled with its causes in the order of the table."""
     causes: dict[tuple[AxisStateCode, AxisStateCode], list[str]] = {}
     for cause, sources, target in transitions:
         for source in sorted(sources):

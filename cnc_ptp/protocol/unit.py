@@ -33,9 +33,9 @@ class Unit(ABC):
         self.records: list[CommandRecord] = []
         """Commands carried out or refused since the last block; the harness takes them away."""
         self.sources: Collection[str] = ()
-        """Who may command a spindle; without them every name is taken."""
+        """Who may command a spindle; without them every name is accepted."""
         self.lost: set[str] = set()
-        """Sources that a watchdog has given up; their blocks count no more, even if they should come."""
+        """Sources that a watchdog has given up; their blocks no longer count, even if they come."""
 
     @abstractmethod
     def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:
@@ -80,16 +80,16 @@ class Unit(ABC):
 
     @property
     def master(self) -> str | None:
-        """The unit whose block of the same cycles `step` needs besides; known after the commands for these cycles."""
+        """The unit whose block of the same cycles `step` needs too; known after the commands for these cycles."""
         return None
 
     @property
     def led(self) -> bool:
-        """A channel or a master moves this unit: that one says what there is to wait for."""
+        """A channel or a master moves this unit and knows what there is to wait for."""
         return False
 
     def waits_for(self) -> str:
-        """What the unit waits for that does not come with time alone; empty while it goes on or has nothing to do."""
+        """What the unit waits for that does not come with time alone; empty while it continues or has nothing to do."""
         return ""
 
     def lag_share(self, block: CycleBlock) -> float:

@@ -1,4 +1,4 @@
-"""What people look at of a unit: state, position, speed and more out of its newest block."""
+"""View of a unit for people: state, position, speed and more from its newest block."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class UnitView:
     busy: bool
     """It moves, turns, or runs a program."""
     settled: bool
-    """It stands, turns with the commanded speed, or has no program under way."""
+    """It is at a standstill, turns at the commanded speed, or has no active program."""
     override: float
     error_id: int
     cycle: int
-    """After the last one of the block."""
+    """The cycle after the last one of the block."""
     stamp: float
     """Of the block, s since 1970."""
     position: float | None = None

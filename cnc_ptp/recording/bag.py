@@ -1,7 +1,7 @@
-"""What rosbag2 keeps of a bag: the same in the recording itself and in `metadata.yaml` beside it.
+"""Metadata of rosbag2: in the recording itself and the same in `metadata.yaml` next to it.
 
 `ros2 bag info` and `ros2 bag play` take the file alone, and the folder when there is a `metadata.yaml` in it. That
-describes one recording, the first of the folder: further ones leave it as it is.
+describes one recording, the first of the folder: further ones leave it unchanged.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def metadata_text(information: dict[str, Any]) -> str:
 def write_beside(recording: Path, information: dict[str, Any]) -> None:
     """Writes `metadata.yaml` into the folder of a recording, unless one there is not this recording's.
 
-    Where it cannot be written there is none: the file itself says the same.
+    If it cannot be written there is none: the file itself holds the same.
     """
     if recording.is_file() and _may_write(recording):
         with contextlib.suppress(OSError):
@@ -86,7 +86,7 @@ def forget_beside(recording: Path) -> None:
 
 
 def _may_write(recording: Path) -> bool:
-    """There is none, it is this recording's, or all that it describes has gone."""
+    """There is none, it is this recording's, or all files that it describes are gone."""
     beside = recording.parent / FILE
     if not beside.exists():
         return True
@@ -97,7 +97,7 @@ def _may_write(recording: Path) -> bool:
 
 
 def _described(beside: Path) -> list[str]:
-    """The files of which a `metadata.yaml` speaks; none if it is not one of rosbag2."""
+    """The files that a `metadata.yaml` lists; none if it is not one of rosbag2."""
     try:
         paths = yaml.safe_load(beside.read_text(encoding="utf-8"))[INFORMATION]["relative_file_paths"]
         return [str(path) for path in paths]

@@ -148,7 +148,7 @@ def fill_states(kind: StateKind, messages: Records, rows: Records, cycles: Cycle
 
 @np.errstate(invalid="ignore")
 def fill_derived(messages: Records, rows: Records) -> None:
-    """Sets the fields that follow from the others; what is not finite stays so, and has direction 0 if not a number."""
+    """Sets the fields that follow from the others; infinities and NaN are unchanged, NaN has direction 0."""
     count = rows["set_position"].shape[1]
     begin, length, digits = (np.repeat(rows[name], count) for name in OF_THE_BLOCK)
     for name in ("set_position", "actual_position"):
@@ -172,7 +172,7 @@ def state_messages(block: StateBlock, start_ns: int, cycle_ns: int, wanted: slic
 def within_modulo(
     position: npt.NDArray[np.float64], begin: npt.NDArray[np.float64], length: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.float64]:
-    """Positions within begin ... begin + length (excluded); the position itself where the length is 0. Shapes (n,)."""
+    """Positions within begin ... begin + length (excluded); the position itself if the length is 0. Shapes (n,)."""
     turn = np.where(length > 0.0, length, 1.0)
     within = begin + np.mod(position - begin, turn)
     within = np.where(within >= begin + turn, begin, within)  # a tiny negative remainder rounds up to a whole turn

@@ -17,9 +17,9 @@ from cnc_ptp.recording.writer import METADATA, MISSING
 def close_cut(path: str | Path) -> str:
     """Ends a recording of cnc_ptp that was cut off behind its last whole chunk: data end, summary, footer.
 
-    Returns what is missing, which the file says too from then on; empty for a file that is whole, which stays as it is,
-    and for what is no regular file.
-    Raises CncError 26001 to 26003 (the file stays as it is) and 26007.
+    Returns what is missing, which the file then says too; empty for a file that is whole, which is unchanged,
+    and for anything but a regular file.
+    Raises CncError 26001 to 26003 (the file is unchanged) and 26007.
     """
     if not Path(path).is_file():  # a device, such as /dev/full, has no end
         return ""
@@ -36,7 +36,7 @@ def close_cut(path: str | Path) -> str:
 
 
 class _Survey:
-    """What a file holds that its summary would list. The last chunk is kept back: its indexes may be cut off."""
+    """The contents of a file that its summary would list. The last chunk is kept back: its indexes may be cut off."""
 
     def __init__(self, records: McapRecords) -> None:
         self._records = records
@@ -112,7 +112,7 @@ class _Survey:
         self._last, self._index_offsets = None, {}
 
     def _count(self, item: Schema | Channel | MessageRun) -> int:
-        """Notes what is in a chunk; returns the number of messages."""
+        """Notes the contents of a chunk; returns the number of messages."""
         if isinstance(item, Schema):
             self._contents.schemas.append(item)
         elif isinstance(item, Channel):

@@ -19,7 +19,7 @@ MAIN = {
     "weight_percent": " %",
     "speed_rpm": " rpm",
 }
-"""The arguments that stand for a command in brief, and their units where these are not the axis'."""
+"""The arguments that stand for a command in brief, and their units if these are not the axis'."""
 FEW = 6
 
 
@@ -38,7 +38,7 @@ def brief(command: CommandRecord) -> str:
 
 
 def argument_words(arguments_json: str, distance: str) -> str:
-    """Arguments as `name = value unit`; `distance`: mm, deg or empty. What is no object of JSON stays as it is."""
+    """Arguments as `name = value unit`; `distance`: mm, deg or empty. Anything but a JSON object is unchanged."""
     values = json_object(arguments_json)
     if values is None:
         return arguments_json
@@ -58,7 +58,7 @@ def shortened(text: str, letters: int) -> str:
 
 
 def _label(name: str) -> str:
-    """Without the unit, which stands behind the value."""
+    """Without the unit, which follows the value."""
     return without_unit(name).replace("_", " ")
 
 

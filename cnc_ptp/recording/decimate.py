@@ -1,4 +1,4 @@
-"""Fewer points for a plot: what is drawn stays the same to the eye, peaks stay exact."""
+"""Fewer points for a plot: the drawn line looks the same, peaks stay exact."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _joined(parts: list[Floats]) -> Floats:
 
 
 def path_points(coordinates: list[npt.NDArray[Any]], points: int = 6000) -> Indices:
-    """Indices along a path, evenly in way and in change of direction: long lines take few points, corners many."""
+    """Indices along a path, evenly in distance and in change of direction: long lines take few points, corners many."""
     steps = np.diff(np.stack([np.asarray(column, dtype=np.float64) for column in coordinates]), axis=1)
     way = np.sqrt((steps**2).sum(axis=0))
     moving = np.flatnonzero(way > 0.0)

@@ -34,7 +34,7 @@ def chosen_rows(
 
 
 def _of_one_unit(row: PlotRow) -> PlotRow:
-    """Where all lines are of one unit, its name stands before the quantity and not at each line."""
+    """If all lines are of one unit, its name is before the quantity and not at each line."""
     units = {line.name.rpartition(" ")[0] if line.role else line.name for line in row.lines}
     if len(units) > 1:
         return row

@@ -133,7 +133,7 @@ def _walk(schema: Schema, value: Any, header_of: Callable[[Any], Header]) -> _Wr
 def encode(schema: Schema, value: Any, header_of: Callable[[Any], Header] = _no_stamp) -> bytes:
     """CDR of one message given as an object or mapping with the schema's field names.
 
-    Where it lacks a header, `header_of(value)` gives one. Raises CncError 26006 for values that do not fit their field.
+    If it lacks a header, `header_of(value)` gives one. Raises CncError 26006 for values that do not fit their field.
     """
     return bytes(_walk(schema, value, header_of).data)
 

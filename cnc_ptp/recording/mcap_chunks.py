@@ -1,5 +1,5 @@
-"""Reads the records of an MCAP file one after another, without its index, so that a file cut off anywhere gives all it
-holds.
+"""Reads the records of an MCAP file one after another, without its index, so that a file cut off anywhere gives all
+that it holds.
 
 A file that does not end with the MCAP magic was cut off (killed process, full disk): reading stops at the first record
 that is not whole. Anything else that does not fit is corruption and raises an error that names the place.
@@ -58,7 +58,7 @@ class MessageRun(NamedTuple):
 
 
 class McapRecords:
-    """The records of a file in order; after iteration `complete` and `missing` say whether something is lacking.
+    """The records of a file in order; after iteration `complete` and `missing` say what is missing, if anything.
 
     Raises CncError 26001 (cannot be opened), 26002 (not an MCAP file), 26003 (corrupt: where, why).
     """

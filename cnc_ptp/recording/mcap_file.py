@@ -2,7 +2,7 @@
 
 `mcap.writer.Writer` takes one message a call (4 µs). Here a call takes any number of messages of equal size, as rows of
 bytes with room for the record head in front; all other records are written by the library's record classes. Records and
-their order follow the specification at mcap.dev/spec: in a chunk the messages stand topic by topic, its message indexes
+their order follow the specification at mcap.dev/spec: in a chunk the messages are topic by topic, its message indexes
 give their order in time.
 """
 
@@ -78,12 +78,12 @@ class McapFile:
     """An MCAP file of the ROS 2 profile being written.
 
     A closed chunk is compressed by a thread of its own (outside the interpreter lock) while the next one fills; then it
-    is written and handed to the operating system at once. All methods raise CncError 26007 once the file could not be
-    written; the chunks before that moment stay readable.
+    is written and handed to the operating system immediately. All methods raise CncError 26007 once the file could not
+    be written; the chunks before that moment stay readable.
     """
 
     def __init__(self, path: Path, level: int = 1, *, found: Contents | None = None) -> None:
-        """Begins a file, or goes on behind what was `found` in one; all after that is cut off."""
+        """Starts a file, or continues one after what was `found` in it; all after that is cut off."""
         self.path = path
         contents = found or Contents()
         self.statistics = contents.statistics
@@ -213,7 +213,7 @@ class McapFile:
         count_chunk(self.statistics, chunk.message_count, first, last)
 
     def close(self) -> None:
-        """Writes the last chunk and the summary, closes the file, and tells rosbag2 of it (bag)."""
+        """Writes the last chunk and the summary, closes the file, and writes the metadata of rosbag2 (bag)."""
         try:
             self.close_chunk()
             self.finish_chunk()

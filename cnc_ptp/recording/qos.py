@@ -10,7 +10,7 @@ INFINITE = {"sec": 9223372036, "nsec": 854775807}
 
 
 class Qos(NamedTuple):
-    """What a publisher offers; all else is as ROS has it by default. `lifespan`: s, 0 without end."""
+    """The offer of a publisher; all else is the default of ROS. `lifespan`: s, 0 without end."""
 
     depth: int
     durability: str = "volatile"
@@ -43,7 +43,7 @@ BY_TYPE = {
 
 
 def offered(type_name: str) -> Qos:
-    """What the publisher of a topic of this type offers."""
+    """The offer of the publisher of a topic of this type."""
     return BY_TYPE.get(type_name, BLOCKS)
 
 
@@ -69,9 +69,9 @@ def profiles_text(qos: Qos) -> str:
 
 
 def parse_profiles(text: str, type_name: str) -> Qos:
-    """What `offered_qos_profiles` of a channel says of durability and reliability, also in the numbers of old bags.
+    """Durability and reliability of `offered_qos_profiles` of a channel, also in the numbers of old bags.
 
-    Where it says nothing, what topics of this type have; of several publishers what all of them offer.
+    If it has none, those of topics of this type; with several publishers what all of them offer.
     """
     usual = offered(type_name)
     try:

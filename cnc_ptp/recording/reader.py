@@ -33,7 +33,7 @@ DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 @dataclass(slots=True)
 class TopicInfo:
-    """What the file holds of a topic; log times in ns, `qos`: its offered_qos_profiles."""
+    """A topic of the file; log times in ns, `qos`: its offered_qos_profiles."""
 
     topic: str
     type_name: str
@@ -66,7 +66,7 @@ class Recorded:
 
     `states[topic]` is a structured array (n,) in the order of the file with the fields of the message (`cycle`,
     `set_position`, …, `header.stamp.sec`, `header.stamp.nanosec`). `complete` is False when the file was cut off;
-    `missing` then says what is lacking.
+    `missing` then says what is missing.
     """
 
     path: Path
@@ -92,7 +92,7 @@ class Recorded:
 
     @property
     def last_cycle(self) -> int:
-        """The last cycle of which a state was recorded, -1 if there is none."""
+        """The last cycle of which a state was recorded, -1 if none was."""
         return max((int(rows["cycle"].max()) for rows in self.states.values()), default=-1)
 
     @property
@@ -117,7 +117,7 @@ class Recorded:
 
 
 def read_recording(path: str | Path) -> Recorded:
-    """Reads all that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
+    """Reads everything that is whole in a file. Raises CncError 26001 to 26005 (see McapRecords, schemas)."""
     reader = _Reader(Path(path))
     for record in reader.records:
         reader.take(record)
@@ -153,7 +153,7 @@ def _raw_messages(info: TopicInfo, run: MessageRun) -> Iterator[RawMessage]:
 
 
 class _Names:
-    """Schemas and channels of a file as they come."""
+    """Schemas and channels of a file as they are read."""
 
     def __init__(self, records: McapRecords) -> None:
         self.records = records
@@ -188,7 +188,7 @@ class _Names:
 
 
 class _Reader:
-    """Collects what the records of a file say."""
+    """Collects the contents of the records of a file."""
 
     def __init__(self, path: Path) -> None:
         self.records = McapRecords(path)
@@ -268,7 +268,7 @@ class _Reader:
             try:
                 handler(time, decoder(content.tobytes()) if decoder else None)
             except Exception as error:  # whatever the generated decoder raises on bytes that are no such message
-                reason = f"a message of {info.topic} is no {info.type_name}: {error!r}"
+                reason = f"a message of {info.topic} is not a {info.type_name}: {error!r}"
                 raise self.records.corrupt(record.offset, reason) from error
 
     def _schema(self, run: MessageRun) -> Schema:

@@ -1,4 +1,4 @@
-"""What can be drawn of a recording over time: rows, one above the other, each with its lines.
+"""Rows of a recording over time, one above the other, each with its lines.
 
 Reports and pictures draw the same rows.
 """
@@ -16,10 +16,10 @@ from cnc_ptp.recording.units import unit_of
 
 SET, ACTUAL, OTHER = "set", "actual", ""
 USUAL = ("position", "velocity", "acceleration", "following error", "speed")
-"""Titles of what a picture shows unless it is told otherwise."""
+"""Titles of the rows that a picture shows by default."""
 
 FEEDFORWARD = ("feedforward_velocity", "additive_velocity", "additive_torque")
-"""What the feedforward of an axis gives."""
+"""Fields of the feedforward of an axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ def axis_label(name: str) -> str:
 
 
 def moves(rows: Records) -> bool:
-    """True for an axis or a spindle whose position ever changes or that ever has a speed."""
+    """True for an axis or spindle whose position changes or that has a speed at any time."""
     names = rows.dtype.names or ()
     places = [name for name in ("set_position", "actual_position", "set_position_deg") if name in names]
     speeds = [name for name in ("set_velocity", "set_speed_rpm", "actual_speed_rpm") if name in names]
@@ -71,7 +71,7 @@ def standing(recorded: Recorded) -> list[str]:
 
 
 def time_rows(recorded: Recorded, units: Mapping[str, str], torque_units: Mapping[str, str]) -> Iterator[PlotRow]:
-    """All rows that show something: nothing of axes and spindles that never move, nothing that is 0 throughout."""
+    """All rows with content: without axes and spindles that never move, without lines that are 0 throughout."""
     channels = recorded.of_type(CHANNEL_STATE)
     still = standing(recorded)
     axes = {name: rows for name, rows in recorded.of_type(AXIS_STATE).items() if name not in still}
@@ -106,7 +106,7 @@ def _shared_row(title: str, field: str, units: Mapping[str, Records]) -> Iterato
 
 
 def _is_fed_forward(rows: Records) -> bool:
-    """Whether the feedforward of an axis gives anything; the states of a spindle have only its weight."""
+    """Whether the feedforward of an axis is ever other than 0; the states of a spindle have only its weight."""
     outputs = [name for name in FEEDFORWARD if name in (rows.dtype.names or ())]
     return not outputs or any(np.any(rows[name]) for name in outputs)
 
@@ -131,7 +131,7 @@ def _axis_rows(name: str, rows: Records, distance: str) -> Iterator[PlotRow]:
 
 
 def _control_rows(name: str, rows: Records, distance: str, torque_unit: str) -> Iterator[PlotRow]:
-    """What goes to the drive besides the command of the position controller."""
+    """Rows of what goes to the drive besides the command of the position controller."""
     label = axis_label(name)
     feedforward = [
         Line("to the position controller", rows, "feedforward_velocity", SET),

@@ -20,7 +20,7 @@ def selected(
 ) -> Recorded:
     """The states, events and commands from `begin` up to `end` in s of axes and spindles `units`.
 
-    What is of no axis and no spindle stays. Raises CncError 26011 for a unit that is not recorded and for a time in
+    Topics of other units are kept. Raises CncError 26011 for a unit that is not recorded and for a time in
     which there is nothing.
     """
     if units:
@@ -77,8 +77,8 @@ def _between(rows: Records, low: float, high: float) -> Records:
 
 def _nothing(recorded: Recorded, begin: float | None, end: float | None) -> str:
     cycle_time = recorded.cycle_time_ns * 1e-9
-    asked = f"{'the begin' if begin is None else f'{begin:g} s'} to {'the end' if end is None else f'{end:g} s'}"
+    asked = f"{'the start' if begin is None else f'{begin:g} s'} to {'the end' if end is None else f'{end:g} s'}"
     if not recorded.states:
         return "holds no states"
     first = min(int(rows["cycle"].min()) for rows in recorded.states.values())
-    return f"nothing from {asked}, it goes from {first * cycle_time:g} s to {recorded.last_cycle * cycle_time:g} s"
+    return f"nothing from {asked}, it covers {first * cycle_time:g} s to {recorded.last_cycle * cycle_time:g} s"

@@ -30,7 +30,7 @@ IN_PROGRAM = (
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """The largest magnitude of a quantity and where it was."""
+    """The largest magnitude of a quantity and its time."""
 
     value: float
     cycle: int
@@ -111,9 +111,9 @@ def axis_units(recorded: Recorded) -> dict[str, str]:
 
 
 def in_machine_order(recorded: Recorded) -> Recorded:
-    """The recording with states and diagnostics in the order of the machine file, not that in which nodes were heard.
+    """The recording with states and diagnostics in the order of the machine file, not that of their arrival.
 
-    Units of each kind as /machine lists them, what it does not list behind them; as it is without a machine file.
+    Units of each kind as /machine lists them, unlisted ones after them; unchanged without a machine file.
     """
     machine = _machine(recorded.machine_yaml)
     if machine is None:

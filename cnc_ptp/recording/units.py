@@ -45,15 +45,15 @@ BY_SUFFIX = {
     "_deg": "deg",
     "_percent": "%",
 }
-"""Names that end in their unit; the longer endings stand first."""
+"""Names that end in their unit; the longer endings come first."""
 ROLES = ("set_", "actual_")
 MODULO = "_modulo"
 
 
 def unit_of(name: str, distance: str = "", torque: str = "") -> str:
-    """The unit of a field or an argument, empty where there is none.
+    """The unit of a field or an argument, empty if there is none.
 
-    `distance`: mm or deg, empty where nobody knows; `torque`: Nm or N.
+    `distance`: mm or deg, empty if unknown; `torque`: Nm or N.
     """
     suffix = next((suffix for suffix in BY_SUFFIX if name.endswith(suffix)), "")
     unit = BY_SUFFIX.get(suffix, "") or BY_NAME.get(without_role(name).removesuffix(MODULO), "")

@@ -48,7 +48,7 @@ class Difference:
 
 @dataclass(slots=True)
 class TopicResult:
-    """What the comparison of one topic found.
+    """Result of the comparison of one topic.
 
     `missing`: cycles that were computed but not recorded; `duplicated`: recorded more than once; `surplus`: recorded
     but not computed. `not_recorded`: fields that are computed here and that the recording does not have.
@@ -83,7 +83,7 @@ class TopicResult:
 
 @dataclass(slots=True)
 class VerifyResult:
-    """What the comparison of a recording found, by topic."""
+    """Result of the comparison of a recording, by topic."""
 
     path: str
     topics: dict[str, TopicResult]
@@ -106,7 +106,7 @@ class VerifyResult:
         return sorted(difference for result in self.topics.values() for difference in result.first)[:FIRST_DIFFERENCES]
 
     def text(self) -> str:
-        """One line when all is equal, otherwise a line for each finding."""
+        """One line if all is equal, otherwise one for each finding."""
         if self.equal:
             equal = f"{self.path}: {self.compared} states of {len(self.topics)} topics are equal to the bit"
             return "\n".join([equal, *self._not_compared()])

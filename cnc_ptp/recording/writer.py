@@ -1,6 +1,6 @@
 """Writes the recording of a run: per-cycle states, blocks, events and commands as an MCAP file.
 
-There is no clock in here: the log time of a message is the stamp of its cycle, and the caller says when wall time has
+There is no clock here: the log time of a message is the stamp of its cycle, and the caller says when wall time has
 passed.
 """
 
@@ -54,7 +54,7 @@ BEFORE_ALL = -1  # end of the chunk before the first block
 
 @dataclass(frozen=True, slots=True)
 class TickMessage:
-    """A CycleTick with the field that only a paced clock knows."""
+    """A CycleTick with the field that only a paced clock has."""
 
     first_cycle: int
     count: int
@@ -80,7 +80,7 @@ class Stamps:
 
 
 class _Encoder(Protocol):
-    """Turns what a topic has collected into messages: rows (n, HEAD_SIZE + size) and times (n,) for each size."""
+    """Turns the items of a topic into messages: rows (n, HEAD_SIZE + size) and times (n,) for each size."""
 
     def messages(self, collected: list[Any], stamps: Stamps) -> list[tuple[Bytes, Times]]: ...
 
@@ -136,7 +136,7 @@ READY = _Ready()
 
 
 class _Topic:
-    """A topic of the file and what it has collected since the last chunk: runs of items for one encoder each."""
+    """A topic of the file and its items since the last chunk: runs of items for one encoder each."""
 
     def __init__(self, channel_id: int, type_name: str) -> None:
         self.channel_id = channel_id
@@ -181,7 +181,7 @@ class Recording:
     Offline, `axis_block`, `spindle_block` and `channel_block` record a unit's block with its per-cycle states. In the
     graph the block itself arrives as bytes and goes to `raw`, and `states` records the states alone. A chunk is
     closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees `flush_seconds` of wall time passed;
-    then the operating system gets it. A killed process loses what came after its last chunk and nothing else.
+    then the operating system gets it. A killed process loses only what came after its last chunk.
 
     Errors (CncError): 26005 unknown message type, 26006 a block that does not fit its message, 26007 the file cannot be
     written, 26008 a topic with two types, 26009 the recording is closed. What was refused is not in the file; the rest
@@ -214,7 +214,7 @@ class Recording:
         self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
 
     def block(self, name: str, block: CycleBlock) -> None:
-        """Whatever unit it comes from: the block, and its per-cycle states if it has any."""
+        """A block of any unit, and its per-cycle states if it has any."""
         if isinstance(block, AxisBlock):
             self.axis_block(name, block)
         elif isinstance(block, SpindleBlock):
@@ -309,7 +309,7 @@ class Recording:
         return True
 
     def flush(self) -> None:
-        """Writes what has been recorded so far as a chunk and hands it to the operating system."""
+        """Writes the messages so far as a chunk and hands it to the operating system."""
         self._require_open("a flush")
         self._close_chunk()
         self._file.finish_chunk()
@@ -416,7 +416,7 @@ class Recording:
 
 
 def offer(type_name: str) -> dict[str, str]:
-    """What a channel says of a topic besides its type: quality of service, hash of the type."""
+    """Metadata of a topic's channel: quality of service, hash of the type."""
     return {QOS: profiles_text(offered(full_name(type_name))), TYPE_HASH: type_hash(type_name)}
 
 

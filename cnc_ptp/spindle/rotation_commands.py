@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 from cnc_ptp.protocol.spindle_states import SpindleMode

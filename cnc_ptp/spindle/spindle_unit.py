@@ -11,7 +11,7 @@ from cnc_ptp.control.commands import FEEDFORWARD_WAITS, FeedforwardCommands, fee
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.errors import CncError, warning_text
 from cnc_ptp.parameters import GearParameters, SpindleParameters
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override

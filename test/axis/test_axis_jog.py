@@ -373,7 +373,7 @@ def test_a_scenario_runs_as_long_as_its_jog() -> None:
     forgotten = "[{at: 0, to: c, do: jog, velocity: -90}]"
     aborted = MachineBench(scenario=forgotten, machine=PTP).run()
     assert aborted.errors() == [
-        "P-ERR-22014 plc plc: axis c moves endlessly, but the scenario is through; everything is stopped and the "
+        "P-ERR-22014 plc plc: axis c moves endlessly, but the scenario is finished; everything is stopped and the "
         "run ends"
     ]
     endless = MachineBench(scenario=forgotten, machine=PTP).run(20.0)

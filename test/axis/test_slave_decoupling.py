@@ -393,7 +393,7 @@ def test_a_run_that_only_an_endless_pseudo_master_keeps_going_is_ended() -> None
         bench._take(outputs)
         assert bench.cycle < 20_000
     assert bench.errors() == [
-        "P-ERR-22014 plc plc: axis c moves endlessly, but the scenario is through; everything is stopped and the run ends"
+        "P-ERR-22014 plc plc: axis c moves endlessly, but the scenario is finished; everything is stopped and the run ends"
     ]
     assert bench.failed and not bench.last("c").set_velocity[-1] and bench.position("x") == 2000.0
     assert_linear(bench, "c", "y", -0.5)

@@ -556,7 +556,7 @@ def test_the_watchdog_of_the_channel(source: str) -> None:
     bench.give("channel", "reset")
     if source in ("y", "s"):
         assert bench.refused("channel", "start") == (
-            f"P-ERR-22005 channel channel: start refused: '{source}' sends nothing any more; nothing was changed"
+            f"P-ERR-22005 channel channel: start refused: '{source}' no longer publishes; nothing was changed"
         )
     else:
         assert bench.give("channel", "start").accepted

@@ -67,7 +67,7 @@ def speed_at_the_move(bench: MachineBench, unit: str = "s", move: int = 0) -> fl
 )
 def test_another_command_while_the_path_waits_for_a_speed(command: str, does: str) -> None:
     bench = run("M3 S10000\nG01 X20 F6000\nM5", mill(m3=MVS_SVS), f"- {{at: 0.1, to: s, {command}}}")
-    aborted(bench, f"turn at 10000 rpm as it was told, {does}", 2, "M3 S10000")
+    aborted(bench, f"turn at 10000 rpm as commanded, {does}", 2, "M3 S10000")
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_another_command_while_the_path_waits_for_a_speed(command: str, does: st
 )
 def test_another_command_while_the_path_waits_for_a_position(command: str, does: str) -> None:
     bench = run("M19 S50 S.POS=300\nG01 X20 F6000", mill(m19=MVS_SVS), f"- {{at: 0.05, to: s, {command}}}")
-    aborted(bench, f"go to 300 deg as it was told, {does}", 2, "M19 S50 S.POS=300")
+    aborted(bench, f"go to 300 deg as commanded, {does}", 2, "M19 S50 S.POS=300")
 
 
 def test_another_command_while_the_path_waits_for_standstill() -> None:
@@ -89,7 +89,7 @@ def test_another_command_while_the_path_waits_for_standstill() -> None:
         mill(m5=MVS_SVS),
         "- {at: 2.1, to: s, do: start, direction: cw, speed_rpm: 300}",
     )
-    aborted(bench, "stop as it was told, it was commanded to 300 rpm", 4, "M5")
+    aborted(bench, "stop as commanded, it was commanded to 300 rpm", 4, "M5")
 
 
 @pytest.mark.parametrize("at", [2.05, 2.3])
@@ -106,7 +106,7 @@ def test_a_gear_change_that_somebody_gives_up() -> None:
         *three(ranges=GEAR_RANGES, automatic=False), units={"s": two_gears(change_position=180.0)}, gear_change=True
     )
     bench = run("M41 S600 M3\nG01 X20 F6000", machine, "- {at: 0.1, to: s, do: stop}")
-    aborted(bench, "change to gear 2 as it was told, it is in Stopping", 2, "M41 S600 M3")
+    aborted(bench, "change to gear 2 as commanded, it is in Stopping", 2, "M41 S600 M3")
 
 
 @pytest.mark.parametrize(("command", "by"), [("do: stop", "stop"), ("do: power, enabled: off", "power off")])
@@ -126,7 +126,7 @@ def test_a_gear_change_that_is_overtaken_while_the_plc_changes(command: str, by:
 def test_a_stop_while_the_plc_has_not_acknowledged() -> None:
     scenario = MANUAL + "- {at: 0.1, to: s, do: stop}\n"
     bench = run("M3 S1000\nG01 X20 F6000", mill(m3=MVS_SVS | PLC_INFO), scenario)
-    aborted(bench, "turn at 1000 rpm as it was told, it is in Stopping", 2, "M3 S1000")
+    aborted(bench, "turn at 1000 rpm as commanded, it is in Stopping", 2, "M3 S1000")
 
 
 @pytest.mark.parametrize(
@@ -138,13 +138,13 @@ def test_a_stop_before_a_late_synchronisation(kind: Synchronisation, line: int, 
         "M3 S1000\nG04 X1\n" + {"G01 X20 F6000": text, "#EXPL SYN": f"{text}\nG01 X20 F6000", "M30": "G04 X0.1"}[text]
     )
     bench = run(program, mill(m3=kind), "- {at: 0.5, to: s, do: stop}")
-    aborted(bench, "turn at 1000 rpm as it was told, it is in Standstill", line, text)
+    aborted(bench, "turn at 1000 rpm as commanded, it is in Standstill", line, text)
 
 
 def test_a_slave_that_somebody_stops() -> None:
     bench = run(LINK + "M3 S10000\nG01 X20 F6000", machine_of(*three()), "- {at: 0.2, to: t, do: stop}")
     assert bench.errors() == [
-        "P-ERR-22021 channel channel: spindle t does not turn at 10000 rpm as it was told, it is in Stopping; the path "
+        "P-ERR-22021 channel channel: spindle t does not turn at 10000 rpm as commanded, it is in Stopping; the path "
         "waited for it in line 4 'M3 S10000'; the path stops on its ramp and the program is aborted"
     ]
     assert moves(bench) == []
@@ -319,10 +319,10 @@ def test_m5_of_another_channel_counts_and_its_user_hears_of_it() -> None:
     bench = two(TAKEN + '- {at: 1.5, to: channel, do: mdi, text: "M5"}').run(3.0)
     assert bench.column("s", "set_speed_rpm")[-1] == 0.0 and bench.errors() == []
     assert notes(bench) == [
-        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as it was told, it was commanded to -2000 rpm; "
-        "the program goes on, line 1",
-        "P-WARN-22022 channel second: spindle s does not turn at -2000 rpm as it was told, it is in Stopping; "
-        "the program goes on, line 1",
+        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as commanded, it was commanded to -2000 rpm; "
+        "the program continues, line 1",
+        "P-WARN-22022 channel second: spindle s does not turn at -2000 rpm as commanded, it is in Stopping; "
+        "the program continues, line 1",
     ]
 
 
@@ -338,8 +338,8 @@ def test_the_user_of_a_slave_hears_what_another_channel_tells_its_master() -> No
 """
     bench = two(scenario).run(3.0)
     assert notes(bench) == [
-        "P-WARN-22022 channel second: spindle t does not turn at 2000 rpm as it was told, it was commanded to 500 rpm; "
-        "the program goes on, line 1"
+        "P-WARN-22022 channel second: spindle t does not turn at 2000 rpm as commanded, it was commanded to 500 rpm; "
+        "the program continues, line 1"
     ]
     assert bench.column("t", "set_speed_rpm")[1990] == 500.0 and bench.last("t").set_speed_rpm[-1] == 0.0
 
@@ -363,8 +363,8 @@ def test_a_stop_of_the_plc_is_told_to_a_program_that_does_not_wait() -> None:
     bench = run(program, mill(m3=MVS_SVS), "- {at: 0.5, to: s, do: stop}")
     assert bench.errors() == [] and bench.position("x") == 20.0
     assert notes(bench) == [
-        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as it was told, it is in Stopping; "
-        "the program goes on, line 3"
+        "P-WARN-22022 channel channel: spindle s does not turn at 1000 rpm as commanded, it is in Stopping; "
+        "the program continues, line 3"
     ]
 
 
@@ -377,7 +377,7 @@ def another_gear(at: float, source: str = "plc") -> str:
 
 def warned(bench: MachineBench) -> list[tuple[int, str]]:
     """(cycle, text) of all events: of a loss with what the spindle does instead."""
-    before, after = "channel channel: spindle s does not turn at 1000 rpm as it was told, ", "; the program goes on"
+    before, after = "channel channel: spindle s does not turn at 1000 rpm as commanded, ", "; the program continues"
     texts = [f"P-WARN-{event.error_id} {event.text.removeprefix(before).removesuffix(after)}" for event in bench.events]
     return [(event.cycle, text) for event, text in zip(bench.events, texts, strict=True)]
 
@@ -389,8 +389,8 @@ def test_a_gear_change_of_the_plc_is_told_to_a_moving_path_at_once(kind: Synchro
     assert [(event.cycle, event.text) for event in bench.events] == [
         (
             510,
-            "channel channel: spindle s does not turn at 1000 rpm as it was told, its gear is being changed; "
-            "the program goes on",
+            "channel channel: spindle s does not turn at 1000 rpm as commanded, its gear is being changed; "
+            "the program continues",
         )
     ]
     assert bench.column("s", "set_speed_rpm")[1500] == 0.0 != bench.column("channel", "path_velocity")[1500]
@@ -470,7 +470,7 @@ def test_a_speed_for_what_another_channel_has_set_turning() -> None:
     bench = two(scenario).run(2.0)
     assert bench.column("s", "set_speed_rpm")[990] == 1000.0 and bench.column("s", "set_speed_rpm")[-1] == 2000.0
     assert notes(bench) == [
-        "P-WARN-22023 channel second: S2000 is without effect on spindle s, which this channel has not set turning; "
+        "P-WARN-22023 channel second: S2000 is without effect on spindle s, which this channel has not started; "
         "it counts for its next M03 or M04, line 1"
     ]
 
@@ -484,8 +484,8 @@ def test_a_speed_for_a_slave_that_was_coupled_at_rest() -> None:
     program = f"M3 S1000\n{LINK}S2000\nG01 X10 F3000\nM3\nG01 X20\nM5"
     bench = run(program, machine_of(*three(s=MVS_SVS)))
     assert bench.errors() == [] and notes(bench) == [
-        "P-WARN-22023 channel channel: S2000 is without effect on spindle t, which stands; M03 or M04 of its master s "
-        "sets it turning, line 5"
+        "P-WARN-22023 channel channel: S2000 is without effect on spindle t, which is at a standstill; M03 or M04 of its "
+        "master s starts it, line 5"
     ]
     assert speed_at_the_move(bench, "t", 0) == 0.0
     assert speed_at_the_move(bench, "t", 1) == pytest.approx(2000.0, rel=0.1)

@@ -220,7 +220,7 @@ def test_a_tool_without_a_record_is_told() -> None:
     assert [(event.error_id, event.text, event.line) for event in bench.events if event.error_id == 22027] == [
         (
             22027,
-            "channel channel: D7 in line 3 has no record wz[7] in the machine file, nothing of the tool counts. "
+            "channel channel: D7 in line 3 has no record wz[7] in the machine file, no data of the tool apply. "
             "Known: D1, D2",
             3,
         )

@@ -254,7 +254,7 @@ def test_a_slave_that_others_have_decoupled_gets_its_functions_itself() -> None:
     given = [command for command, _ in told(bench, "t") if command != "coupling_answer"]
     assert given == ["couple", "decouple", "stop"]
     assert stands(bench, "s", "t") and notes(bench) == [
-        "channel channel: spindle t does not follow s any more, others have decoupled it; the program goes on"
+        "channel channel: spindle t no longer follows s, others have decoupled it; the program continues"
     ]
 
 

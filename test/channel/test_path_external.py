@@ -127,7 +127,7 @@ def test_a_program_is_done_when_the_channel_knows_where_its_axes_are() -> None:
     assert [b.done for b in alone.blocks["channel"]].index(True) == active.index(False) - 1
 
 
-NOT_AT_END = "axis x was moved away from the end of the path before"
+NOT_AT_END = "axis x was moved away from the end of the previous path"
 
 
 def test_a_start_before_that_is_refused() -> None:
@@ -137,7 +137,7 @@ def test_a_start_before_that_is_refused() -> None:
     while bench.last("channel").path_active:
         bench.run(0.01)
     assert bench.refused("channel", "start") == (
-        f"P-ERR-22004 channel channel: start refused: {NOT_AT_END}; try again when the program is done; "
+        f"P-ERR-22004 channel channel: start refused: {NOT_AT_END}; try again when the program is finished; "
         "nothing was changed"
     )
     bench.run(0.02)

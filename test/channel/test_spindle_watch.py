@@ -13,7 +13,7 @@ from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.parameters import ChannelSpindle, Synchronisation
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
 
-GEAR = "does not turn at {0} rpm as it was told, its gear is being changed"
+GEAR = "does not turn at {0} rpm as commanded, its gear is being changed"
 
 
 class Watched:
@@ -74,7 +74,7 @@ def test_commands_that_wait_from_the_block_of_m3_on() -> None:
     for position in (90.0, 180.0):
         watched.bench.accepted("orient", position_deg=position, source="plc")
     assert list(watched.notices(10)) == []
-    assert list(watched.notices(20)) == ["does not turn at 1000 rpm as it was told, it is in DiscreteMotion"]
+    assert list(watched.notices(20)) == ["does not turn at 1000 rpm as commanded, it is in DiscreteMotion"]
 
 
 def test_a_new_speed_that_waits_for_a_gear() -> None:

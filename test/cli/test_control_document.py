@@ -67,7 +67,7 @@ PROGRAM = {
 NOTICES = {
     70348: ("ids.VORSTEUER_ACCELERATION_DELAY_TIME: 70348", "P-AXIS-00390"),
     70349: ("ids.VORSTEUER_VELOCITY_DELAY_TIME: 70349", "P-AXIS-00389"),
-    110465: ("NO_TORQUE_SCALE = 110465", "no additive torque is put out"),
+    110465: ("NO_TORQUE_SCALE = 110465", "no additive torque is output"),
     110473: ("NO_JERK_DENOMINATOR = 110473", "100 is used"),
 }
 """Warnings of a machine file: source of parameters/check/control_notices.py, what the document says."""

@@ -113,7 +113,7 @@ def test_points_below_the_limit_are_shown():
     assert result.exit_code == 0, result.output
     assert "below n_grenz, not fitted" in result.stdout.splitlines()[8]
     assert rows(result.stdout)[0] == [6000.0, 1000.0, 15_000.0, 16_000.0, 1000.0, 6.67]
-    assert "warning: the curve lies +6.7 % beside the point at 6000 °/s" in result.stdout
+    assert "warning: the curve lies +6.7 % off the point at 6000 °/s" in result.stdout
 
 
 def test_what_deserves_a_look():
@@ -195,8 +195,8 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
         (options(POINTS[:3]), "P-ERR-27044 the polynomial needs a point at the limit speed and 3 above it, 2 above it given; nothing was fitted\n"),
         (["--csv", "/nowhere.csv"], "P-ERR-26110 point file /nowhere.csv cannot be read: No such file or directory; nothing was started\n"),
         ([*options(POINTS), "-o", "curve.pdf"], "P-ERR-27030 curve.pdf: an output is a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml) by its ending; nothing was started\n"),
-        ([*options(POINTS), "--spindle", "s 1"], "P-ERR-27051 spindle name 's 1' must be small letters, digits and _, a letter first; nothing was fitted\n"),
-        ([*options(POINTS), "--spindle", ""], "P-ERR-27051 spindle name '' must be small letters, digits and _, a letter first; nothing was fitted\n"),
+        ([*options(POINTS), "--spindle", "s 1"], "P-ERR-27051 spindle name 's 1' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
+        ([*options(POINTS), "--spindle", ""], "P-ERR-27051 spindle name '' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
         ([*options(POINTS), "--spindle", "plc"], "P-ERR-27051 spindle name 'plc' is taken by another node; nothing was fitted\n"),
         ([*options(POINTS), "-o", "/nowhere/a.yaml"], "P-ERR-27030 /nowhere/a.yaml cannot be written: its folder does not exist; nothing was started\n"),
     ],

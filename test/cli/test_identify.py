@@ -76,7 +76,7 @@ def test_what_is_printed_says_what_was_measured(friction_run):
             and seconds == pytest.approx(2 * min(0.5, max(0.1, 50 / speed)), abs=0.01)
         )
     assert lines[-1] == f"{table}: to be pasted into the machine file"
-    assert table.read_text().startswith(f"# Friction of axis x, from 5 speeds forth and back in a run of {MILL}.\n")
+    assert table.read_text().startswith(f"# Friction of axis x, from 5 speeds in both directions in a run of {MILL}.\n")
 
 
 def test_the_recording_of_the_run_gives_the_same_table(friction_run):
@@ -196,7 +196,7 @@ def test_a_recording_of_slow_motions_says_that_its_results_are_rough(speed, heav
         assert lines["inertia"] == text and "load:" not in path.read_text()
     misfit = float(lines["misfit"].split()[0])
     rough = (
-        f"axis x: rough results: misfit {misfit:.2f} % (above 1 %: friction or limits shape the motion beside the drive), "
+        f"axis x: rough results: misfit {misfit:.2f} % (above 1 %: friction or limits shape the motion besides the drive), "
         f"highest velocity {speed} mm/s (below 10 % of the 500 mm/s that the axis can reach); check them with a faster "
         "recording"
     )

@@ -126,9 +126,9 @@ def test_unknown_names(recording, arguments, text):
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (["--from", "3"], "nothing from 3 s to the end, it goes from 0 s to 1.499 s; nothing was drawn"),
-        (["--from", "0.5", "--to", "0.5"], "nothing from 0.5 s to 0.5 s, it goes from 0 s to 1.499 s; nothing was drawn"),
-        (["--to", "-1"], "nothing from the begin to -1 s, it goes from 0 s to 1.499 s; nothing was drawn"),
+        (["--from", "3"], "nothing from 3 s to the end, it covers 0 s to 1.499 s; nothing was drawn"),
+        (["--from", "0.5", "--to", "0.5"], "nothing from 0.5 s to 0.5 s, it covers 0 s to 1.499 s; nothing was drawn"),
+        (["--to", "-1"], "nothing from the start to -1 s, it covers 0 s to 1.499 s; nothing was drawn"),
         (["--axes", "y"], "no axis and no spindle moves there; nothing was drawn, choose fields with --topics"),
         (["--to", "0.1"], "no axis and no spindle moves there; nothing was drawn, choose fields with --topics"),
     ],

@@ -134,7 +134,7 @@ def test_no_room(room, text):
         ),
         (
             [400.0],
-            "P-ERR-27011 axis x: 400 mm/s need 890.9 mm of way, the soft limits leave 588 mm (P-AXIS-00177, P-AXIS-00178); "
+            "P-ERR-27011 axis x: 400 mm/s need 890.9 mm of travel, the soft limits leave 588 mm (P-AXIS-00177, P-AXIS-00178); "
             "nothing was started",
         ),
     ],

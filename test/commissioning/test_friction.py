@@ -175,7 +175,7 @@ def test_repeated_and_unordered_cycles_count_once():
         (
             friction_run([5.0, 8.0], both=False),
             "P-ERR-27007 axis x: no speed was driven in both directions (constant velocities: 5, 8); weight and friction "
-            "cannot be told apart, no table was made, drive each speed forth and back",
+            "cannot be told apart, no table was made, drive each speed in both directions",
         ),
         (
             trace_of(

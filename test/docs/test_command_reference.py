@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from cnc_ptp.commands.reference import HIDDEN, arguments, reference_markdown
-from cnc_ptp.protocol.command_texts import ARGUMENT_TEXTS, COMMAND_TEXTS, SPECIAL_TEXTS, argument_text
+from cnc_ptp.protocol.command_help import ARGUMENT_TEXTS, COMMAND_TEXTS, SPECIAL_TEXTS, argument_text
 from cnc_ptp.protocol.commands import COMMANDS, INTERNAL
 
 ROOT = Path(__file__).parents[2]

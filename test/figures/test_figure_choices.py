@@ -139,7 +139,7 @@ def test_friction_curve_needs_both_directions(tmp_path):
     one = "- {at: 0.1, to: x, do: move_relative, distance: 12, velocity: 10}\n"
     expected = (
         "P-ERR-27007 axis x: no speed was driven in both directions (constant velocities: 10); weight and friction "
-        "cannot be told apart, no table was made, drive each speed forth and back"
+        "cannot be told apart, no table was made, drive each speed in both directions"
     )
     assert refusal(written(tmp_path, one, machine=FRICTION, kind="friction_curve")) == expected
 

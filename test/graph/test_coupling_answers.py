@@ -109,7 +109,7 @@ def test_the_run_ends():
 @pytest.mark.parametrize(
     ("ticks", "follows"),
     [
-        (0, "no block has gone out, the command was taken back"),
+        (0, "no block has gone out, the command was withdrawn"),
         (1, "the command has gone out and may still be carried out"),
     ],
 )
@@ -153,7 +153,7 @@ def test_a_waiting_call_costs_no_processor_time():
         until(executor, answer.done)
         waited, used = time.monotonic() - begun, time.process_time() - used
         assert waited > 4.0 and used < 0.3 * waited
-        text = "axis y: couple without an answer for 5 s; no block has gone out, the command was taken back"
+        text = "axis y: couple without an answer for 5 s; no block has gone out, the command was withdrawn"
         assert (answer.result().error_id, answer.result().message) == (26143, text)
     finally:
         for node in (plc, client):

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes.unit.health import Health
+from cnc_ptp.nodes.unit.diagnostics import Health
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick, Event, PlcBlock, Severity

@@ -10,7 +10,7 @@ from cnc_ptp.nodes.bridge.jog_topics import PATIENCE, JogTopics
 
 SILENT = (26134, "plc: no message on /x/jog for 200 ms; the jog of x ends")
 SECOND = (26144, "plc: /x/jog has a second client '{}'; it is ignored while the first one jogs x")
-FREE_RUN = (26145, "plc: /x/jog is not obeyed in free run, where 200 ms may be a long motion")
+FREE_RUN = (26145, "plc: /x/jog has no effect in free run, where 200 ms may be a long motion")
 
 
 class Jogs:

@@ -29,7 +29,7 @@ def machine(folder):
         yield graph
         graph.process.send_signal(signal.SIGINT)
         output = graph.finish(0)
-        assert "the machine was ended (SIGINT) while all units stood" in output
+        assert "the machine was ended (SIGINT) with all units at a standstill" in output
         assert "failed" not in output and "stop without effect" not in output
         verified(folder / "live.mcap")
     finally:
@@ -144,7 +144,7 @@ def test_an_interrupt_ends_the_waiting_and_not_the_motion(machine):
     time.sleep(1.0)  # the signal counts for the waiting from a moment after this line on
     waiting.send_signal(signal.SIGINT)
     told, _ = waiting.communicate(timeout=30.0)
-    assert (waiting.returncode, told) == (130, "y: not waited for any more (SIGINT); it goes on\n")
+    assert (waiting.returncode, told) == (130, "y: no longer waited for (SIGINT); it continues\n")
     first, second = place("y"), place("y")
     assert second > first
     assert call("do", "y", "stop", "--wait").exit_code == 0

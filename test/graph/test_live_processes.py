@@ -23,7 +23,7 @@ def test_a_machine_of_processes_stays_until_it_is_told_to_end(moving, tmp_path):
         output = graph.finish(1 if moving else 0)
     finally:
         graph.end()
-    assert ("the machine was ended (SIGTERM) while all units stood" in output) is not moving
+    assert ("the machine was ended (SIGTERM) with all units at a standstill" in output) is not moving
     told = "failed: P-ERR-26106 the run was interrupted (SIGTERM); everything stops on its ramps"
     assert (told in output) is moving
     assert "program time" not in output
@@ -47,7 +47,7 @@ def test_a_turning_spindle_comes_to_rest_on_its_ramp_before_its_node_ends(tmp_pa
 def test_commands_notice_that_the_machine_is_gone(tmp_path):
     """Killed as a power failure does it: `do --wait`, `jog` and `watch` end, each with status 1."""
     graph = Running(small_machine(tmp_path), "--stay", "--composed")
-    text = "nothing new for 5 s: the machine does not run any more"
+    text = "nothing new for 5 s: the machine no longer runs"
     waiting = ["do", "x", "move_absolute", "target=100", "velocity=1", "--wait"]
     try:
         wait_for_machine()

@@ -23,7 +23,7 @@ from cnc_ptp.recording.writer import Recording
 from cnc_ptp.ros_arguments import split
 
 MACHINES = sorted([*ROOT.glob("config/*.yaml"), ROOT / "examples/spindles/gears.yaml"])
-FROM_FILE = "in the machine file, where all nodes and the recording find it"
+FROM_FILE = "in the machine file, from which all nodes and the recording take it"
 
 
 @pytest.fixture
@@ -103,7 +103,7 @@ def test_refused_parameters(refusal, module, words, text):
         (
             {"getriebe": {"3": {"kv": 5000}}},
             "getriebe.3.kv = 5000",
-            "the machine file, where all nodes and the recording find it, does not give it",
+            "it is not in the machine file, from which all nodes and the recording take it",
         ),
         ({"kenngr": {"achs_typ": 2}}, "kenngr.achs_typ = 2", f"it is 'ACHSTYP_TRANSLATOR' {FROM_FILE}"),
     ],

@@ -132,7 +132,7 @@ def test_a_factor_by_topic_that_falls_silent_freezes(client):
     client.write("/c/coupling_factor", msg.CyclicCouplingFactor, valid=True, factor=float("nan"))
     client.spin_until(lambda: any(event.error_id == 26118 for event in client.events), "the event")
     texts = [event.text for event in client.events if event.error_id == 26118]
-    assert texts == ["plc: no message on /c/coupling_factor for 1000 ms; the factor stays as it is"]
+    assert texts == ["plc: no message on /c/coupling_factor for 1000 ms; the factor is unchanged"]
     client.done("x", "move_absolute", target=0.0, velocity=200.0)
     client.shows("x", "set_position", 0.0)
     client.wait_last("c", lambda block: abs(block.set_position[-1]) < 1e-6, "the way back with the same factor")

@@ -117,7 +117,7 @@ def test_an_override_that_falls_silent_stays_as_it_is(client):
     client.spin_until(lambda: any(event.error_id == 26119 for event in client.events), "the event")
     client.wait_blocks("plc", 100)
     texts = [event.text for event in client.events if event.error_id == 26119]
-    assert texts == ["plc: no message on /s/override for 1000 ms; the override stays as it is"]
+    assert texts == ["plc: no message on /s/override for 1000 ms; the override is unchanged"]
     client.shows("s", "set_speed_rpm", 200.0)
     client.override("s", 100.0)
     client.shows("s", "set_speed_rpm", 400.0)
@@ -142,7 +142,7 @@ def test_a_homing_that_is_overtaken_is_no_success(client):
     client.done("t", "stop", source="")
     status, result = client.result_of(goal)
     assert (status, result.success) == (GoalStatus.STATUS_ABORTED, False)
-    assert result.message == "the homing was given up, the previous reference point remains valid"
+    assert result.message == "the homing was aborted, the previous reference point remains valid"
 
 
 def test_actions_wait_for_the_gear_and_a_cancel_forgets_them(client):

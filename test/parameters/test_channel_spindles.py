@@ -1,4 +1,4 @@
-"""The spindles of a channel: topology of the manual's examples, gears, couplings, tools, and what is wrong with them."""
+"""The spindles of a channel: topology of the manual's examples, gears, couplings, tools, and their errors."""
 
 from __future__ import annotations
 
@@ -91,9 +91,9 @@ def test_default_couplings() -> None:
     assert view.channels["ch"].coupled == (("S1", "S"),)
     assert tuple(map(str, view.warnings)) == (
         "m.yaml:8:94: P-CHAN-00061 synchro_data.koppel_gruppe[0].paar[0].mode of /ch: "
-        "a pair of path axes is not coupled here",
+        "a pair of path axes is not coupled",
         "m.yaml:10:62: P-CHAN-00038 synchro_data.koppel_gruppe[2].paar[0].log_achs_nr_slave of /ch: "
-        "only coupling group 0 is taken from here",
+        "only coupling group 0 is used",
     )
 
 
@@ -171,7 +171,7 @@ WRONG = {
     "slave not in the channel": (
         (TWO, GROUP.format(0, 30, 6)),
         "P-ERR-25014 m.yaml:8:62: channel list, P-CHAN-00038 "
-        "synchro_data.koppel_gruppe[0].paar[0].log_achs_nr_slave of /ch: value 30 is none of the channel's spindles (6, 11)",
+        "synchro_data.koppel_gruppe[0].paar[0].log_achs_nr_slave of /ch: value 30 is not one of the channel's spindles (6, 11)",
     ),
     "master that the plc moves": (
         (PLC, GROUP.format(0, 11, 99)),
@@ -204,7 +204,7 @@ WRONG = {
     "tool of another spindle": (
         (TWO, "wz.5: {log_ax_nr_spdl: 30, vb_max: 5000, a_max: 10}"),
         "P-ERR-25014 m.yaml:8:28: tool list, P-TOOL-00012 wz[5].log_ax_nr_spdl of /ch: "
-        "value 30 is none of the channel's spindles (6, 11)",
+        "value 30 is not one of the channel's spindles (6, 11)",
     ),
     "tool upside down": (
         (TWO, "wz.5: {log_ax_nr_spdl: 6, vb_min: 5000, vb_max: 10, a_max: 10}"),

@@ -44,17 +44,17 @@ PROBLEMS = {
         f"torque command (S-0-0081, 60B2, M_ADD1), {CARRIES}"
     ),
     'antr: {feed_const_num: 50000}, getriebe: {"0": {gear_fact_denom: 0}}': (
-        "P-ERR-110579 axis list, P-AXIS-00512 getriebe[0].gear_fact_denom of /x: value 0 is no denominator of a gear "
+        "P-ERR-110579 axis list, P-AXIS-00512 getriebe[0].gear_fact_denom of /x: value 0 is not a valid denominator of a gear "
         "ratio"
     ),
     "vorsteuer: {vs_a_nenner: 0}": (
-        "P-ERR-25019 axis list, P-AXIS-00226 vorsteuer.vs_a_nenner of /x: value 0 is no denominator"
+        "P-ERR-25019 axis list, P-AXIS-00226 vorsteuer.vs_a_nenner of /x: value 0 is not a valid denominator"
     ),
     "vorsteuer: {vs_v_nenner: 0}": (
-        "P-ERR-25019 axis list, P-AXIS-00229 vorsteuer.vs_v_nenner of /x: value 0 is no denominator"
+        "P-ERR-25019 axis list, P-AXIS-00229 vorsteuer.vs_v_nenner of /x: value 0 is not a valid denominator"
     ),
     "vorsteuer: {feedforward_v_add_denom: 0}": (
-        "P-ERR-25019 axis list, P-AXIS-00515 vorsteuer.feedforward_v_add_denom of /x: value 0 is no denominator"
+        "P-ERR-25019 axis list, P-AXIS-00515 vorsteuer.feedforward_v_add_denom of /x: value 0 is not a valid denominator"
     ),
     "kenngr: {antr_typ: 8}, antr: {telegram: {commands: [60FF, S-0-0037]}}": (
         "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: object S-0-0037 cannot be exchanged with "
@@ -109,7 +109,7 @@ PROBLEMS = {
         f"command (S-0-0081, 60B2, M_ADD1), {CARRIES}"
     ),
     'simulation: {model: CASCADED}, getriebe: {"0": {load: 0}}': (
-        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for P-SIM-00006 "
+        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is not a valid inertia for P-SIM-00006 "
         "simulation.model CASCADED, P-SIM-00007 simulation.inertia is 0 too"
     ),
     "simulation: {model: CASCADED, current_time_constant: 5000, velocity_integral_time: 5000}": (
@@ -117,16 +117,16 @@ PROBLEMS = {
         "5000 µs of P-SIM-00010 simulation.current_time_constant, the velocity controller is unstable"
     ),
     'antr: {telegram: {commands: [S-0-0080]}}, getriebe: {"0": {load: 0}}': (
-        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is no inertia for a torque command, "
+        "P-ERR-25009 axis list, P-AXIS-00391 getriebe[0].load of /x: value 0 is not a valid inertia for a torque command, "
         "P-SIM-00007 simulation.inertia is 0 too"
     ),
     f'{SERCOS}, antr: {{sercos: {{mdt: {{"0": {{nc_ref: S_0_0036, ident_nr: 37}}}}}}}}': (
         "P-ERR-25020 machine list, P-MACH-00023 antr.sercos.mdt[0].ident_nr of /x: value 37 is not the number of "
-        "S-0-0036, which P-MACH-00022 names"
+        "S-0-0036, the object in P-MACH-00022"
     ),
     f'{SERCOS}, antr: {{sercos: {{at: {{"0": {{ident_nr: 51}}, "1": {{nc_ref: S-0-0084, ident_nr: 40}}}}}}}}': (
         "P-ERR-25020 machine list, P-MACH-00026 antr.sercos.at[1].ident_nr of /x: value 40 is not the number of "
-        "S-0-0084, which P-MACH-00025 names"
+        "S-0-0084, the object in P-MACH-00025"
     ),
     f"{SERCOS}, antr: {{telegram: {{commands: [S-0-0036, S-0-0037, S-0-0036]}}}}": (
         "P-ERR-25020 machine list, P-MACH-00020 antr.telegram.commands of /x: object S-0-0036 is in the telegram twice"
@@ -163,7 +163,7 @@ def test_an_object_by_number_and_name_alike() -> None:
     assert load(f"{SERCOS}, antr: {{{objects}}}").axes["x"].control.drive.commands == {"velocity"}
 
 
-def test_an_additive_object_alone_comes_beside_the_command_of_the_drive_type() -> None:
+def test_an_additive_object_alone_is_added_to_the_command_of_the_drive_type() -> None:
     """As TF5200 feedforward 4.1 has it; a torque feedback comes beside the position."""
     objects = 'sercos: {mdt: {"0": {nc_ref: S_0_0037, ident_len: 4}}, at: {"0": {nc_ref: S_0_0084}}}'
     drive = load(f"{SERCOS}, vorsteuer: {{vorsteuerung: 0x101}}, antr: {{{objects}}}").axes["x"].control.drive
@@ -211,19 +211,19 @@ NOTICES = {
         "cycles (6000 µs), 0 is used"
     ),
     "antr: {torque_scale_denom: 0}": (
-        "P-AXIS-00326 antr.torque_scale_denom of /x: value 0 is no denominator, no additive torque is put out"
+        "P-AXIS-00326 antr.torque_scale_denom of /x: value 0 is not a valid denominator, no additive torque is output"
     ),
     "antr: {acc_reference_value: 0}, vorsteuer: {vorsteuerung: ADD_ACC}": (
-        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is no reference of the torque scaling, no "
-        "additive torque is put out"
+        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is not a valid reference of the torque scaling, no "
+        "additive torque is output"
     ),
     "antr: {acc_reference_value: 0}, lr_param: {frict_comp: 1}, "
     "frict_comp: {mode: 3, table_entries: 1, table: {'0': {out: 5}}}": (
-        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is no reference of the torque scaling, no "
-        "additive torque is put out"
+        "P-AXIS-00392 antr.acc_reference_value of /x: value 0 is not a valid reference of the torque scaling, no "
+        "additive torque is output"
     ),
     "vorsteuer: {jerk_fact_denom: 0}": (
-        "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: value 0 is no denominator, 100 is used"
+        "P-AXIS-00338 vorsteuer.jerk_fact_denom of /x: value 0 is not a valid denominator, 100 is used"
     ),
     "vorsteuer: {vs_v_faktor: 6, vs_v_nenner: 5}": (
         "P-AXIS-00228 vorsteuer.vs_v_faktor of /x: weight 1.2 of the feedforward is above 1, the axis leads its setpoint"
@@ -237,8 +237,8 @@ NOTICES = {
     ),
     "kenngr: {antr_typ: 3}, vorsteuer: {vorsteuerung: VEL | ADD_ACC}, simulation: {drive_kv: 900}, "
     "antr: {telegram: {commands: [XERR, M_ADD1]}}": (
-        "P-SIM-00019 simulation.drive_kv of /x: gain 9 1/s of the drive is not the 10 1/s of P-AXIS-00099 by which "
-        "feedforward becomes a position; a lag stays"
+        "P-SIM-00019 simulation.drive_kv of /x: gain 9 1/s of the drive is not the 10 1/s of P-AXIS-00099 with which "
+        "feedforward becomes a position; a lag remains"
     ),
     "frict_comp: {position_delay: 30}": (
         "P-COMP-00043 frict_comp.position_delay of /x: value 30 is above the 10 of the manual, accepted"
@@ -315,7 +315,7 @@ def test_torque_words_that_are_too_short(telegram: str) -> None:
     scale = "v_reso_num: 10000, v_reso_denom: 10000"
     section = f"{SERCOS}, {FINE}, {scale}, telegram: {{{telegram}}}}}, {AXIS_WITH_INERTIA}, {more}"
     start = "P-AXIS-00325 antr.torque_scale_num of /x: the 16 bits of the "
-    assert notices(section) == [f"{start}{text}, what is above is cut off" for text in texts]
+    assert notices(section) == [f"{start}{text}; more is cut off" for text in texts]
 
 
 def test_torque_words_that_are_long_enough() -> None:
@@ -327,7 +327,7 @@ def test_torque_words_that_are_long_enough() -> None:
     motor = "feed_const_num: 100000, telegram: {commands: [S-0-0081]}, v_reso_denom: 10"
     assert notices(f"{SERCOS}, {FINE}, {motor}}}, {more}".replace("load: 1,", "load: 0.002,")) == [
         "P-AXIS-00325 antr.torque_scale_num of /x: the 16 bits of the additive torque command carry 1.31068 Nm, less "
-        "than the 2.51327 Nm of a_max and the friction table, what is above is cut off"
+        "than the 2.51327 Nm of a_max and the friction table; more is cut off"
     ]
 
 
@@ -336,7 +336,7 @@ def spindle_notices(s: str) -> list[str]:
     return [str(notice).split(": ", 1)[1] for notice in load_machine(text, "m.yaml").warnings]
 
 
-def test_all_gears_of_a_spindle_are_looked_at() -> None:
+def test_all_gears_of_a_spindle_are_checked() -> None:
     """The second one is unstable, and too fast for the DA word."""
     gears = 'getriebe: {"0": {kv: 5000}, "1": {kv: 300000}}'
     assert spindle_notices(gears) == [
@@ -351,7 +351,7 @@ def test_all_gears_of_a_spindle_are_looked_at() -> None:
     ]
 
 
-def test_a_gain_of_the_drive_is_told_once() -> None:
+def test_a_gain_of_the_drive_is_reported_once() -> None:
     assert spindle_notices(
         'kenngr: {antr_typ: 3}, simulation: {drive_kv: 300000}, getriebe: {"0": {kv: 9}, "1": {kv: 9}}'
     ) == [
@@ -398,7 +398,7 @@ def test_a_torque_scaling_without_reference_does_not_matter_where_no_torque_goes
         "vorsteuer: {vorsteuerung: VEL}, simulation: {drive_kv: 900}",
     ],
 )
-def test_nothing_to_notice(section: str) -> None:
+def test_no_notice(section: str) -> None:
     assert notices(section) == []
 
 
@@ -469,7 +469,7 @@ def test_a_misprinted_name_of_the_manual_leads_to_the_right_one() -> None:
     assert "did you mean vorsteuer.jerk_fact_num (P-AXIS-00337)?" in str(refusal.value)
 
 
-def test_an_object_in_the_wrong_telegram_is_told_where_it_stands() -> None:
+def test_an_object_in_the_wrong_telegram_is_reported_at_its_place() -> None:
     """The list line of the manual, antr.sercos.at[0].ident_nr 37 beside mdt[0].nc_ref S_0_0037, below other lists."""
     text = (
         'kenngr: {antr_typ: 2}\n    antr:\n      telegram: {feedback: [S-0-0051]}\n      sercos:\n        mdt: {"0": {ident_len: 4, nc_ref: S_0_0037}}\n'
@@ -486,7 +486,7 @@ def test_an_object_in_the_wrong_telegram_is_told_where_it_stands() -> None:
 
 
 @pytest.mark.parametrize(
-    ("x", "told"),
+    ("x", "reported"),
     [
         ("getriebe: {'0': {gear_fact_num: 3}}", True),
         ("getriebe: {'0': {gear_fact_denom: 2}}", True),
@@ -494,11 +494,11 @@ def test_an_object_in_the_wrong_telegram_is_told_where_it_stands() -> None:
         ("getriebe: {'0': {gear_fact_num: 3}}, antr: {feed_const_num: 50000}", False),
     ],
 )
-def test_a_gear_ratio_without_feed_constant_is_told(x: str, told: bool) -> None:
+def test_a_gear_ratio_without_feed_constant_is_reported(x: str, reported: bool) -> None:
     text = (
         "without effect, there is no feed constant (P-AXIS-00362 and P-AXIS-00363 are 1); the resolution is "
         "P-AXIS-00234/00233"
     )
     found = [notice for notice in notices(x) if "gear_fact" in notice]
     name = "P-AXIS-00511 getriebe[0].gear_fact_num" if "num: 3" in x else "P-AXIS-00512 getriebe[0].gear_fact_denom"
-    assert found == ([f"{name} of /x: {text}"] if told else [])
+    assert found == ([f"{name} of /x: {text}"] if reported else [])

@@ -1,4 +1,4 @@
-"""declarations.yaml itself: every entry is whole, every default is legal, every limit exists."""
+"""declarations.yaml itself: every entry is complete, every default is legal, every limit exists."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What nodes declare in ROS."""
+"""Descriptors with which nodes declare their parameters in ROS."""
 
 import pytest
 

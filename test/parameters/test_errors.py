@@ -1,4 +1,4 @@
-"""Every way in which a machine file can be wrong, word for word."""
+"""Every error of a machine file, word for word."""
 
 from pathlib import Path
 
@@ -80,7 +80,7 @@ CASES = {
     "section no mapping": (MACHINE + "/x: 3\n", "P-ERR-25001 m.yaml:2:5: section /x must be a mapping" + END),
     "no ros__parameters": (
         AXES_ONLY + "/x: {kopf: {achs_nr: [1]}}\n",
-        "P-ERR-25001 m.yaml:2:6: section /x has kopf where ros__parameters must stand" + END,
+        "P-ERR-25001 m.yaml:2:6: section /x has kopf where ros__parameters is expected" + END,
     ),
     "ros__parameters no mapping": (
         AXES_ONLY + "/x: {ros__parameters: [1, {a: 2}]}\n",
@@ -88,7 +88,7 @@ CASES = {
     ),
     "duplicate section": (
         AXES_ONLY + "/x: {}\nx: {}\n",
-        "P-ERR-25002 m.yaml:3:1: section /x stands twice, first in line 2" + END,
+        "P-ERR-25002 m.yaml:3:1: section /x is given twice, first in line 2" + END,
     ),
     "duplicate key": (
         axis("{kopf: {achs_nr: 1},\n  kopf.achs_nr: 2}"),
@@ -261,9 +261,9 @@ CASES = {
         "P-ERR-25008 m.yaml:2:41: axis list, P-AXIS-00018 kenngr.achs_typ of /x: value 'ROTARY' has 'ROTARY', "
         "which is none of ACHSTYP_TRANSLATOR, ACHSTYP_ROTATOR, ACHSTYP_SPINDEL" + END,
     ),
-    "number of no constant": (
+    "number without a constant": (
         axis("{kenngr.achs_typ: 3}"),
-        "P-ERR-25008 m.yaml:2:41: axis list, P-AXIS-00018 kenngr.achs_typ of /x: value 3 is made of none of "
+        "P-ERR-25008 m.yaml:2:41: axis list, P-AXIS-00018 kenngr.achs_typ of /x: value 3 is none of "
         "ACHSTYP_TRANSLATOR 0x1, ACHSTYP_ROTATOR 0x2, ACHSTYP_SPINDEL 0x4" + END,
     ),
     "wrong flag": (
@@ -273,7 +273,7 @@ CASES = {
     ),
     "bits without flag": (
         channel("m_synch.8: 0x20012"),
-        "P-ERR-25008 m.yaml:4:16: channel list, P-CHAN-00041 m_synch[8] of /ch: value 131090 is made of none of "
+        "P-ERR-25008 m.yaml:4:16: channel list, P-CHAN-00041 m_synch[8] of /ch: value 131090 is not a combination of "
         "NO_SYNCH 0x0, MOS 0x1, MVS_SVS 0x2, MVS_SNS 0x4, MNS_SNS 0x8, MNE_SNS 0x20, MVS_SLM 0x4000, MVS_SLP 0x8000, "
         "PLC_INFO 0x20000" + END,
     ),
@@ -385,17 +385,17 @@ CASES = {
     "wrong main spindle": (
         channel("spindel.0.log_achs_nr: 3", "spdl_anzahl: 1", "main_spindle_ax_nr: 1"),
         "P-ERR-25013 m.yaml:6:25: channel list, P-CHAN-00051 main_spindle_ax_nr of /ch: "
-        "value 1 is none of the channel's spindles (3)" + END,
+        "value 1 is not one of the channel's spindles (3)" + END,
     ),
     "no such axis": (
         channel("gruppe.0.achse.0: {log_achs_nr: 9, bezeichnung: X}"),
         "P-ERR-25014 m.yaml:4:37: channel list, P-CHAN-00035 gruppe[0].achse[0].log_achs_nr of /ch: "
-        "value 9 is no logical axis number of the machine (1 /x, 2 /y, 3 /s)" + END,
+        "value 9 is not a logical axis number of the machine (1 /x, 2 /y, 3 /s)" + END,
     ),
     "no such axis, no axes": (
         "/machine: {ros__parameters: {channels: [ch]}}\n/ch: {ros__parameters: {gruppe.0.achse.0.log_achs_nr: 9}}\n",
         "P-ERR-25014 m.yaml:2:55: channel list, P-CHAN-00035 gruppe[0].achse[0].log_achs_nr of /ch: "
-        "value 9 is no logical axis number of the machine (none)" + END,
+        "value 9 is not a logical axis number of the machine (none)" + END,
     ),
     "axis without number": (
         channel("gruppe.0.achse.0: {bezeichnung: X}"),
@@ -414,7 +414,7 @@ CASES = {
     "unit name in capitals": (
         "/machine: {ros__parameters: {axes: [X]}}\n",
         "P-ERR-25015 m.yaml:1:36: machine list, P-MACH-00005 axes of /machine: "
-        "unit name 'X' must be small letters, digits and _, a letter first" + END,
+        "unit name 'X' must be lower-case letters, digits and _, beginning with a letter" + END,
     ),
     "node name that is no spindle name": (
         "/machine: {ros__parameters: {channels: [ch, ch2], spindles: [main, tool]}}\n"

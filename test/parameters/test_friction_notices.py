@@ -1,4 +1,4 @@
-"""Friction tables that a machine file may have, but that do not compensate what they should. Lines word for word."""
+"""Notices about friction tables that do not compensate what they should, word for word."""
 
 from __future__ import annotations
 
@@ -49,13 +49,13 @@ def changed(old: str, new: str) -> str:
             "out: 278",
             "out: -278",
             "in: 1000, out: ",
-            "P-COMP-00047 frict_comp.table[2].out of /x: current -278 is negative, it brakes as the friction does",
+            "P-COMP-00047 frict_comp.table[2].out of /x: current -278 is negative, it brakes like the friction",
         ),
         (
             "table_entries: 9",
             "table_entries: 7",
             "table_entries: ",
-            "P-COMP-00042 frict_comp.table_entries of /x: value 7 leaves table[7], table[8] out of use",
+            "P-COMP-00042 frict_comp.table_entries of /x: value 7 leaves table[7], table[8] unused",
         ),
         (
             "mode: 3",
@@ -94,7 +94,7 @@ def test_a_force_of_a_linear_motor() -> None:
     assert warnings(f"{text}}}}}\n") == []  # nobody said what the motor has
 
 
-def test_a_wrong_index_is_told_where_the_number_of_entries_stands() -> None:
+def test_a_wrong_index_is_reported_at_the_number_of_entries() -> None:
     machine = changed('"2": {', '"22": {')
     with pytest.raises(ParameterError) as caught:
         load_machine(machine, "m.yaml")
@@ -111,5 +111,5 @@ def test_a_table_that_is_off_needs_no_remark(old: str, new: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["mill", "friction"])
-def test_the_examples_are_fine(name: str) -> None:
+def test_the_examples_have_no_notices(name: str) -> None:
     assert not [text for text in read_machine(CONFIG / f"{name}.yaml").warnings if "frict_comp" in str(text)]

@@ -1,4 +1,4 @@
-"""ids.py: made from the declarations, and used in place of written ids."""
+"""ids.py: made from the declarations, and used instead of literal ids."""
 
 import ast
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What is said to a change of a parameter while the node runs."""
+"""Answers to a change of a parameter while the node runs."""
 
 import pytest
 

@@ -130,7 +130,7 @@ def test_contradictions(case: str) -> None:
 def test_a_curve_that_is_not_configured(kind: int, names: tuple[str, str]) -> None:
     curve = {1: "hyperbola", 3: "asynchronous"}[kind]
     assert problems(f"getriebe.0.beschl_kennlinie.typ: {kind}") == [
-        f"P-ERR-25009 m.yaml:2:1: axis list, {name} of /s: value 0 makes no {curve} curve (P-AXIS-00202){END}"
+        f"P-ERR-25009 m.yaml:2:1: axis list, {name} of /s: value 0 gives no {curve} curve (P-AXIS-00202){END}"
         for name in names
     ]
 
@@ -148,7 +148,7 @@ def test_the_sign_of_b3_in_the_manuals_hyperbola_makes_a_step() -> None:
         f"getriebe.0: {{{LIMITS}, beschl_kennlinie: {{{HYPERBOLA.replace('2.857142E-2', '-2.857142E-2')}}}}}"
     )
     assert text.partition(": ")[2] == (
-        "P-AXIS-00026 getriebe[0].beschl_kennlinie.b1 of /s: the hyperbola begins with 16271.2 °/s², P-AXIS-00007 is "
+        "P-AXIS-00026 getriebe[0].beschl_kennlinie.b1 of /s: the hyperbola starts with 16271.2 °/s², P-AXIS-00007 is "
         "16000 °/s²: a step in the curve"
     )
 

@@ -95,12 +95,12 @@ def test_values_of_a_gear_in_kernel_units() -> None:
 @pytest.mark.parametrize(
     ("drive", "limit"), [(1, 0.2), (2, math.inf), (3, 0.2), (4, 0.2), (6, 0.2), (7, math.inf), (16, math.inf)]
 )
-def test_the_control_limit_is_watched_for_analogue_drives(drive: int, limit: float) -> None:
+def test_the_control_limit_is_monitored_for_analogue_drives(drive: int, limit: float) -> None:
     parameters = "getriebe.0: {vb_regelgrenze: 200, vb_reflow: 100}"
     assert spindle(f"kenngr.antr_typ: {drive}, {parameters}").gears[1].control_limit == limit
 
 
-def test_a_control_limit_of_0_is_none() -> None:
+def test_a_control_limit_of_0_means_none() -> None:
     assert gear("vb_regelgrenze: 0").control_limit == math.inf
 
 
@@ -125,7 +125,7 @@ def test_modes_of_operation() -> None:
         ("OPEN_POSITION_LOOP_NO_FEEDBACK", "POSITION", True, "NONE"),
     ],
 )
-def test_the_ways_to_acknowledge_a_speed(mode: str, telegram: str, open_loop: bool, feedback: str) -> None:
+def test_feedback_that_acknowledges_a_speed(mode: str, telegram: str, open_loop: bool, feedback: str) -> None:
     view = spindle(
         f"antr.operation_mode: {mode}, simulation.telegram: {telegram}, getriebe.0: {{wegaufz: 1, wegaufn: 1}}"
     )

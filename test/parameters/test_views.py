@@ -1,4 +1,4 @@
-"""Typed views: conversions to the digit, defaults, who belongs to whom."""
+"""Typed views: conversions to the digit, defaults, members of channels."""
 
 import math
 import pickle
@@ -15,7 +15,7 @@ from cnc_ptp.parameters import (
     Synchronisation,
     load_machine,
 )
-from cnc_ptp.parameters.units import to_kernel
+from cnc_ptp.parameters.list_units import to_kernel
 from cnc_ptp.parameters.view.encoder import resolution
 
 NONE = Synchronisation.NO_SYNCH
@@ -132,7 +132,7 @@ def test_resolution_of_the_feedforward_manual() -> None:
     assert machine.axes["x"].encoder_increment == 0.0001 / 62.91456
 
 
-def test_resolution_by_increments_per_way() -> None:
+def test_resolution_by_increments_per_distance() -> None:
     assert axis("getriebe.0: {wegaufz: 2, wegaufn: 5}").encoder_increment == 0.00025
     assert axis("getriebe.0: {wegaufz: 2, wegaufn: 5}, simulation.encoder: 0").encoder_increment == 0.0
 
@@ -211,7 +211,7 @@ def test_notice_of_a_conveyor_without_a_range(parameters: str, texts: list[str])
 
 @pytest.mark.parametrize("mode", ["0x1", "0x404"])
 def test_a_turntable_may_have_soft_limits_without_effect(mode: str) -> None:
-    """Only a linear axis is told: of a turntable everybody knows that it is endless."""
+    """Only a linear axis gets a notice: everybody knows that a turntable is endless."""
     axis(f"kenngr: {{achs_typ: ACHSTYP_ROTATOR, achs_mode: {mode}, swe_neg: -10, swe_pos: 10}}")
 
 
@@ -278,13 +278,13 @@ def test_warnings() -> None:
     assert tuple(map(str, load(f"/x: {{ros__parameters: {{{text}}}}}", axes=["x"]).warnings)) == (
         "m.yaml:2:45: P-AXIS-00179 kenngr.swe_toleranz of /x: accepted, but without effect in this version",
         "m.yaml:2:91: P-AXIS-00168 getriebe[0].slep_max of /x: "
-        "limit 20 mm is not above vb_max / kv, the 20 mm that P-AXIS-00212 brings",
+        "limit 20 mm is not above vb_max / kv, the 20 mm expected at P-AXIS-00212",
     )
 
 
-def test_units_of_which_the_file_says_nothing_but_their_names() -> None:
+def test_units_without_a_section() -> None:
     text = "/machine:\n  ros__parameters:\n    channels: [ch]\n    axes: [x, q]\n    spindles: [s]\n/x:\n/ch: {}\n"
-    behind = "has no section in the file, it has the default of every parameter"
+    behind = "has no section in the file, all its parameters have their defaults"
     assert tuple(map(str, load_machine(text, "m.yaml").warnings)) == (
         f"m.yaml:4:11: P-MACH-00005 axes of /machine: axis /q {behind}",
         f"m.yaml:5:15: P-MACH-00006 spindles of /machine: spindle /s {behind}",

@@ -109,7 +109,7 @@ def test_a_run_of_fixed_duration() -> None:
 )  # fmt: skip
 def test_a_program_that_nobody_will_help_is_aborted(program: str, scenario: str, reason: str) -> None:
     bench = MachineBench(program, scenario).run()
-    text = f"channel channel waits {reason}, but the scenario is through"
+    text = f"channel channel waits {reason}, but the scenario is finished"
     assert bench.errors() == [f"P-ERR-22014 plc plc: {text}; everything is stopped and the run ends"]
     assert bench.failed and bench.last("channel").done and bench.last("channel").state[-1] == C.READY
     assert 10_000 < len(bench.column("x", "state")) < 12_000
@@ -134,7 +134,9 @@ def test_a_run_with_open_commands_of_the_plc_is_no_success(override: int, orders
     percent = f"- {{at: 0, to: s, do: set_override, percent: {override}}}"
     scenario = f"{percent}\n- {{at: 0.1, to: s, do: {orders}, source: plc}}"
     bench = MachineBench(None, scenario, machine=machine).run()
-    text = f"plc plc: spindle s still has {reason}, but the scenario is through; everything is stopped and the run ends"
+    text = (
+        f"plc plc: spindle s still has {reason}, but the scenario is finished; everything is stopped and the run ends"
+    )
     assert bench.errors() == [f"P-ERR-22014 {text}"] and bench.failed
     assert bench.last("s").set_speed_rpm[-1] == 0.0
 

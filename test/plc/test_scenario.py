@@ -164,7 +164,7 @@ FAULTS = [
         "- {at: 0, to: x, do: couple, master: y, ratio: 1}",
         "axis x: couple refused: unknown argument 'ratio'; nothing was changed. Known: factor, master",
     ),
-    ("- {at: 0, at: 1, to: x, do: stop}", "'at' stands twice in the entry"),
+    ("- {at: 0, at: 1, to: x, do: stop}", "'at' appears twice in the entry"),
     ("- {at: !!int abc, to: x, do: stop}", "a value cannot be read: invalid literal for int() with base 10: 'abc'"),
     ("- {at: 0, to: x, do: stop, [1]: 2}", "a value cannot be read: found unhashable key"),
     (

@@ -11,7 +11,7 @@ from machine_support import MILL, MachineBench, spindle_bench, spindle_parameter
 from spindle_support import two_gears
 
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.plc.spindle_groups import spindle_answers
+from cnc_ptp.plc.spindle_answers import spindle_answers
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CycleTick, SpindleBlock
 from cnc_ptp.spindle.spindle_unit import SpindleUnit
@@ -316,7 +316,9 @@ def test_a_chain_is_not_granted_at_either_end() -> None:
 
 def test_a_master_that_sends_nothing_is_not_granted() -> None:
     answers = spindle_answers({"t": spindle_block("t", "s")}, changes_gears=True)
-    assert [answer.arguments for answer in answers] == [{"granted": False, "reason": "nothing comes from spindle s"}]
+    assert [answer.arguments for answer in answers] == [
+        {"granted": False, "reason": "nothing is published by spindle s"}
+    ]
 
 
 def spindle_block(name: str, wanted: str) -> SpindleBlock:

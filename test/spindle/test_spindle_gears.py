@@ -301,7 +301,7 @@ def test_a_run_that_waits_for_the_gear_for_ever_is_aborted() -> None:
     )
     run = MachineBench(scenario=scenario, machine=replace(machine, spindles={"s": spindle})).run()
     assert run.errors()[0] == (
-        "P-ERR-22014 plc plc: spindle s waits for the PLC to change to gear 2, but the scenario is through; everything is "
+        "P-ERR-22014 plc plc: spindle s waits for the PLC to change to gear 2, but the scenario is finished; everything is "
         "stopped and the run ends"
     )
 

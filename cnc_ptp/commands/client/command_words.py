@@ -58,7 +58,7 @@ def _split(where: str, word: str, known: Arguments) -> tuple[str, str]:
 
 
 def _value(name: str, text: str, argument: Argument) -> Any:
-    """The text as what the argument is; unchanged where it is no such thing, for the check to tell."""
+    """The text as what the argument is; unchanged if it is no such thing, for the check to report."""
     try:
         if argument.kind == "number":
             return float(text)

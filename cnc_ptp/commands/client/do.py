@@ -16,7 +16,7 @@ from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import NO_ANSWER, MachineClient, arguments_of, connected
 
 BEGINNINGS = ("move_absolute", "move_relative", "move_modulo", "new_target", "new_velocity_and_target", "start", "mdi")
-"""Commands of which a stop before the end is a failure."""
+"""Commands for which a stop before the end is a failure."""
 
 
 def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
@@ -43,10 +43,10 @@ def do(unit: str, command: str, words: Sequence[str], wait: bool) -> int:
 
 
 class Waiting:
-    """Waits until a unit has done what it was told."""
+    """Waits until a unit has carried out a command."""
 
     def __init__(self, client: MachineClient, unit: str, *, whole: bool) -> None:
-        """`whole`: what was begun is to come to its end; a stop on the way is a failure."""
+        """`whole`: the motion or program must be finished; a stop before its end is a failure."""
         self._whole = whole
         self._client = client
         self._unit = unit
@@ -59,7 +59,7 @@ class Waiting:
                 self._client.spin_for(0.02)
             if end.given:
                 name = signal.Signals(end.number).name
-                print(f"{self._unit}: not waited for any more ({name}); it goes on")
+                print(f"{self._unit}: no longer waited for ({name}); it continues")
                 return 128 + end.number
         if not self._settled_after(cycle):
             Console(stderr=True, highlight=False).print(f"{self._unit}: {GONE_TEXT}", style="red")

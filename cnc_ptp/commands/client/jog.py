@@ -25,9 +25,9 @@ PERIOD = 0.05
 """Seconds between two messages."""
 JOGS = state_name(AxisStateCode.CONTINUOUS_MOTION)
 DELAY = 0.03
-"""Seconds from a look at the axis to the effect of a message."""
+"""Seconds from a block of the axis to the effect of a message."""
 STEADY = 1.001
-"""A speed that grows by less from block to block has come to its end."""
+"""A speed that grows by less from block to block has reached its final value."""
 START = 1.0
 """Seconds after which an axis that does not move is given up."""
 STOP = 30.0
@@ -35,9 +35,9 @@ STOP = 30.0
 
 
 def jog(axis: str, direction: str, speed: float, distance: float | None, seconds: float | None) -> int:
-    """Jogs until Ctrl-C, a distance (mm, deg) or a time (s), and waits until the axis stands.
+    """Jogs until Ctrl-C, a distance (mm, deg) or a time (s), and waits until the axis is at a standstill.
 
-    Status 1 when the axis refuses, is in error, or does not stand in the end.
+    Status 1 when the axis refuses, is in error, or is not at a standstill in the end.
     """
     with connected() as client, EndRequest() as end:
         client.require_unit(axis, ("axis",))
@@ -49,7 +49,7 @@ def jog(axis: str, direction: str, speed: float, distance: float | None, seconds
 
 
 class Jogger:
-    """Sends jog messages, and looks at what the axis makes of them."""
+    """Sends jog messages and follows the axis."""
 
     def __init__(self, client: MachineClient, axis: str, velocity: float) -> None:
         self._client = client
@@ -79,8 +79,8 @@ class Jogger:
         deadline = math.inf if seconds is None else begun + seconds
         while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
             self._stalled = time.monotonic() - sent > SILENCE
-            if self._stalled:  # the machine has ended the jog; that this process goes on is no reason to move again
-                self.report(f"this command has stood still for more than {SILENCE:g} s; the jog has ended")
+            if self._stalled:  # the machine has ended the jog; that this process continues is no reason to move again
+                self.report(f"this command was suspended for more than {SILENCE:g} s; the jog has ended")
                 return
             sent = time.monotonic()
             self._send(self._velocity)
@@ -93,7 +93,7 @@ class Jogger:
                 return
 
     def end(self) -> int:
-        """Ends the jog, waits until the axis stands, tells where; the exit status."""
+        """Ends the jog, waits for standstill, prints the position; returns the exit status."""
         if self._ignored:
             return self.report("the jog is ignored: another client jogs the axis, or the machine is in free run")
         cycle = self._place().cycle
@@ -140,7 +140,7 @@ class Jogger:
 
 
 class Way:
-    """How far to go: the ramp at the end takes as much way as the one at the begin has taken."""
+    """Distance of a jog: the ramp at the end is as long as the one at the start was."""
 
     def __init__(self, distance: float | None) -> None:
         """`distance` in mm (deg), None = any."""

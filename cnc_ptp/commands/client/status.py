@@ -18,7 +18,7 @@ from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connect
 
 
 def status() -> int:
-    """Prints one table. Status 1 when a unit is in error or says nothing."""
+    """Prints one table. Status 1 when a unit is in error or silent."""
     with connected() as client:
         units = shown_units(client, ())
         blocks = client.look_at(units)
@@ -82,7 +82,7 @@ class Looker:
             self._live.stop()
 
     def show(self) -> None:
-        """What is the newest now; lines only of what is new."""
+        """Shows the newest blocks; lines only of new ones."""
         views = self._blocks.views()
         cycle = max((view.cycle for view in views), default=-1)
         new = cycle != self._cycle

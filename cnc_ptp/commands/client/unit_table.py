@@ -23,7 +23,7 @@ def wide_console() -> Console:
 
 
 def unit_table(views: Iterable[UnitView], silent: Sequence[str] = ()) -> Table:
-    """A row a unit; `silent`: units that have said nothing."""
+    """One row per unit; `silent`: units that have published nothing."""
     table = Table(box=None, padding=(0, 2, 0, 0), pad_edge=False)
     for number, column in enumerate(COLUMNS):
         table.add_column(column, justify="left" if number < 2 else "right", no_wrap=number != 4)

@@ -1,4 +1,4 @@
-"""What an identification works on: an axis of a machine file, and its motion from a recording or a run of its own."""
+"""Input of an identification: an axis of a machine file, and its motion from a recording or a run of its own."""
 
 from __future__ import annotations
 
@@ -61,13 +61,13 @@ class AxisData:
 
     @property
     def mean_velocity(self) -> bool:
-        """The telegram carries no actual velocity, so it is the way of the last cycle."""
+        """The telegram carries no actual velocity, so it is the distance of the last cycle by its time."""
         drive = self.axis.control.drive
         return not drive.ideal and "velocity" not in drive.feedback
 
     @property
     def half_digit(self) -> float:
-        """Half a digit of the actual torque, Nm (N); 0.0 where it comes in no digits."""
+        """Half a digit of the actual torque, Nm (N); 0.0 if it does not come in digits."""
         control = self.axis.control
         return 0.0 if control.drive.ideal or not control.scaling.torque else 0.5 / abs(control.scaling.torque)
 
@@ -82,7 +82,7 @@ class AxisData:
 
     @property
     def room(self) -> Room:
-        """Where and how fast the axis may be moved for a trial: the lag v/Kv stays well below what is monitored."""
+        """Travel and speed that the axis may use for a trial: the lag v/Kv stays well below what is monitored."""
         axis, monitoring = self.axis, self.axis.control.monitoring
         velocity, limited_by = axis.max_velocity, ids.DYNAMIK_VB_MAX
         if axis.reference_velocity < velocity:

@@ -124,7 +124,7 @@ def run_variants(
 def check_numbers(
     *, radius: float, feed: float, centre: tuple[float, float] | None, magnification: float | None
 ) -> None:
-    """Raises CncError 27020 for what is no number of a circle."""
+    """Raises CncError 27020 for a number outside its range."""
     numbers = [("radius", radius, SMALLEST_RADIUS, "mm"), ("feed", feed, 0.0, "mm/min")]
     numbers += [("centre", value, -LARGEST, "mm") for value in centre or ()]
     if magnification is not None:
@@ -153,7 +153,7 @@ def machine_time(program: CircleProgram, feed: float) -> float:
 
 
 def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, float] | None) -> Place:
-    """The axes of the plane in the first channel; the centre is where they stand unless given.
+    """The axes of the plane in the first channel; the centre is their position unless given.
 
     Raises CncError 26112 without channel, 27024 where it has not both axes.
     """
@@ -179,7 +179,7 @@ def find_place(machine: MachineParameters, plane: Plane, centre: tuple[float, fl
 
 
 def variants(feedforward: bool, friction: bool | None, compare: str | None) -> list[Variant]:
-    """What is run: one variant, or off and on of what is compared."""
+    """The variants to run: one, or the compared function off and on."""
     forwards = (False, True) if compare in ("feedforward", "both") else (feedforward,)
     frictions: tuple[bool | None, ...] = (False, True) if compare in ("friction", "both") else (friction,)
     return [Variant(forward, compensation) for compensation in frictions for forward in forwards]
@@ -223,7 +223,7 @@ def run_variant(
     record: str | None,
     machine_text: str,
 ) -> VariantResult | None:
-    """The result of one run, None when it failed (told on standard error)."""
+    """The result of one run, None when it failed (reported on standard error)."""
     job = [
         Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text})),
         Entry(0.0, Command(place.channel, "start", {})),

@@ -1,4 +1,4 @@
-"""What a circle test has found, and how it is told."""
+"""Results of a circle test, and their texts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MAGNIFICATIONS = (1.0, 2.0, 5.0)
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """What is switched: feedforward (G135, G137) and friction compensation (None: as the machine has it)."""
+    """Switched functions: feedforward (G135, G137) and friction compensation (None: as the machine has it)."""
 
     feedforward: bool
     friction: bool | None
@@ -125,7 +125,7 @@ def comparison_lines(test: CircleTest) -> Iterator[str]:
 
 
 def _change(before: float, after: float) -> str:
-    """How often one is in the other, and in which way; against nothing that is no number."""
+    """Ratio of the larger to the smaller and its direction; a zero has no ratio."""
     small, large = sorted((before, after))
     if large == small or large < NOTHING or (small >= NOTHING and round(large / small, 1) == 1.0):
         return "as large"

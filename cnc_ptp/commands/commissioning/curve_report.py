@@ -1,4 +1,4 @@
-"""What `cnc_ptp curve fit` tells: coefficients, a table of the points, and the lines of the machine file."""
+"""Output of `cnc_ptp curve fit`: coefficients, a table of the points, and the lines of the machine file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def title(fit: CurveFit) -> str:
 
 
 def curve_lines(fit: CurveFit, *, usable: bool) -> Iterator[str]:
-    """Title, coefficients, points; what it means for a spindle where one can run on the curve."""
+    """Title, coefficients, points; run-up of a spindle if one can run on the curve."""
     parameters = fit.parameters
     yield title(fit)
     yield LAWS[parameters.kind]
@@ -71,11 +71,11 @@ def run_up_time(fit: CurveFit) -> float:
 
 
 def warning_lines(fit: CurveFit) -> Iterator[str]:
-    """What deserves a look."""
+    """Warnings about the fit."""
     for point, miss in zip(fit.points, fit.misses(), strict=True):
         if abs(miss) > LARGE_MISS * point.acceleration:
             percent = 100.0 * miss / point.acceleration
-            yield f"warning: the curve lies {percent:+.1f} % beside the point at {point.speed:g} °/s"
+            yield f"warning: the curve lies {percent:+.1f} % off the point at {point.speed:g} °/s"
     minimum, last = fit.parameters.minimum, fit.points[-1]
     for point in fit.points:
         if point.acceleration < minimum:
@@ -112,11 +112,11 @@ def curve_yaml(fit: CurveFit, spindle: str, gear: int) -> str:
     return "\n".join([*lines, ""])
 
 
-# ---------------------------------------------------------------- what is drawn
+# ---------------------------------------------------------------- drawn curve
 
 
 def drawn_curve(fit: CurveFit) -> tuple[Array, Array]:
-    """Speeds and accelerations of the curve with its floor; nan beside a pole."""
+    """Speeds and accelerations of the curve with its floor; nan next to a pole."""
     speeds = np.linspace(fit.parameters.limit_speed, fit.top_speed, DRAWN)
     accelerations = [fit.acceleration(speed) for speed in speeds]
     highest = 2.0 * max(fit.parameters.constant, *(point.acceleration for point in fit.points))

@@ -1,4 +1,4 @@
-"""What `cnc_ptp identify dynamics` tells: what was found, and the lines of the machine file with their reasons."""
+"""Output of `cnc_ptp identify dynamics`: the results, and the lines of the machine file with their reasons."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PER_SECOND = 100.0
 
 
 def found_lines(data: AxisData, fit: DriveFit, gain: GainProposal, inertia: InertiaFit | None) -> Iterator[str]:
-    """What was found, and what deserves a look."""
+    """Results and warnings."""
     found = {
         "time constant Ta": f"{1e3 * fit.time_constant:.3f} ± {1e3 * fit.deviation:.3f} ms",
         "dead time": f"{fit.dead_cycles} cycles ({1e3 * fit.dead_time:g} ms){others(fit)}",
@@ -50,12 +50,12 @@ def others(fit: DriveFit) -> str:
 
 
 def rough(data: AxisData, fit: DriveFit) -> str | None:
-    """Why the results are rough; None where they are not."""
+    """Why the results are rough; None if they are not."""
     reasons, reachable = [], highest_velocity(data.room, DYNAMIC_STEADY)
     if fit.misfit > ROUGH_MISFIT:
         reasons.append(
             f"misfit {100.0 * fit.misfit:.2f} % (above {100.0 * ROUGH_MISFIT:g} %: friction or limits shape the motion "
-            "beside the drive)"
+            "besides the drive)"
         )
     if fit.speed < SLOW * reachable:
         reasons.append(
@@ -68,13 +68,13 @@ def rough(data: AxisData, fit: DriveFit) -> str | None:
 
 
 def warnings(data: AxisData, fit: DriveFit, gain: GainProposal) -> Iterator[str]:
-    """What is wrong with the machine file as it is."""
+    """Warnings about the present machine file."""
     head, kv, reason = f"warning: axis {data.axis.name}:", data.kv, rough(data, fit)
     if reason is not None:
         yield f"warning: {reason}"
     if abs(fit.gain - 1.0) > GAIN_TOLERANCE:
         yield (
-            f"{head} the drive moves {100.0 * (fit.gain - 1.0):+.1f} % beside its command; check the scaling of the "
+            f"{head} the drive moves {100.0 * (fit.gain - 1.0):+.1f} % off its command; check the scaling of the "
             "velocity (P-AXIS-00205, P-AXIS-00206, P-AXIS-00128, P-AXIS-00129)"
         )
     if kv >= gain.limit:
@@ -113,7 +113,7 @@ def dynamics_yaml(data: AxisData, fit: DriveFit, gain: GainProposal, inertia: In
         lines.append(f"        load: {load:.4g}  # {load_unit(data)} ± {deviation:.2g}, from torque over acceleration")
     if data.axis.control.feedforward.mode & ADD_ACC:
         lines.append(
-            "    # vorsteuer: additive torque is in use, P-AXIS-00225/00226 are a weight there and stay as they are"
+            "    # vorsteuer: additive torque is in use, P-AXIS-00225/00226 are a weight there and are unchanged"
         )
     else:
         lines.append(

@@ -1,4 +1,4 @@
-"""What `cnc_ptp identify friction` tells: a table for people, and the lines of the machine file."""
+"""Output of `cnc_ptp identify friction`: a table for people, and the lines of the machine file."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
 
 
 def doubtful(data: AxisData, curve: FrictionCurve) -> str | None:
-    """At which speeds the scatter is large, and why; None where it is not."""
+    """The speeds with a large scatter, and why; None if there are none."""
     points = [point for point in curve.points if point.scatter > LARGE_SCATTER * abs(point.friction)]
     if not points:
         return None
@@ -68,7 +68,7 @@ def speeds_shown(values: Sequence[float]) -> str:
 
 
 def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, source: str) -> str:
-    """The lines to paste into the machine file; what the table does not say stays as the machine has it."""
+    """The lines to paste into the machine file; all else is unchanged."""
     raw, effort = data.raw, data.effort
     scaling = scaling_of(data)
     way = "0.001 deg/s" if data.axis.rotary else "µm/s"
@@ -86,9 +86,9 @@ def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, so
         f"      mode: {MODE}",
         f"      max_points: {friction_table_size(data.raw)}",
         f"      table_entries: {len(table.entries)}",
-        f"      position_delay: {raw.number(ids.FRICT_COMP_POSITION_DELAY)}  # as it was",
-        f"      reversal_lookahead: {raw.number(ids.FRICT_COMP_REVERSAL_LOOKAHEAD)}  # as it was",
-        f"      delay_cycles: {raw.number(ids.FRICT_COMP_DELAY_CYCLES)}  # as it was",
+        f"      position_delay: {raw.number(ids.FRICT_COMP_POSITION_DELAY)}  # unchanged",
+        f"      reversal_lookahead: {raw.number(ids.FRICT_COMP_REVERSAL_LOOKAHEAD)}  # unchanged",
+        f"      delay_cycles: {raw.number(ids.FRICT_COMP_DELAY_CYCLES)}  # unchanged",
         f"      scaling_factor: {table.scaling_factor}",
         "      table:",
     ]

@@ -1,4 +1,4 @@
-"""`cnc_ptp identify friction` and `identify dynamics`: what an axis is, from a run of its own or from a recording."""
+"""`cnc_ptp identify friction` and `identify dynamics`: axis data from a run of its own or from a recording."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def identify_friction(
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
-        trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
+        trace, source = driven, f"from {len(speeds)} speeds in both directions in a run of {machine}"
     curve = friction_curve(trace, settling=timing.settling, half_digit=data.half_digit)
     table = friction_table(curve, scaling_of(data), max_points=friction_table_size(data.raw))
     console = Console(highlight=False, soft_wrap=True)
@@ -102,7 +102,7 @@ def identify_dynamics(
         driven = driven_trace(data, motions, record)
         if driven is None:
             return RUN_FAILED
-        trace, source = driven, f"from {len(speeds)} speeds forth and back in a run of {machine}"
+        trace, source = driven, f"from {len(speeds)} speeds in both directions in a run of {machine}"
     fit = fit_drive(trace)
     gain, inertia = propose_gain(fit), fit_inertia(trace, time_constant=fit.time_constant)
     console = Console(highlight=False, soft_wrap=True)
@@ -113,14 +113,14 @@ def identify_dynamics(
 
 
 def require_velocity_command(data: AxisData) -> None:
-    """Raises CncError 27014 where the drive is not commanded a velocity: then it cannot be told from the motion."""
+    """Raises CncError 27014 if the drive is not commanded a velocity: then the motion does not show the drive's."""
     interface = data.axis.control.drive.interface
     if interface in NO_VELOCITY_COMMAND:
         raise refusal(NO_COMMAND, data.axis.name, f"{NO_VELOCITY_COMMAND[interface]}; nothing was started")
 
 
 def warn_of_cut_recording(data: AxisData) -> None:
-    """On standard error, where the recording is not whole."""
+    """A warning on standard error if the recording is not whole."""
     recorded = data.recorded
     if recorded is not None and not recorded.complete:
         reason = recorded.missing or "its end is missing"
@@ -135,7 +135,7 @@ def check_files(output: str | None, record: str | None, machine: str | None, rec
 
 
 def driven_trace(data: AxisData, motions: Sequence[Motion], record: str | None) -> AxisTrace | None:
-    """The trace of a run, None when it failed (told on standard error)."""
+    """The trace of a run, None when it failed (reported on standard error)."""
     trial, trace = drive(data, motions, label=f"axis {data.axis.name}", record=record)
     if trial.failed:
         trial.print_faults()

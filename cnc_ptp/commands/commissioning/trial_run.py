@@ -1,4 +1,4 @@
-"""Offline runs that are made to be evaluated: what the units did is kept as arrays."""
+"""Offline runs for evaluation: columns of the units are kept as arrays."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ Columns = Mapping[str, npt.NDArray[np.float64]]
 
 @dataclass
 class Trial:
-    """A run: its columns by unit and field (one value a cycle), and what was told of it."""
+    """A run: its columns by unit and field (one value a cycle), and its notes."""
 
     columns: dict[str, Columns] = field(default_factory=dict)
     result: Result = field(default_factory=Result)
 
     @property
     def refusals(self) -> list[Note]:
-        """Commands that were not carried out: then the motion is not the one that was wanted."""
+        """Commands that were not carried out: then the motion is not the intended one."""
         return [note for note in self.result.notes if note.refused]
 
     @property
@@ -125,7 +125,7 @@ class TrialProgress:
             self._progress.stop()
 
     def show(self, outputs: Outputs) -> None:
-        """How far the run is. (The bar draws itself ten times a second, however often it is told.)"""
+        """Progress of the run. (The bar draws itself ten times a second, however often it is updated.)"""
         plc = outputs[PLC].block
         if self._on and isinstance(plc, PlcBlock):
             self._progress.update(self._task, completed=plc.first_cycle + plc.count)

@@ -1,1 +1,1 @@
-"""Commands that show what there is: check, params, report, plot."""
+"""Commands that show programs, parameters and recordings: check, params, report, plot."""

@@ -18,7 +18,7 @@ SPINDLES_WITHOUT_MACHINE = ("S",)
 
 
 def check(program: str, machine: str | None) -> int:
-    """Prints all syntax errors and the first modal one, and what deserves a look in the machine file.
+    """Prints all syntax errors and the first modal one, and the warnings of the machine file.
 
     Without a machine, axes X Y Z and spindle S are taken.
     """
@@ -37,7 +37,7 @@ def check(program: str, machine: str | None) -> int:
 
 
 def print_notices(machine: MachineParameters) -> None:
-    """What deserves a look in a machine file, on standard error."""
+    """Prints the warnings of a machine file on standard error."""
     console = Console(stderr=True, highlight=False, soft_wrap=True)
     for notice in machine.warnings:
         console.print(str(Note(notice.error_id, str(notice))), style="yellow", markup=False)

@@ -27,7 +27,7 @@ def plot(
     axes: Sequence[str],
     output: str | None,
 ) -> int:
-    """Draws the fields `topics`, or the usual ones; without `output` RECORDING.svg beside the recording."""
+    """Draws the fields `topics`, or the usual ones; without `output` RECORDING.svg next to the recording."""
     output = output or str(Path(recording).with_suffix(".svg"))
     check_picture(output, recording=recording)
     whole = read_recording(recording)
@@ -45,7 +45,7 @@ def plot(
 
 
 def rows_of(recorded: Recorded, topics: Sequence[str]) -> list[PlotRow]:
-    """What is to be drawn. Raises CncError 26011 where nothing is."""
+    """The rows to draw. Raises CncError 26011 if there are none."""
     units = axis_units(recorded)
     rows = chosen_rows(recorded, topics, units, torque_units(recorded)) if topics else usual_rows(recorded, units)
     if not rows:

@@ -14,7 +14,7 @@ from cnc_ptp.recording.selection import selected
 
 
 def report(recording: str, output: str, begin: float | None, end: float | None, axes: Sequence[str]) -> int:
-    """Writes the page, of a part if asked for; tells when the recording was cut off."""
+    """Writes the page, of a part if asked for; warns when the recording was cut off."""
     check_page(output, recording=recording)
     whole = read_recording(recording)
     recorded = selected(whole, begin=begin, end=end, units=axes)

@@ -21,12 +21,12 @@ PERIOD = 0.1
 SMALLEST_BAR = 10
 LARGEST_BAR = 30
 QUIET = ("Standstill", "SynchronizedMotion")
-"""States of an axis that need no word where there is little room."""
+"""States of an axis that are left out first when there is little room."""
 KINDS: dict[type, str] = {AxisBlock: "axis", SpindleBlock: "spindle", ChannelBlock: "channel"}
 
 
 class RunProgress:
-    """Shows where a run is, at most ten times a second."""
+    """Shows the progress of a run, at most ten times a second."""
 
     def __init__(self) -> None:
         console = Console(stderr=True)
@@ -54,11 +54,11 @@ class RunProgress:
 
     @property
     def due(self) -> bool:
-        """True when somebody looks and the line is a tenth of a second old."""
+        """True on a terminal when the line is a tenth of a second old."""
         return self._on and time.monotonic() >= self._next
 
     def tell(self, notes: Iterable[Note]) -> None:
-        """Shows what has come to `notes`, above the line: a run that waits for somebody says so at once."""
+        """Shows new `notes` above the line: a run that waits for somebody says so immediately."""
         for note in notes:
             if self._on and note not in self._reported:
                 self._reported.add(note)
@@ -72,14 +72,14 @@ class RunProgress:
             self.show([view_of(n, shown, blocks[n]) for shown in VIEWS for n, kind in kinds.items() if kind == shown])
 
     def show(self, views: Sequence[UnitView]) -> None:
-        """Units in the order in which they are to stand in the line."""
+        """Units in their order in the line."""
         if self.due:
             self._next = time.monotonic() + PERIOD
             self._line.views = views
 
 
 class LiveLine:
-    """One line that fits its terminal: what there is no room for is left out, the least important first."""
+    """One line that fits its terminal: if there is no room, the least important parts are left out first."""
 
     def __init__(self) -> None:
         self.views: Sequence[UnitView] = ()
@@ -99,7 +99,7 @@ class LiveLine:
 
 
 def line_text(views: Sequence[UnitView], seconds: float, width: int) -> str:
-    """The most telling text about the units, `seconds` after the begin, that is at most `width` characters long."""
+    """The most detailed text about the units, `seconds` after the start, of at most `width` characters."""
     if not views:
         return f"the nodes are starting  {clock_text(seconds)}"[:width]
     channels = [view for view in views if view.kind == "channel"]
@@ -128,7 +128,7 @@ def as_many_as_fit(texts: Sequence[str], width: int) -> str:
 
 
 def mover_text(view: UnitView, decimals: int, states: str) -> str:
-    """`states`: all, moving (those that are no matter of course), none."""
+    """`states`: all, moving (those worth a word), none."""
     value = view.speed if view.kind == "spindle" else view.position
     text = f"{view.name.upper()}{value or 0.0:{6 + decimals}.{decimals}f}"
     if view.kind == "spindle":

@@ -47,14 +47,14 @@ def replay_blocks(recorded: Recorded) -> Iterator[tuple[str, CycleBlock]]:
 
 
 def is_refused_coupling(record: CommandRecord, machine: MachineParameters) -> bool:
-    """It changed nothing, and what the PLC had against it is not recorded: fed in again, it might be carried out."""
+    """It changed nothing, and the PLC's reason is not recorded: fed in again, it might be carried out."""
     return not record.accepted and record.command in COUPLINGS and record.target in machine.axes
 
 
 def end_of(recorded: Recorded) -> int:
     """The cycle after the last one. One altered cycle number must not make it endless, so others have to confirm it:
 
-    the ticks, or (units go on to their standstill when the clock is lost) the number of cycles that a unit recorded.
+    the ticks, or (units continue to their standstill when the clock is lost) the number of cycles that a unit recorded.
     """
     confirmed = max((len(rows) for rows in recorded.states.values()), default=0)
     if recorded.ticks is not None and len(recorded.ticks):

@@ -1,4 +1,4 @@
-"""`cnc_ptp run`: the ROS graph, until the job is done."""
+"""`cnc_ptp run`: the ROS graph, until the job is finished."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def run(
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
 
-    `stay`: until it is told to end (Ctrl-C), which is no error where everything stands. `strict`: status 1 also when a
+    `stay`: until Ctrl-C, which is no error when everything is at a standstill. `strict`: status 1 also when a
     command was refused.
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)

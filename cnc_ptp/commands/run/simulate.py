@@ -34,7 +34,7 @@ from cnc_ptp.recording.writer import Recording
 
 @dataclass
 class Result:
-    """What is told at the end of a run."""
+    """Figures for the summary of a run."""
 
     cycles: int = 0
     programs: dict[str, ProgramReport] = field(default_factory=lambda: defaultdict(ProgramReport))
@@ -55,7 +55,7 @@ class Result:
                 self.programs[name].add(block)
             elif isinstance(block, PlcBlock):
                 self.cycles = block.first_cycle + block.count
-                # The PLC knows of a fault a block later, which may not come any more.
+                # The PLC knows of a fault one block later, and that block may no longer come.
                 self.failed = block.run_failed or any(error_of(other.block) for other in outputs.values())
             self.errors += [error_text(event) for event in output.events if event.severity == Severity.ERROR]
             self.refused += sum(not record.accepted for record in output.records)
@@ -92,7 +92,7 @@ def simulate(
                     write(recording, outputs)
                 if end.given and interrupted(offline, outputs, result, end):
                     break
-    except CncError as error:  # of the recording: it cannot be written any more
+    except CncError as error:  # of the recording: it can no longer be written
         print_error(error)
         result.failed = True
     print_summary(parameters, result, time.monotonic() - started, duration)
@@ -101,7 +101,7 @@ def simulate(
 
 
 def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: EndRequest) -> bool:
-    """Has everything stopped on its ramps after the first signal; True when all stands, or at the second signal."""
+    """Has everything stopped on its ramps after the first signal; True at standstill, or at the second signal."""
     if not result.interrupted:
         result.interrupted = end.text("everything stops on its ramps")
         offline.runner(PLC).command(Command(PLC, "stop_all", {}))
@@ -111,7 +111,7 @@ def interrupted(offline: OfflineMachine, outputs: Outputs, result: Result, end: 
 
 
 def write(recording: Recording, outputs: Outputs) -> None:
-    """Records what all units gave for one tick."""
+    """Records the blocks, events and commands of all units for one tick."""
     plc = outputs[PLC].block
     recording.tick(CycleTick(plc.first_cycle, plc.count))
     for name, output in outputs.items():

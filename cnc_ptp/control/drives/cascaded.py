@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import copysign, exp, inf
 
-from cnc_ptp.control.drives.transitions import transition
+from cnc_ptp.control.drives.exact_steps import transition
 from cnc_ptp.parameters.view.control_view import PlantParameters
 
 FINEST = 6

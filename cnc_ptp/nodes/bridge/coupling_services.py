@@ -1,4 +1,4 @@
-"""Services that couple axes. The PLC node answers them for all axes: it alone sees who is whose master already."""
+"""Services that couple axes. The PLC node answers them for all axes: only it knows the present masters of all."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cnc_ptp.protocol.unit import UPSTREAM_LOST
 NEW_RECORDS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 NOT_ANSWERED = 26143
 PATIENCE = 5.0
-"""Seconds after which a call is answered without the axis."""
+"""Seconds after which a call is answered without an answer of the axis."""
 WATCH_PERIOD = 0.25
 
 
@@ -60,7 +60,7 @@ class CouplingServices:
                 service.send_response = partial(self._send, service.send_response)
 
     def _couple(self, axis: str, command: str, request: Any, response: Any) -> Any:
-        """Hands the command on, or fills in why not."""
+        """Passes the command on, or fills in why not."""
         try:
             arguments = self._arguments(command, request)
         except CncError as error:
@@ -110,11 +110,11 @@ class CouplingServices:
 
     def _withdraw(self, call: Call) -> str:
         if self._plc.withdraw(call.command):
-            return "no block has gone out, the command was taken back"
+            return "no block has gone out, the command was withdrawn"
         return "the command has gone out and may still be carried out"
 
     def end(self) -> None:
-        """The run is over: whoever still waits hears of it."""
+        """The run is over: all pending calls are answered."""
         for call in [*self._open]:
             what = f"axis {call.command.target}: {call.command.command}"
             self._answer(call, RUN_OVER, f"{what} without an answer: the run is over")

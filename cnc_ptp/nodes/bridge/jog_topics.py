@@ -1,4 +1,4 @@
-"""Jogging by a topic: an axis moves while messages come, so that a client that is gone leaves nothing moving."""
+"""Jogging by a topic: an axis moves while messages come, so that nothing keeps moving when the client is gone."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SILENCE = f"{PATIENCE * 1000.0:.0f} ms"
 
 
 class JogTopics:
-    """Velocities that clients ask for, axis by axis: what of them is a change, and who has fallen silent.
+    """Velocities that clients ask for, axis by axis: their changes, and clients that have fallen silent.
 
-    Only one client has an axis in hand, until it ends its jog or falls silent; others are ignored. In free run all are:
+    Only one client jogs an axis, until it ends its jog or falls silent; others are ignored. In free run all are:
     a silence in which the clock of the machine runs ahead would be a long motion.
     """
 
     def __init__(self, warn: Callable[[int, str], None]) -> None:
-        """`warn(number, text)`: tells people what happens to their messages, once for each client."""
+        """`warn(number, text)`: publishes what happens to the messages, once for each client."""
         self._warn = warn
         self._reported: set[tuple[int, str, str]] = set()
         self._sequence: dict[tuple[str, str], int] = {}
@@ -35,9 +35,9 @@ class JogTopics:
         self._client: dict[str, str] = {}
 
     def heard(self, axis: str, message: msg.Jog, now: float, *, paced: bool) -> float | None:
-        """The velocity (mm/s, deg/s; 0 ends the jog) to command, None when it is the same still, or does not count.
+        """The velocity (mm/s, deg/s; 0 ends the jog) to command, None when it is unchanged, or does not count.
 
-        A velocity that is no number ends the jog as well: who sends it has lost control. `now` in s; `paced`: the
+        A velocity that is no number ends the jog as well: its sender has lost control. `now` in s; `paced`: the
         machine runs in real time.
         """
         client = message.header.frame_id
@@ -60,7 +60,7 @@ class JogTopics:
         return None if velocity == before else velocity
 
     def fallen_silent(self, now: float) -> list[str]:
-        """Each axis once; its jog ends, and the next message begins a new one."""
+        """Each axis once; its jog ends, and the next message starts a new one."""
         silent = self._silence.fallen_silent(now)
         for axis in silent:
             self._velocity[axis] = 0.0
@@ -77,8 +77,8 @@ class JogTopics:
 
 
 def free_run_text(axis: str) -> str:
-    """The warning that jogs of an axis are not obeyed."""
-    return f"plc: /{jog_topic(axis)} is not obeyed in free run, where {SILENCE} may be a long motion"
+    """The warning that jogs of an axis have no effect."""
+    return f"plc: /{jog_topic(axis)} has no effect in free run, where {SILENCE} may be a long motion"
 
 
 def second_client_text(axis: str, client: str) -> str:

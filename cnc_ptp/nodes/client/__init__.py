@@ -1,1 +1,1 @@
-"""Clients of a running machine: commands for its units, and a look at them."""
+"""Clients of a running machine: commands for its units, and their newest blocks."""

@@ -1,4 +1,4 @@
-"""The newest block of each unit, for people who look at a machine."""
+"""The newest block of each unit, for clients that show a machine."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 
 GONE = 5.0
 """Seconds without a block of any unit after which a machine counts as gone."""
-GONE_TEXT = f"nothing new for {GONE:g} s: the machine does not run any more"
+GONE_TEXT = f"nothing new for {GONE:g} s: the machine no longer runs"
 REMEMBERED = ("axis", "spindle")
 """Kinds of units whose last block a late reader gets, too."""
 
 
 class LatestBlocks:
-    """Keeps the newest block of units; only what is looked at is deserialised: some hundred come a second."""
+    """Keeps the newest block of units; only those that are shown are deserialised: some hundred come a second."""
 
     def __init__(self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str]) -> None:
-        """`kinds`: unit -> kind; the plc is left out. `rotary`: axes that count in degrees."""
+        """`kinds`: unit -> kind; the plc is left out. `rotary`: axes in degrees."""
         self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
         self._rotary = rotary
         self._serialised: dict[str, bytes] = {}
@@ -55,5 +55,5 @@ class LatestBlocks:
         return view_of(unit, kind, block, rotary=unit in self._rotary)
 
     def views(self) -> list[UnitView]:
-        """Of the units that have said something: channels, axes, spindles."""
+        """The blocks of the units that have published: channels, axes, spindles."""
         return [view for view in map(self.view, self._kinds) if view is not None]

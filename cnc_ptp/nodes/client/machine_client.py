@@ -1,4 +1,4 @@
-"""A client of a running machine: finds its units, gives commands, looks at blocks."""
+"""A client of a running machine: finds its units, gives commands, reads blocks."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NO_ANSWER = 26136
 PATIENCE = 5.0
 """Seconds for the machine to be found (DDS announces itself every 3 s at the latest), and for an answer."""
 MARGIN = 1.0
-"""Seconds that a call waits longer than the PLC does, which takes a coupling back that no axis answers (26143)."""
+"""Seconds that a call waits longer than the PLC does, which withdraws a coupling that no axis answers (26143)."""
 UNITS = {"channels": "channel", "axes": "axis", "spindles": "spindle"}
 INTEGER_FIELD = re.compile(r"(u?)int(\d+)")
 AXIS_TYPE = "kenngr.achs_typ"
@@ -45,7 +45,7 @@ class MachineClient(Node):
         self.kinds: dict[str, str] = {}
         """Unit -> kind, in the order of the machine."""
         self.rotary: set[str] = set()
-        """Axes that count in degrees."""
+        """Axes in degrees."""
 
     def spin_until(self, condition: Callable[[], bool], seconds: float) -> bool:
         """False when the condition has not come true in time."""
@@ -73,7 +73,7 @@ class MachineClient(Node):
         self.kinds[PLC] = "plc"
 
     def learn_axis_types(self, units: Iterable[str]) -> None:
-        """Which of the axes count in degrees; an axis that does not answer counts in mm."""
+        """The axes in degrees; an axis that does not answer is taken to be in mm."""
         for unit in units:
             answer = self._parameters_of(unit, [AXIS_TYPE]) if self.kinds[unit] == "axis" else None
             if answer and (answer[0].string_value in ROTARY or answer[0].integer_value in ROTARY):
@@ -144,7 +144,7 @@ def services_of(kind: str) -> dict[str, Any]:
 
 
 def arguments_of(kind: str, unit: str, command: str) -> Arguments:
-    """What the service of a command takes. Raises CncError 22002 when there is none."""
+    """The arguments that the service of a command takes. Raises CncError 22002 when there is none."""
     service = services_of(kind).get(command)
     if service is None:
         where = f"{kind} {unit}"
@@ -161,7 +161,7 @@ def arguments_of(kind: str, unit: str, command: str) -> Arguments:
 
 
 def check_integers(where: str, service: Any, arguments: Mapping[str, Any]) -> None:
-    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it round."""
+    """Raises CncError 22001 for an integer that the field of the service does not hold: ROS would wrap it around."""
     fields = service.Request.get_fields_and_field_types()
     for name, value in arguments.items():
         if found := INTEGER_FIELD.fullmatch(fields[name]):

@@ -1,1 +1,1 @@
-"""The node around a unit: what arrives, blocks, services, actions, parameters, diagnostics."""
+"""The node around a unit: messages, blocks, services, actions, parameters, diagnostics."""

@@ -1,4 +1,4 @@
-"""One process for a unit: the first one has it, a later one is told whose it is and ends."""
+"""One process for a unit: the first one has it, a later one ends and names the first."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from cnc_ptp.nodes.topics import block_topic
 
 UNIT_TAKEN = 26141
 REFUSED_STARTS = 128
-"""So many later processes can ask who has a unit."""
+"""Number of later processes that can ask who has a unit."""
 CREDENTIALS = struct.Struct("3i")
 """SO_PEERCRED: process, user, group."""
 
 
 def claim_unit(node: Node, unit: str) -> socket.socket:
-    """Holds a unit of this computer, ROS domain and namespace until the socket is closed, at the latest by the system
-    when the process ends. Raises CncError 26141 when another process has it.
+    """Holds a unit of this computer, ROS domain and namespace until the socket is closed, by the system
+    at the latest, when the process ends. Raises CncError 26141 when another process has it.
     """
     claim = socket.socket(socket.AF_UNIX)
     try:

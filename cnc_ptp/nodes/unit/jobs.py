@@ -1,4 +1,4 @@
-"""Long jobs as ROS actions: progress while they run, cancel = controlled halt, the client's death changes nothing."""
+"""Long jobs as ROS actions: progress while active, cancel = controlled halt, the client's death has no effect."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FEEDBACK_BLOCKS = 10
 
 
 class JobServer:
-    """An action of a unit node: start commands, then block by block until the unit says that the job has ended.
+    """An action of a unit node: start commands, then block by block until the unit reports that the job has ended.
 
     One job at a time: a goal is rejected while another one is open, and ends as aborted with the run.
     """
@@ -35,8 +35,8 @@ class JobServer:
         feedback: Callable[[CycleBlock, Any], None],
         result: Callable[[CycleBlock, Any], bool | None],
     ) -> None:
-        """`start(goal)` gives the commands that begin the job, `halt` ends it; `feedback(block, message)` fills in
-        progress, `result(block, message)` the result: None while the job runs, then whether it was done in full."""
+        """`start(goal)` gives the commands that start the job, `halt` ends it; `feedback(block, message)` fills in
+        progress, `result(block, message)` the result: None while active, then whether it was done in full."""
         self._node = node
         self._type = action_type
         self._start = start
@@ -83,7 +83,7 @@ class JobServer:
         return CancelResponse.ACCEPT
 
     def end(self) -> None:
-        """The run is over: an open job is told that it was not done."""
+        """The run is over: an open job is answered as not finished."""
         if self._goal is not None:
             self._finish(self._type.Result(message="the run has ended"))
 

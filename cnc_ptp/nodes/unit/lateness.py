@@ -1,4 +1,4 @@
-"""How late blocks are ready, as counts in steps of 0.1 ms: cheap to keep, to send and to add up over nodes."""
+"""Lateness of blocks as counts in steps of 0.1 ms: cheap to keep, to send and to add up over nodes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""/<unit>/state while a run goes on, for rqt and PlotJuggler: single states instead of blocks."""
+"""Live states on /<unit>/state, for rqt and PlotJuggler: single states instead of blocks."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def require_known_parameters(node: Node) -> None:
 
 
 def _given(override: Any) -> Any:
-    """The value as our own reader would have it; ROS makes nothing of an empty list."""
+    """The value as our own reader has it; ROS gives an empty list no type."""
     value = override.value
     return value if isinstance(value, bool | int | float | str) else tuple(value or ())
 
@@ -75,7 +75,7 @@ def _refused_value(node: Node, name: str, override: Any, reason: str) -> CncErro
 
 
 def refused_change(own: ParameterSet, wanted: Iterable[Any]) -> SetParametersResult | None:
-    """The answer to a change that is refused for a reason of its own; None where "read-only" says all."""
+    """The answer to a change that is refused for a special reason; None when it is just read-only."""
     for parameter in wanted:
         error = change_refusal(own, parameter.name, parameter.value)
         if error is not None:

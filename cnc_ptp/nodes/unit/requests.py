@@ -13,7 +13,7 @@ NOT_GIVEN = 1e300
 
 
 def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
-    """The fields of a request without those that are left out: NaN, no text, and 0 where only more makes sense.
+    """The fields of a request without those that are left out: NaN, no text, and 0 where it must be above 0.
 
     A field `has_<name>` says whether `<name>` counts.
     """
@@ -26,18 +26,18 @@ def given_arguments(known: Arguments, request: Any) -> dict[str, Any]:
 
 
 NEEDS_SOMETHING = {"set_limits": "reset_limits takes the limits away"}
-"""Commands that would release something when nothing is given, and what is meant for that."""
+"""Commands that would release something when nothing is given, and how to do so explicitly."""
 
 
 def objection(command: str, known: Arguments, request: Any) -> str:
-    """Why a request cannot be meant so; empty if nothing speaks against it."""
+    """Why a request cannot be meant so; empty if it can."""
     if command in NEEDS_SOMETHING and not given_arguments(known, request):
         return f"nothing is given; {NEEDS_SOMETHING[command]}"
     return contradiction(known, request)
 
 
 def contradiction(known: Arguments, request: Any) -> str:
-    """What a request says of one of its fields `has_<name>` and denies by <name>; empty if nothing."""
+    """The contradiction between a field `has_<name>` of a request and <name>; empty if there is none."""
     for name in known:
         says = getattr(request, f"has_{name}", None)
         if says is None:

@@ -1,4 +1,4 @@
-"""The node around a unit: store what arrives, compute a block when all of it is there, publish."""
+"""The node around a unit: store messages, compute a block when all its inputs are there, publish."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from cnc_ptp.nodes.topics import (
     block_topic,
 )
 from cnc_ptp.nodes.unit.claim import claim_unit
-from cnc_ptp.nodes.unit.health import Health
+from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
@@ -71,7 +71,7 @@ class UnitNode(Node):
     def __init__(
         self, machine: MachineParameters, unit: Unit, *, recorders: int = 0, state_rate: float | None = None
     ) -> None:
-        """Nothing but a name in the graph; with `setup` it takes part.
+        """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
         states a second, None = as the machine file says.
@@ -90,7 +90,7 @@ class UnitNode(Node):
         self._start_ns = 0
         rotary = unit.kind == "spindle" or (unit.kind == "axis" and machine.axes[unit.name].rotary)
         block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
-        self.health = Health(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
+        self.diagnostics = UnitDiagnostics(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
         self._state_period = period_cycles(machine, state_rate)
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
@@ -102,7 +102,7 @@ class UnitNode(Node):
         self._ended = False
         self._busy = False
         self.failure: CncError | None = None
-        """Why the node cannot go on."""
+        """Why the node cannot continue."""
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
         self._heartbeat_at = self._checked = now
@@ -156,7 +156,7 @@ class UnitNode(Node):
             self._needed.append(self.create_subscription(block_type, block_topic(source), received, BLOCKS))
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
-        """Refuses: all parameters are read-only; those with a reason of their own give it."""
+        """Refuses: all parameters are read-only; some with a special reason."""
         refused = refused_change(self._machine.raw(self._own_name), parameter_list)
         return refused or super().set_parameters_atomically(parameter_list)
 
@@ -166,7 +166,7 @@ class UnitNode(Node):
             self.create_service(service_type, f"{self.unit.name}/{command}", callback)
 
     def _report_ready(self) -> None:
-        """Says `ready` until the first tick, once everybody that is needed has found each other."""
+        """Reports `ready` until the first tick, once all needed nodes have found each other."""
         if self._running:
             self._ready_timer.cancel()
             return
@@ -234,7 +234,7 @@ class UnitNode(Node):
             record = self.command(asked)
         response.accepted, response.error_id = record.accepted, record.error_id
         response.message, response.cycle = record.message, record.cycle
-        self._compute_ready_blocks()  # an axis that is decoupled now does not wait for its master any more
+        self._compute_ready_blocks()  # an axis that is decoupled now no longer waits for its master
         return response
 
     def arguments(self, command: str, request: Any) -> dict[str, Any]:
@@ -255,7 +255,7 @@ class UnitNode(Node):
         return record
 
     def refuse(self, command: Command, error_id: int, reason: str) -> CommandRecord:
-        """The record of a command that does not come as far as the unit; it is published like all others."""
+        """The record of a command that does not reach the unit; it is published like all others."""
         text = f"{self.unit.kind} {self.unit.name}: {command.command} refused: {reason}; nothing was changed"
         cycle = self._runner.next_cycle
         record = CommandRecord(cycle, self.unit.name, command.command, command.arguments_json, False, error_id, text)
@@ -283,7 +283,7 @@ class UnitNode(Node):
             self._compute(*ready)
 
     def _follow_master(self) -> None:
-        """Needs the blocks of the unit that this one is coupled to now; the first ones come from the topic's memory."""
+        """Subscribes to the blocks of the unit's present master; the first ones come from the topic's history."""
         master = self._runner.master
         self._gate.follow(master)
         if master is not None and master not in self._masters:
@@ -303,10 +303,10 @@ class UnitNode(Node):
             block = self._runner.compute(tick, inputs)
         self._publish_records()  # first: a recording that ends here has all commands that led to its last states
         self._publish_block(block)
-        self.health.add_block(block)
+        self.diagnostics.add_block(block)
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
-            self.health.add_lateness((time.monotonic_ns() - scheduled) // 1000)
+            self.diagnostics.add_lateness((time.monotonic_ns() - scheduled) // 1000)
         else:
             self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
@@ -327,10 +327,10 @@ class UnitNode(Node):
         """For subclasses: the last block has been computed."""
 
     def complete_commands(self, block: PlcBlock) -> None:
-        """For subclasses: what commands of the PLC need besides what travels in its block."""
+        """For subclasses: adds to commands of the PLC what does not travel in its block."""
 
     def after_block(self, block: CycleBlock) -> None:
-        """For subclasses: what else is to be published of a block."""
+        """For subclasses: publishes more of a block."""
 
     def stamp(self, cycle: int) -> Time:
         return convert.time_message(self._start_ns + cycle * self._cycle_ns)
@@ -343,13 +343,13 @@ class UnitNode(Node):
         for record in self.unit.take_records():
             self._record_publisher.publish(convert.record_to_message(record, self.stamp(record.cycle)))
         for event in self.unit.take_events():
-            self.health.note(event)
+            self.diagnostics.note(event)
             self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     # watchdog
 
     def _watch(self) -> None:
-        """Says that this node lives while it waits, and gives up sources that were silent for the watchdog time."""
+        """Reports that this node is alive while it waits, and gives up sources silent for the watchdog time."""
         now = time.monotonic()
         stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
         if stalled or self._gate.closed or not self._running:
@@ -368,9 +368,9 @@ class UnitNode(Node):
         self._compute_ready_blocks()
 
     def _lose(self, source: str, reason: str | None) -> None:
-        """Goes on without `source`; the unit decides what that means for its motion."""
+        """Continues without `source`; the unit decides what that means for its motion."""
         if reason is not None:
-            self.health.lost_blocks += 1
+            self.diagnostics.lost_blocks += 1
             self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
@@ -380,7 +380,7 @@ class UnitNode(Node):
                 self._gate.drop(other)
 
     def _tick_alone(self) -> None:
-        """Without a clock the unit ticks by itself, so that its own ramp comes to its end."""
+        """Without a clock the unit ticks on its own, so that it finishes its ramp."""
         blocks = max(1, round(self._watchdog / 4.0 * 1e9 / (self._cycle_ns * self._count)))
         for _ in range(blocks):
             self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
@@ -391,7 +391,7 @@ class UnitNode(Node):
         self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
 
     def _publish_heartbeat(self) -> None:
-        """To all: this node lives."""
+        """To all: this node is alive."""
         self._heartbeat_at = time.monotonic()
         self._heartbeat_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=self._gate.next_cycle))
 
@@ -416,11 +416,11 @@ class UnitNode(Node):
     def _publish_diagnostics(self) -> None:
         if not self._running:
             return
-        message = DiagnosticArray(status=[self.health.status(self._gate.duplicates)])
+        message = DiagnosticArray(status=[self.diagnostics.status(self._gate.duplicates)])
         message.header.stamp = self.stamp(self._gate.next_cycle)
         self._diagnostics_publisher.publish(message)
-        if self.health.lateness.counts:
-            lateness = self.health.lateness.message(self.unit.name)
+        if self.diagnostics.lateness.counts:
+            lateness = self.diagnostics.lateness.message(self.unit.name)
             lateness.header.stamp = message.header.stamp
             self._lateness_publisher.publish(lateness)
 

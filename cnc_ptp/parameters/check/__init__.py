@@ -1,1 +1,1 @@
-"""What no single value shows: problems stop a node, notices go to the log."""
+"""Checks of parameters against each other: problems stop a node, notices go to the log."""

@@ -1,4 +1,4 @@
-"""What axes and spindles have in common: emergency ramp, encoder resolution, axis type, soft limits."""
+"""Checks that axes and spindles share: emergency ramp, encoder resolution, axis type, soft limits."""
 
 from collections.abc import Iterator
 
@@ -49,7 +49,7 @@ def axis_type_fits(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def soft_limits_of_a_conveyor(parameters: ParameterSet) -> Iterator[Problem]:
-    """A linear modulo axis has no soft limits: whoever gives some counts on them."""
+    """A linear modulo axis has no soft limits; somebody who gives some relies on them."""
     if parameters.axis_type != "T" or not is_modulo(parameters):
         return
     mode = int(parameters.number(ids.KENNGR_ACHS_MODE))

@@ -1,6 +1,6 @@
-"""A channel against axes and spindles of the machine: what is listed exists, fits and has a name of its own.
+"""A channel against the axes and spindles of the machine: each listed unit exists, fits and has a unique name.
 
-Each check yields Problems; the checks of gears, couplings and tools stand in channel_spindle_checks.py.
+Each check yields Problems; those of gears, couplings and tools are in channel_spindle_checks.py.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +17,7 @@ Sets = Mapping[str, ParameterSet]
 
 
 def channel_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
-    """Each listed axis exists, is a path axis, is listed once, has a name of its own."""
+    """Each listed axis exists, is a path axis, is listed once, has a unique name."""
     entries = axis_entries(channel, sets)
     yield from listed_units(channel, entries, ids.ACHSE_LOG_ACHS_NR, ids.ACHSE_BEZEICHNUNG, sets)
 
@@ -53,7 +53,8 @@ def unit_trouble(
         known = ", ".join(
             f"{int(unit.number(ids.KOPF_ACHS_NR))} /{unit.node}" for unit in sets.values() if unit.kind != "channel"
         )
-        return f"value {entry.number} is no logical axis number of the machine ({known or 'none'})", errors.NO_SUCH_AXIS
+        text = f"value {entry.number} is not a logical axis number of the machine ({known or 'none'})"
+        return text, errors.NO_SUCH_AXIS
     unit = sets[entry.node]
     if is_path_axis(unit) == wants_spindle:
         kinds = ("a path axis", "a spindle") if wants_spindle else ("a spindle", "a path axis")
@@ -95,7 +96,7 @@ def wrong_name(entry: ChannelAxisEntry, name: str) -> str:
 
 
 def used_twice(entry: ChannelAxisEntry, names: dict[str, ChannelAxisEntry]) -> str:
-    """The main spindle has two names: its own counts as soon as another one is the main spindle."""
+    """The main spindle has two names: its own one is used as soon as another spindle is the main spindle."""
     for used in (entry.name, entry.own_name):
         if used and names.setdefault(used, entry) is not entry:
             return f"program name {used} is used twice"
@@ -126,7 +127,7 @@ def main_spindle(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
         return
     numbers = ", ".join(map(str, listed)) or "none"
     given = f"value {number} is" if number else "no value is given, it must be"
-    text = f"{given} {'none' if number else 'one'} of the channel's spindles ({numbers})"
+    text = f"{given} {'not one' if number else 'one'} of the channel's spindles ({numbers})"
     yield problem(channel, errors.MAIN_SPINDLE, ids.MAIN_SPINDLE_AX_NR, (), text)
 
 

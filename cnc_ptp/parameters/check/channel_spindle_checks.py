@@ -1,4 +1,4 @@
-"""The spindles of a channel: one synchronisation type a function, a record for each gear, coupled pairs and tools of
+"""The spindles of a channel: one synchronisation type per function, a record for each gear, coupled pairs and tools of
 spindles that the channel has.
 """
 
@@ -41,7 +41,7 @@ def one_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
 
 
 def gear_synchronisation(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
-    """M40 to M45 wait before the motion and in no other way while they select gears (TF5200 spindle 2.8.2)."""
+    """M40 to M45 wait before the motion, and only there, while they select gears (TF5200 spindle 2.8.2)."""
     if not channel.number(ids.MAIN_SPINDLE_GEAR_CHANGE):
         return
     for number in GEAR_M_FUNCTIONS:
@@ -88,12 +88,12 @@ def coupled_pairs(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
 
 
 def not_coupled(number: int, entries: list[ChannelAxisEntry]) -> str:
-    """Why a number cannot stand in a coupled pair of spindles; empty if it can."""
+    """Why a number cannot be in a coupled pair of spindles; empty if it can."""
     entry = next((entry for entry in entries if entry.number == number), None)
     if entry is not None:
         return f"value {number} is a spindle with P-CHAN-00069 (plc_control)" if entry.plc_control else ""
     known = ", ".join(str(entry.number) for entry in entries) or "none"
-    return f"value {number} is none of the channel's spindles ({known})"
+    return f"value {number} is not one of the channel's spindles ({known})"
 
 
 def tool_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
@@ -107,7 +107,7 @@ def tool_spindles(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
 
 
 def tool_speeds(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
-    """The lowest speed of a tool against the highest, where that is given; without it there is none."""
+    """The lowest speed of a tool against the highest, if that is given; otherwise there is none."""
     for tool in channel.used_indexes("wz"):
         low, high = (channel.number(number, tool) for number in (ids.WZ_VB_MIN, ids.WZ_VB_MAX))
         if channel.is_given(ids.WZ_VB_MAX, tool) and low > high:

@@ -1,4 +1,4 @@
-"""What drive, telegram, feedforward and friction compensation of an axis or spindle must agree on.
+"""Drive, telegram, feedforward and friction compensation of an axis or spindle against each other.
 
 Error numbers of the manuals: TF5200 feedforward 4.1, 4.2, 5.2; friction 2.2.
 """
@@ -52,25 +52,25 @@ def control_checks(parameters: ParameterSet) -> Iterator[Problem]:
 def gear_denominators(parameters: ParameterSet) -> Iterator[Problem]:
     for gear in parameters.used_indexes("getriebe"):
         if parameters.number(ids.GETRIEBE_GEAR_FACT_DENOM, gear) == 0:
-            text = "value 0 is no denominator of a gear ratio"
+            text = "value 0 is not a valid denominator of a gear ratio"
             yield problem(parameters, GEAR_DENOMINATOR, ids.GETRIEBE_GEAR_FACT_DENOM, (gear,), text)
 
 
 def zero_denominators(parameters: ParameterSet) -> Iterator[Problem]:
     for number in DENOMINATORS:
         if parameters.number(number) == 0:
-            yield problem(parameters, errors.DENOMINATOR, number, (), "value 0 is no denominator")
+            yield problem(parameters, errors.DENOMINATOR, number, (), "value 0 is not a valid denominator")
 
 
 def inertia(parameters: ParameterSet) -> Iterator[Problem]:
-    """What has mechanics has an inertia."""
+    """Simulated mechanics need an inertia."""
     torque = telegram.interface(parameters) == "torque"
     if parameters.number(ids.SIMULATION_INERTIA) or not (torque or parameters.text(ids.SIMULATION_MODEL) == "CASCADED"):
         return
     for gear in sorted({0, *parameters.used_indexes("getriebe")}):
         if parameters.number(ids.GETRIEBE_LOAD, gear) == 0:
             reason = "a torque command" if torque else "P-SIM-00006 simulation.model CASCADED"
-            text = f"value 0 is no inertia for {reason}, P-SIM-00007 simulation.inertia is 0 too"
+            text = f"value 0 is not a valid inertia for {reason}, P-SIM-00007 simulation.inertia is 0 too"
             yield problem(parameters, errors.CONTRADICTION, ids.GETRIEBE_LOAD, (gear,), text)
 
 
@@ -131,7 +131,7 @@ def names_and_numbers(parameters: ParameterSet) -> Iterator[Problem]:
         for index in parameters.used_indexes(f"antr.sercos.{array}"):
             name, number = parameters.text(name_of, index).replace("_", "-"), parameters.number(number_of, index)
             if name and number and int(name[-4:]) != number:
-                text = f"value {number} is not the number of {name}, which {name_of} names"
+                text = f"value {number} is not the number of {name}, the object in {name_of}"
                 yield problem(parameters, errors.TELEGRAM, number_of, (index,), text)
 
 
@@ -166,7 +166,7 @@ def carried(parameters: ParameterSet) -> str:
 
 
 def friction(parameters: ParameterSet) -> Iterator[Problem]:
-    """The table of the friction compensation (P-COMP-…) where it is used."""
+    """The table of the friction compensation (P-COMP-…) if it is used."""
     entries, points = parameters.number(ids.FRICT_COMP_TABLE_ENTRIES), friction_table_size(parameters)
     if entries > points:
         text = f"value {entries} is above the {points} entries of P-COMP-00062 frict_comp.max_points"
@@ -188,7 +188,7 @@ def friction(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def ascending(parameters: ParameterSet, entries: int) -> Iterator[Problem]:
-    """Velocities that do not ascend; those that were not given at all in one line (entry 0 may be left out)."""
+    """Velocities that do not ascend; those that are not given at all in one problem (entry 0 may be left out)."""
     missing = [index for index in range(1, entries) if not parameters.is_given(ids.TABLE_IN, index)]
     if missing:
         which = f"entries {spans(missing)}" if len(missing) > 1 else f"entry {missing[0]}"

@@ -1,4 +1,4 @@
-"""What is corrected in, or questionable about, feedforward, friction compensation, monitoring and gain. Lines."""
+"""Notices about feedforward, friction compensation, monitoring, drive formats and gain: corrected or doubtful."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from cnc_ptp.parameters.view.telegram import ANALOGUE, is_open_loop
 
 MANUAL_POSITION_DELAY = 10
 PARTS = ((VEL, ADD_VEL), (ACC, ADD_ACC), (JERK, ADD_JERK))
-"""Bits of P-AXIS-00223: a part, and that it goes out additively."""
+"""Bits of P-AXIS-00223: a part, and the same part as an additive command."""
 ADDITIVE = "a_max and the friction table"
 NO_TORQUE_SCALE = 110465
 NO_JERK_DENOMINATOR = 110473
@@ -43,7 +43,7 @@ DELAYS = {ids.VORSTEUER_VELOCITY_DELAY_TIME: 70349, ids.VORSTEUER_ACCELERATION_D
 
 
 def control_notices(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
-    """All lines of one axis or spindle; `cycle_time` in s."""
+    """All notices of one axis or spindle; `cycle_time` in s."""
     yield from delays(parameters, cycle_time)
     yield from denominators(parameters)
     yield from weight(parameters)
@@ -68,18 +68,18 @@ def delays(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
 
 def denominators(parameters: ParameterSet) -> Iterator[Notice]:
     if parameters.number(ids.ANTR_TORQUE_SCALE_DENOM) == 0:
-        text = "value 0 is no denominator, no additive torque is put out"
+        text = "value 0 is not a valid denominator, no additive torque is output"
         yield notice(parameters, ids.ANTR_TORQUE_SCALE_DENOM, (), text, error_id=NO_TORQUE_SCALE)
-    if parameters.number(ids.ANTR_ACC_REFERENCE_VALUE) == 0 and puts_out_torque(parameters):
-        text = "value 0 is no reference of the torque scaling, no additive torque is put out"
+    if parameters.number(ids.ANTR_ACC_REFERENCE_VALUE) == 0 and outputs_torque(parameters):
+        text = "value 0 is not a valid reference of the torque scaling, no additive torque is output"
         yield notice(parameters, ids.ANTR_ACC_REFERENCE_VALUE, (), text, error_id=NO_TORQUE_SCALE)
     if parameters.number(ids.VORSTEUER_JERK_FACT_DENOM) == 0:
-        text = f"value 0 is no denominator, {DEFAULT_JERK_DENOMINATOR} is used"
+        text = f"value 0 is not a valid denominator, {DEFAULT_JERK_DENOMINATOR} is used"
         yield notice(parameters, ids.VORSTEUER_JERK_FACT_DENOM, (), text, error_id=NO_JERK_DENOMINATOR)
 
 
-def puts_out_torque(parameters: ParameterSet) -> bool:
-    """Additive torque is configured, of the feedforward or of the friction compensation."""
+def outputs_torque(parameters: ParameterSet) -> bool:
+    """Additive torque is configured, for feedforward or friction compensation."""
     return bool(feedforward_mode(parameters) & (ADD_ACC | ADD_JERK)) or friction_parameters(parameters).active
 
 
@@ -104,7 +104,7 @@ def position_delay(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def monitoring_type(parameters: ParameterSet) -> Iterator[Notice]:
-    """A kind of monitoring that there is none of, and that is not 0 either."""
+    """A type of monitoring that does not exist and is not 0 (off) either."""
     for gear in used_gears(parameters):
         kind = parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear)
         if kind not in (0, *MONITORING_TYPES):
@@ -114,7 +114,7 @@ def monitoring_type(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def following_error(parameters: ParameterSet) -> Iterator[Notice]:
-    """Monitoring that would trip in plain motion: vb_max / kv above slep_max, where the limit is a fixed one."""
+    """Monitoring that would trip in normal motion: vb_max / kv above slep_max, if the limit is fixed."""
     gear = active_gear(parameters)
     if parameters.kind != "axis" or parameters.number(ids.GETRIEBE_SLEP_UEBERW_TYP, gear) not in (ESTIMATED, FIXED):
         return
@@ -122,7 +122,7 @@ def following_error(parameters: ParameterSet) -> Iterator[Notice]:
     limit = parameters.kernel(ids.GETRIEBE_SLEP_MAX, gear)
     if expected >= limit:
         unit = "mm" if parameters.axis_type == "T" else "deg"
-        text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} that P-AXIS-00212 brings"
+        text = f"limit {limit:g} {unit} is not above vb_max / kv, the {expected:g} {unit} expected at P-AXIS-00212"
         yield notice(parameters, ids.GETRIEBE_SLEP_MAX, (gear,), text)
 
 
@@ -134,12 +134,12 @@ def open_loop(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def used_gears(parameters: ParameterSet) -> list[int]:
-    """Records that can be active: of an axis the one after start-up, of a spindle all that there are."""
+    """Records that can be active: of an axis the one after start-up, of a spindle all."""
     return gear_records(parameters) if parameters.kind == "spindle" else [active_gear(parameters)]
 
 
 def velocity_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
-    """A velocity command that is too short for the largest velocity; a DA word has a scale in each gear."""
+    """A velocity command with too few bits for the largest velocity; a DA word is scaled in each gear."""
     gears = used_gears(parameters)
     if int(parameters.number(ids.KENNGR_ANTR_TYP)) not in ANALOGUE:
         gears = [max(gears, key=lambda gear: parameters.kernel(ids.DYNAMIK_VB_MAX, gear))]
@@ -166,7 +166,7 @@ def velocity_range_of(parameters: ParameterSet, gear: int, cycle_time: float) ->
 
 
 def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
-    """Torque words of a telegram that are too short for what goes over them."""
+    """Torque words of a telegram with too few bits for the largest torque."""
     control = control_view(parameters, used_gears(parameters)[0], cycle_time)
     drive, scale = control.drive, control.scaling.torque
     if drive.ideal or not scale:
@@ -182,26 +182,26 @@ def torque_range(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice
         limit = largest_digit(bits) / scale
         if is_used and needed > limit:
             carries = f"the {bits} bits of the {word} carry {limit:g} {unit}"
-            text = f"{carries}, less than the {needed:g} {unit} of {cause}, what is above is cut off"
+            text = f"{carries}, less than the {needed:g} {unit} of {cause}; more is cut off"
             yield notice(parameters, ids.ANTR_TORQUE_SCALE_NUM, (), text)
 
 
 def additive_torque(parameters: ParameterSet, control: ControlParameters) -> tuple[float, str]:
-    """The most that feedforward and friction compensation put out, Nm (N), and what it is made of."""
+    """The largest output of feedforward and friction compensation, Nm (N), and its causes."""
     feedforward = control.feedforward
     weight = feedforward.weight * feedforward.torque_weight if feedforward.mode & ADD_ACC else 0.0
     return weight * accelerating_torque(parameters) + friction_torque(control), ADDITIVE
 
 
 def largest_torque(parameters: ParameterSet, control: ControlParameters) -> tuple[float, str]:
-    """What the drive can give, Nm (N); where it has no limit, what the motion may need."""
+    """The largest torque of the drive, Nm (N), or, if it has no limit, of the motion; and its cause."""
     if math.isfinite(control.plant.torque_limit):
         return control.plant.torque_limit, "the torque limit P-SIM-00011"
     return accelerating_torque(parameters) + friction_torque(control), ADDITIVE
 
 
 def accelerating_torque(parameters: ParameterSet) -> float:
-    """For the largest acceleration (P-AXIS-00008) in the gear that needs most, Nm (N)."""
+    """For the largest acceleration (P-AXIS-00008) in the gear that needs the most, Nm (N)."""
     return max(
         torque_per_acceleration(parameters, gear, parameters.number(ids.GETRIEBE_LOAD, gear))
         * parameters.kernel(ids.DYNAMIK_A_MAX, gear)
@@ -210,19 +210,19 @@ def accelerating_torque(parameters: ParameterSet) -> float:
 
 
 def friction_torque(control: ControlParameters) -> float:
-    """The largest entry of the friction table that is in use, Nm (N)."""
+    """The largest active entry of the friction table, Nm (N)."""
     return max(map(abs, control.friction.currents), default=0.0) / control.scaling.torque * control.friction.active
 
 
 def drive_gain(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
-    """Conventional feedforward goes to a position loop in the drive as v/Kv of position, with the Kv of the NC."""
+    """Conventional feedforward reaches a position loop in the drive as a position v/Kv, with the Kv of the NC."""
     for gear in used_gears(parameters):
         control = control_view(parameters, gear, cycle_time)
         conventional = any(control.feedforward.mode & (own | additive) == own for own, additive in PARTS)
         if conventional and control.drive.interface in ("position", "lag") and control.plant.kv != control.kv:
             text = (
-                f"gain {control.plant.kv:g} 1/s of the drive is not the {control.kv:g} 1/s of P-AXIS-00099 by which "
-                "feedforward becomes a position; a lag stays"
+                f"gain {control.plant.kv:g} 1/s of the drive is not the {control.kv:g} 1/s of P-AXIS-00099 with which "
+                "feedforward becomes a position; a lag remains"
             )
             yield notice(parameters, ids.SIMULATION_DRIVE_KV, (), text)
 
@@ -232,7 +232,7 @@ def largest_digit(bits: int) -> int:
 
 
 def gain(parameters: ParameterSet, cycle_time: float) -> Iterator[Notice]:
-    """Unstable position loops; a gain of the drive (P-SIM-00019) is told once."""
+    """Unstable position loops; a gain of the drive (P-SIM-00019) is reported once."""
     lines = (text for gear in used_gears(parameters) for text in gain_of(parameters, gear, cycle_time))
     yield from dict.fromkeys(lines)
 
@@ -246,7 +246,7 @@ def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[
     well_damped = interface != "torque" and 2.0 * kv * small_times(control.plant, cycle_time) <= 1.0
     if interface == "none" or well_damped:
         return
-    from cnc_ptp.parameters.check.stability import position_loop  # here, as numpy takes its time
+    from cnc_ptp.parameters.check.stability import position_loop  # here, as numpy is slow to import
 
     loop = position_loop(control, cycle_time)
     if loop.is_stable(kv):
@@ -260,6 +260,6 @@ def gain_of(parameters: ParameterSet, gear: int, cycle_time: float) -> Iterator[
 
 
 def small_times(plant: PlantParameters, cycle_time: float) -> float:
-    """Sum of the delays in the loop, s: a gain up to half its reciprocal is damped well (0.71), whatever they are."""
+    """Sum of the delays in the loop, s: up to half its reciprocal a gain is well damped (0.71) in any case."""
     velocity_loop = 2.0 / plant.velocity_gain + plant.current_time_constant if plant.cascaded else 0.0
     return plant.time_constant + velocity_loop + (plant.bus_delay_cycles + 0.5) * cycle_time

@@ -1,4 +1,4 @@
-"""A friction table that compensates something else than its author may expect, or nothing. Lines."""
+"""Notices about friction tables that compensate something other than their author may expect, or nothing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CURRENT = ids.TABLE_OUT
 
 
 def friction_notices(parameters: ParameterSet) -> Iterator[Notice]:
-    """All lines of one axis, where its compensation is permitted and has a mode."""
+    """All notices of one axis, if its compensation is permitted and has a mode."""
     if not friction_parameters(parameters).active:
         return
     if parameters.number(ids.FRICT_COMP_SCALING_FACTOR) == 0:
@@ -28,12 +28,12 @@ def friction_notices(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def entries_without_use(parameters: ParameterSet) -> Iterator[Notice]:
-    """Entries of the file behind the number of those in use."""
+    """Entries of the file beyond the number of entries in use."""
     entries = int(parameters.number(ENTRIES))
     unused = [index for index in parameters.used_indexes("frict_comp.table") if index >= entries]
     if unused:
         listed = ", ".join(f"table[{index}]" for index in unused)
-        yield notice(parameters, ENTRIES, (), f"value {entries} leaves {listed} out of use")
+        yield notice(parameters, ENTRIES, (), f"value {entries} leaves {listed} unused")
 
 
 def currents_not_given(parameters: ParameterSet) -> Iterator[Notice]:
@@ -43,15 +43,15 @@ def currents_not_given(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def currents_with_the_friction(parameters: ParameterSet) -> Iterator[Notice]:
-    """A positive current drives forwards, so it takes a positive one to compensate."""
+    """A positive current drives forwards, so only a positive one compensates friction."""
     for index, current in enumerate(friction_parameters(parameters).currents):
         if current < 0:
-            text = f"current {current:g} is negative, it brakes as the friction does"
+            text = f"current {current:g} is negative, it brakes like the friction"
             yield notice(parameters, CURRENT, (index,), text)
 
 
 def currents_above_the_motor(parameters: ParameterSet) -> Iterator[Notice]:
-    """More torque than P-AXIS-00392, the stall torque of the motor, where the file gives it."""
+    """More torque than P-AXIS-00392, the stall torque of the motor, if the file gives it."""
     scale, most = torque_scale(parameters), parameters.number(ids.ANTR_ACC_REFERENCE_VALUE)
     if not scale or not parameters.is_given(ids.ANTR_ACC_REFERENCE_VALUE):
         return

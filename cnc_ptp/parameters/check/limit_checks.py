@@ -11,7 +11,7 @@ from cnc_ptp.parameters.read.values import shown, violates_lower, violates_upper
 
 
 def parameter_against_parameter(parameters: ParameterSet) -> Iterator[Problem]:
-    """Limits that are other parameters. A pair that limits itself both ways gives one problem."""
+    """Limits that are other parameters. Two parameters that limit each other give one problem."""
     reported: set[frozenset[tuple[str, tuple[int, ...]]]] = set()
     for parameter in parameters.parameters():
         declaration, indexes, value = parameter
@@ -29,7 +29,7 @@ def parameter_against_parameter(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def limiting_parameter(parameters: ParameterSet, limit: Limit, indexes: tuple[int, ...]) -> Parameter | None:
-    """The parameter that is the limit; None where the node does not have it or its value was refused."""
+    """The parameter that is the limit; None if the node does not have it or its value was refused."""
     declaration = parameters.catalogue.by_id[str(limit.value)]
     own_indexes = indexes[: declaration.index_count]
     name = declaration.ros_name(own_indexes)
@@ -40,7 +40,7 @@ def limiting_parameter(parameters: ParameterSet, limit: Limit, indexes: tuple[in
 
 
 def violation(parameters: ParameterSet, parameter: Parameter, limit: Limit, upper: bool, other: Parameter) -> str:
-    """Text of the violation, empty when the value keeps the limit."""
+    """Text of the violation, empty if the value is within the limit."""
     value = parameters.number(parameter.declaration.id, *parameter.indexes)
     bound = parameters.number(other.declaration.id, *other.indexes)
     if not (violates_upper if upper else violates_lower)(value, limit, bound):

@@ -1,6 +1,6 @@
-"""What no single value shows: parameters against each other, channels against axes and spindles.
+"""All checks of a machine: parameters against each other, channels against axes and spindles.
 
-Each check yields Problems. Only `check_machine` is for others.
+Each check yields Problems. Only `check_machine` is used by other modules.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""What a machine file may say but what does not do what its author may expect. Lines for the log, none stops a node."""
+"""Notices about a machine file: accepted values that may not do what their author expects. None stops a node."""
 
 from collections.abc import Iterator, Mapping
 
@@ -6,9 +6,9 @@ from cnc_ptp.parameters.check.control_notices import control_notices
 from cnc_ptp.parameters.check.friction_notices import friction_notices
 from cnc_ptp.parameters.check.spindle_checks import above_control_limit
 from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.messages import Notice, notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.axis_view import is_modulo
 from cnc_ptp.parameters.view.channel_members import spindle_entries
 from cnc_ptp.parameters.view.encoder import CORRECTED, uses_feed_constant
@@ -23,11 +23,11 @@ UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
 UPPER_END = ids.GETRIEBE_MODULOO
 GEAR_RATIO = (ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM)
 SMALL_STEP = 0.001
-"""Part of the constant acceleration."""
+"""Fraction of the constant acceleration."""
 
 
 def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
-    """One line a warning, with file and line."""
+    """All notices of a machine, each with file and line."""
     cycle_time = machine.kernel(ids.CYCLE_TIME_US)
     yield from units_without_section(machine, sets)
     for parameters in sets.values():
@@ -47,10 +47,10 @@ def machine_notices(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> 
 
 
 def units_without_section(machine: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
-    """Units that /machine lists and the file says nothing of, which the loader places where /machine stands."""
+    """Units that /machine lists without a section of their own; the loader gives them the place of /machine."""
     for name, parameters in sets.items():
         if parameters.place == machine.place:
-            text = f"{parameters.kind} /{name} has no section in the file, it has the default of every parameter"
+            text = f"{parameters.kind} /{name} has no section in the file, all its parameters have their defaults"
             yield notice(machine, UNIT_LISTS[parameters.kind], (), text)
 
 
@@ -69,7 +69,7 @@ def slope_not_available(channel: ParameterSet) -> Iterator[Notice]:
 
 
 def tools_without_limit(parameters: ParameterSet) -> Iterator[Notice]:
-    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to standstill."""
+    """A tool whose limits the file leaves out; their defaults of 1 would bring its spindle to a standstill."""
     for tool in parameters.used_indexes("wz"):
         if not parameters.number(ids.WZ_LOG_AX_NR_SPDL, tool):
             continue
@@ -79,14 +79,14 @@ def tools_without_limit(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def couplings_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
-    """Coupled pairs that no command can enable: path axes, and other groups than 0."""
+    """Coupled pairs that no command can enable: path axes, and groups other than 0."""
     for group in parameters.used_indexes("synchro_data.koppel_gruppe"):
         for pair in parameters.used_indexes(f"synchro_data.koppel_gruppe.{group}.paar"):
             if group:
-                text = "only coupling group 0 is taken from here"
+                text = "only coupling group 0 is used"
                 yield notice(parameters, ids.PAAR_LOG_ACHS_NR_SLAVE, (group, pair), text)
             elif not parameters.number(ids.PAAR_MODE, group, pair):
-                yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled here")
+                yield notice(parameters, ids.PAAR_MODE, (group, pair), "a pair of path axes is not coupled")
 
 
 def ranges_above_the_spindle(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Iterator[Notice]:
@@ -112,7 +112,7 @@ def corrected_resolution(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def gear_ratio_without_effect(parameters: ParameterSet) -> Iterator[Notice]:
-    """A gear ratio belongs to the feed constant; without it wegaufz and wegaufn say all of the resolution."""
+    """A gear ratio belongs to the feed constant; without it wegaufz and wegaufn alone give the resolution."""
     if uses_feed_constant(parameters):
         return
     for gear in parameters.used_indexes("getriebe"):
@@ -133,7 +133,7 @@ def spindle_notices(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def homing_mode(parameters: ParameterSet) -> Iterator[Notice]:
-    """Which drives home by themselves, and which the NC homes (TF5200 spindle 2.3)."""
+    """Some drives home automatically, others are homed by the NC (TF5200 spindle 2.3)."""
     drive, no_automatic = parameters.number(ids.KENNGR_ANTR_TYP), int(parameters.number(ids.KENNGR_ACHS_MODE)) & 0x100
     if drive == DriveType.SERCOS and not no_automatic:
         text = "automatic homing is not possible with drive type 2 SERCOS, 0x100 should be set"
@@ -153,7 +153,7 @@ def drive_type(parameters: ParameterSet) -> str:
 
 
 def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
-    """The way to a position is measured, which ends at the control limit."""
+    """Positioning needs the measuring system, which fails above the control limit."""
     for gear in parameters.used_indexes("getriebe"):
         text = above_control_limit(parameters, ids.GETRIEBE_VB_EILGANG, gear)
         if text:
@@ -161,14 +161,14 @@ def rapid_traverse(parameters: ParameterSet) -> Iterator[Notice]:
 
 
 def step_in_the_curve(parameters: ParameterSet) -> Iterator[Notice]:
-    """A hyperbola that does not begin with the constant acceleration."""
+    """A hyperbola that does not start with the constant acceleration."""
     for gear in parameters.used_indexes("getriebe"):
         curve = curve_view(parameters, gear)
         if curve is None or curve.kind != "hyperbola":
             continue
-        begin = curve.b1 / (1.0 + curve.b2 * (1.0 + curve.b3) or 1.0)
-        if abs(begin - curve.constant) > SMALL_STEP * curve.constant:
-            steps = f"begins with {begin:g} °/s², P-AXIS-00007 is {curve.constant:g} °/s²"
+        start = curve.b1 / (1.0 + curve.b2 * (1.0 + curve.b3) or 1.0)
+        if abs(start - curve.constant) > SMALL_STEP * curve.constant:
+            steps = f"starts with {start:g} °/s², P-AXIS-00007 is {curve.constant:g} °/s²"
             text = f"the hyperbola {steps}: a step in the curve"
             yield notice(parameters, ids.BESCHL_KENNLINIE_B1, (gear,), text)
 

@@ -1,4 +1,4 @@
-"""What a node says to a parameter that somebody wants to change, at its start or while it runs."""
+"""Answers of a node to a change of a parameter, at its start or while it runs."""
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.parameters.declare import ids
@@ -10,11 +10,11 @@ from cnc_ptp.parameters.read.values import BadValue, shown
 
 MEMORY_IS_FIXED = 110641
 POINTS = ids.FRICT_COMP_MAX_POINTS
-"""Table size for which memory is kept from the start on (TF5200 friction compensation 5.2.2)."""
+"""Table size for which memory is reserved at the start (TF5200 friction compensation 5.2.2)."""
 
 
 def start_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> str:
-    """Why a node cannot start with a value that ROS gives it; empty when it means that of the machine file."""
+    """Why a node cannot start with a value that ROS gives it; empty if it is that of the machine file."""
     entry = Entry(dotted(ros_name), wanted, parameters.place)
     try:
         value = checked_entry(entry, parameters.node, parameters.kind, parameters.axis_type)
@@ -22,14 +22,14 @@ def start_refusal(parameters: ParameterSet, ros_name: str, wanted: Value) -> str
         return error.text
     own = {parameter.ros_name: parameter.value for parameter in parameters.parameters()}
     if entry.name not in own:
-        return "the machine file, where all nodes and the recording find it, does not give it"
+        return "it is not in the machine file, from which all nodes and the recording take it"
     if own[entry.name] != value:
-        return f"it is {shown(own[entry.name])} in the machine file, where all nodes and the recording find it"
+        return f"it is {shown(own[entry.name])} in the machine file, from which all nodes and the recording take it"
     return ""
 
 
 def change_refusal(parameters: ParameterSet, ros_name: str, wanted: object) -> CncError | None:
-    """The error 110641 for a change of P-COMP-00062; None for all others, which are read-only without more reason."""
+    """The error 110641 for a change of P-COMP-00062; None for all others, which are simply read-only."""
     declaration = parameters.catalogue.by_id[POINTS]
     if ros_name != declaration.ros_name(()) or not declaration.belongs_to(parameters.kind):
         return None

@@ -1,4 +1,4 @@
-"""What no single value of a spindle shows: curves, homing, drive and feedback against each other."""
+"""Parameters of a spindle against each other: curves, homing, drive and feedback."""
 
 from collections.abc import Iterator
 
@@ -27,16 +27,16 @@ OPEN_LOOP_DRIVES = (
     DriveType.CANOPEN,
 )
 NEEDED = (ids.BESCHL_KENNLINIE_A_KONST, ids.BESCHL_KENNLINIE_N_GRENZ)
-"""What a hyperbola or polynomial cannot do without."""
+"""Parameters without which there is no hyperbola or polynomial."""
 NEEDED_OF_ASYNCHRONOUS = (ids.BESCHL_KENNLINIE_A_MAX, ids.BESCHL_KENNLINIE_N1)
 ROUNDING = 1e-6
-"""Part of the largest acceleration by which rounded coefficients of a curve may pass it."""
+"""Fraction of the largest acceleration by which a curve with rounded coefficients may exceed it."""
 STEPS = 1000
-"""Places between the limit speed and the largest speed at which a curve is looked at."""
+"""Number of intervals between the limit speed and the largest speed at whose ends a curve is checked."""
 
 
 def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
-    """All of them, for one spindle."""
+    """All problems of one spindle."""
     checks = plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution, gear_at_start
     for check in checks:
         yield from check(parameters)
@@ -84,7 +84,7 @@ def feedback_of_the_mode(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def open_loop_resolution(parameters: ParameterSet) -> Iterator[Problem]:
-    """An actual speed that is computed from positions needs a resolution that somebody has thought of."""
+    """An actual speed that is computed from positions needs a resolution that the file gives."""
     if not is_open_loop(parameters) or not has_position(parameters) or uses_feed_constant(parameters):
         return
     gear = active_gear(parameters)
@@ -94,7 +94,7 @@ def open_loop_resolution(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def gear_at_start(parameters: ParameterSet) -> Iterator[Problem]:
-    """It needs its record; a spindle without any has gear 1 with all its defaults."""
+    """The gear at start needs its record; a spindle without any record has gear 1 with all defaults."""
     stage, records = int(parameters.number(ids.KENNGR_GETRIEBE_STUFE)), parameters.used_indexes("getriebe")
     if stage - 1 in records or (stage == 1 and not records):
         return
@@ -104,14 +104,14 @@ def gear_at_start(parameters: ParameterSet) -> Iterator[Problem]:
 
 
 def homing_speed(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
-    """The zero pulse can be seen below the control limit only."""
+    """The zero pulse can only be seen below the control limit."""
     text = above_control_limit(parameters, ids.GETRIEBE_VB_REFLOW, gear)
     if text and has_position(parameters):
         yield problem(parameters, errors.CONTRADICTION, ids.GETRIEBE_VB_REFLOW, (gear,), text)
 
 
 def above_control_limit(parameters: ParameterSet, number: str, gear: int) -> str:
-    """Text where a speed is above the control limit of a closed position loop, else empty."""
+    """Text if a speed is above the control limit of a closed position loop, else empty."""
     if is_open_loop(parameters) or parameters.kernel(number, gear) <= control_limit(parameters, gear):
         return ""
     limit = f"{parameters.number(ids.GETRIEBE_VB_REGELGRENZE, gear)} (0.001°/s)"
@@ -123,14 +123,14 @@ def above_control_limit(parameters: ParameterSet, number: str, gear: int) -> str
 
 
 def curve(parameters: ParameterSet, gear: int) -> Iterator[Problem]:
-    """A curve must be whole and bring the spindle to its largest speed."""
+    """A curve must be complete and bring the spindle to its largest speed."""
     curve = curve_view(parameters, gear)
     if curve is None:
         return
     own = NEEDED_OF_ASYNCHRONOUS if curve.kind == "asynchronous" else NEEDED
     missing = [number for number in own if parameters.number(number, gear) == 0]
     for number in missing:
-        text = f"value 0 makes no {curve.kind} curve (P-AXIS-00202)"
+        text = f"value 0 gives no {curve.kind} curve (P-AXIS-00202)"
         yield problem(parameters, errors.CONTRADICTION, number, (gear,), text)
     least, most = parameters.number(ids.BESCHL_KENNLINIE_A_MIN, gear), parameters.number(own[0], gear)
     if not missing and least > most:
@@ -168,7 +168,7 @@ def polynomial(curve: CurveParameters, speed: float) -> float:
 
 
 def hyperbola(curve: CurveParameters, speed: float) -> float:
-    """a(n) above the limit speed; infinite where the denominator is not positive."""
+    """a(n) above the limit speed; infinite if the denominator is not positive."""
     x = speed / curve.limit_speed
     denominator = 1.0 + curve.b2 * x * x * (1.0 + curve.b3 * x * x)
     return curve.b1 / denominator if denominator > 0.0 else float("inf")

@@ -1,6 +1,6 @@
-"""The gain at which a position loop becomes unstable, from the parameters of its drive.
+"""Stability limit of a position loop, from the parameters of its drive.
 
-A sampled loop is z[k+1] = A z[k] + B u[k] with the actual position as z[0] and u[k] = -Kv z[0], held over a cycle.
+A sampled loop is z[k+1] = A z[k] + B u[k] with the actual position as z[0] and u[k] = -Kv z[0], held for a cycle.
 It is stable while all poles, the eigenvalues of A - Kv B (1 0 … 0), lie inside the unit circle. For a first-order drive
 A and B are its exact solution over a cycle, for a cascaded one that of plant_model.py without friction; each cycle on
 the bus is one more state. With T the cycle time and n cycles on the bus, a drive without lag has the limit
@@ -62,15 +62,16 @@ def velocity_loop(plant: PlantParameters, cycle_time: float) -> Loop:
     if plant.cascaded:
         return part(velocity_controlled(plant, gain=plant.velocity_gain) * cycle_time, (X, W, I, M, V), U)
     decay = math.exp(-cycle_time / plant.time_constant) if plant.time_constant > 0.0 else 0.0
-    way = plant.time_constant * (1.0 - decay)
-    return Loop(np.array([[1.0, way], [0.0, decay]]), np.array([cycle_time - way, 1.0 - decay]))
+    lag = plant.time_constant * (1.0 - decay)
+    return Loop(np.array([[1.0, lag], [0.0, decay]]), np.array([cycle_time - lag, 1.0 - decay]))
 
 
 def torque_loop(control: ControlParameters, cycle_time: float) -> Loop:
     """Mechanics that take torques, with the velocity controller of the NC around them.
 
-    In accelerations: a = Kp (e + z'), z' = z + e T/Tn once a cycle, e = u - v. Without an integral part (Tn = 0) there
-    is no z; where the telegram has no actual velocity, v is the way of the last cycle, and the position before a state.
+    In accelerations: a = Kp (e + z'), z' = z + e T/Tn once per cycle, e = u - v. Without an integral part (Tn = 0)
+    there is no z; if the telegram has no actual velocity, v is the distance of the last cycle divided by T, and the
+    previous position is a state.
     """
     plant, drive = control.plant, control.drive
     mechanics = part(velocity_controlled(plant, gain=0.0) * cycle_time, (X, V, M), I)
@@ -79,7 +80,7 @@ def torque_loop(control: ControlParameters, cycle_time: float) -> Loop:
     inner = delayed(mechanics, plant.bus_delay_cycles)
     velocity = np.eye(len(inner.held))[1]
     if not (drive.ideal or "velocity" in drive.feedback):
-        inner = with_position_before(inner)
+        inner = with_previous_position(inner)
         velocity = np.zeros(len(inner.held))
         velocity[[0, -1]] = 1.0 / cycle_time, -1.0 / cycle_time
     held = gain * (1.0 + share) * inner.held
@@ -90,8 +91,8 @@ def torque_loop(control: ControlParameters, cycle_time: float) -> Loop:
     return Loop(np.vstack((np.column_stack((step, gain * inner.held)), integral)), np.append(held, share))
 
 
-def with_position_before(loop: Loop) -> Loop:
-    """The same with the position of the cycle before as the last state."""
+def with_previous_position(loop: Loop) -> Loop:
+    """The same with the position of the previous cycle as the last state."""
     states = len(loop.held)
     step = np.zeros((states + 1, states + 1))
     step[:states, :states] = loop.step
@@ -100,14 +101,14 @@ def with_position_before(loop: Loop) -> Loop:
 
 
 def part(matrix: Matrix, states: tuple[int, ...], command: int) -> Loop:
-    """The rows and columns of some states of a model over a cycle; a state that never changes is none."""
+    """The rows and columns of some states of a model over a cycle, without states that never change."""
     step = expm(matrix)
     changing = [state for state in states if matrix[state].any()]
     return Loop(step[np.ix_(changing, changing)], step[changing, command])
 
 
 def delayed(loop: Loop, cycles: int) -> Loop:
-    """The same behind a bus of so many cycles."""
+    """The same behind a bus that takes `cycles` cycles."""
     if cycles == 0:
         return loop
     states = len(loop.held)

@@ -1,1 +1,1 @@
-"""What parameters there are: declarations.yaml as objects, their ranges in words, the reference."""
+"""The declarations of all parameters: declarations.yaml as objects, their ranges in words, the reference."""

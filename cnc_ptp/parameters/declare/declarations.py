@@ -1,4 +1,4 @@
-"""declarations.yaml as objects: what each parameter is called, may be and means. Read once a process, at first use."""
+"""declarations.yaml as objects: name, range and meaning of each parameter. Read once per process, at first use."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -61,16 +61,16 @@ class Declaration:
     form_text: str
     max_length: int
     effective: bool | str
-    """False: nothing reads it; letters: it counts for these axis types only."""
+    """False: nothing reads it; letters: in effect for these axis types only."""
     read_only: bool
     range: str
-    """Shown instead of the limits, where a check of its own sees to them with an error number of its own."""
+    """Shown instead of the limits, if a separate check with its own error number handles them."""
     drives: str
-    """Drive types for which the manual has it; empty: all."""
+    """Drive types for which the manual lists it; empty: all."""
     names: Mapping[str, int]
     """Constants for the bits of a number; the lists may use them, joined by |."""
     misprints: tuple[str, ...]
-    """Other names under which the manual prints it; not accepted, but the mend is named."""
+    """Misprinted names in the manual; not accepted, but the message gives the right one."""
 
     @property
     def type(self) -> str:
@@ -105,13 +105,13 @@ class Declaration:
         return f"{self.list_name} list, {self.id} {self.list_style_name(indexes)} of /{node}"
 
     def belongs_to(self, node_kind: str) -> bool:
-        """Whether such nodes have it: axes and spindles what has axis types, channels the channel and tool lists."""
+        """Whether such nodes have it: axes and spindles those with axis types, channels the channel and tool lists."""
         if self.axes:
             return node_kind in ("axis", "spindle")
         return node_kind == ("channel" if self.list_name in ("channel", "tool") else "machine")
 
     def effective_for(self, axis_type: str) -> bool:
-        """Whether it does anything for an axis of type T, R or S, or for a node that is none."""
+        """Whether it has an effect on an axis of type T, R or S, or on a node without axis type."""
         return axis_type in self.effective if isinstance(self.effective, str) else self.effective
 
     def unit_for(self, axis_type: str) -> str:
@@ -145,7 +145,7 @@ class Catalogue:
 
 
 def dotted(name: str) -> str:
-    """getriebe[0].kv -> getriebe.0.kv; dotted names stay."""
+    """getriebe[0].kv -> getriebe.0.kv; dotted names stay unchanged."""
     return re.sub(r"\[([0-9]+)\]", r".\1", name)
 
 

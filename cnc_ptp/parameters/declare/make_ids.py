@@ -1,6 +1,6 @@
 """Makes ids.py, the constants of the parameter ids, from declarations.yaml: `make ids` calls this file as a script.
 
-It imports nothing of the package, so that it also runs while a constant that is in use is still missing.
+It imports nothing from the package, so that it runs even if a constant that the package uses is missing.
 """
 
 import re
@@ -15,7 +15,7 @@ HEAD = '"""The parameter ids by their names in the lists. Made by `make ids` fro
 
 
 def ids_module(parameters: Mapping[str, Mapping[str, Any]]) -> str:
-    """Text of ids.py: a constant a parameter with its whole name beside it, list by list in the order of the ids."""
+    """Text of ids.py: one constant per parameter with its full name as a comment, by list and in order of the ids."""
     lists = dict.fromkeys(entry["list"] for entry in parameters.values())
     return HEAD + "".join(line for name in lists for line in list_lines(name, parameters))
 

@@ -1,4 +1,4 @@
-"""Ranges and defaults as people read them, in the reference and in ROS descriptors."""
+"""Ranges and defaults in words, for the reference and ROS descriptors."""
 
 from cnc_ptp.parameters.declare.declarations import DATA_TYPES, Declaration, Limit, ParameterValue
 
@@ -27,7 +27,7 @@ def choices_text(declaration: Declaration) -> str:
 
 
 def limits_text(declaration: Declaration) -> str:
-    """'0 < … ≤ 1000'; the end of the data type is left out where something else limits too."""
+    """'0 < … ≤ 1000'; the end of the data type is left out if there is another limit."""
     lower, upper = (written_limits(declaration, limits) for limits in (declaration.lower, declaration.upper))
     left = "".join(f"{limit.value} {'≤' if limit.inclusive else '<'} " for limit in lower)
     right = "".join(f" {'≤' if limit.inclusive else '<'} {limit.value}" for limit in upper)

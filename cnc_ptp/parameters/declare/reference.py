@@ -107,7 +107,7 @@ def matches(declaration: Declaration, wanted: str) -> bool:
 def find(wanted: str) -> list[Declaration]:
     """Parameters by id or name, else by number, by parts of id and name, and by words of the text, in this order.
 
-    Raises CncError 25018 with the nearest names when there is none.
+    Raises CncError 25018 with the nearest names if there is none.
     """
     declarations = list(catalogue().by_id.values())
     words = wanted.lower().split()

@@ -1,1 +1,1 @@
-"""A machine file as parameter sets: text, names and values against their declarations, all parameters of a node."""
+"""A machine file as parameter sets: its text is read, names and values are checked against their declarations."""

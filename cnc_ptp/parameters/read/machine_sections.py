@@ -1,4 +1,4 @@
-"""The sections of a whole machine: which units /machine lists, and the parameters of each."""
+"""The sections of a whole machine: the units that /machine lists, and the parameters of each."""
 
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,7 +19,7 @@ RESERVED_NAMES = ("machine", "plc", "clock", "recorder", "player", "events", "co
 def read_parameters(text: str, file: str) -> tuple[ParameterSet, dict[str, ParameterSet], list[Problem]]:
     """The parameters of /machine, those of its units by node name, and what is wrong with their names and values.
 
-    Raises ParameterError when the text is no ROS parameters file, or has no section /machine.
+    Raises ParameterError if the text is not a ROS parameters file, or has no section /machine.
     """
     sections, problems = read_sections(text, file)
     if any(problem.error_id == errors.SYNTAX for problem in problems):
@@ -60,7 +60,7 @@ def name_trouble(name: str, units: Mapping[str, str]) -> str:
     if name in RESERVED_NAMES:
         return "is taken by another node"
     if not (name.isascii() and name.isidentifier() and name == name.lower()):
-        return "must be small letters, digits and _, a letter first"
+        return "must be lower-case letters, digits and _, beginning with a letter"
     return ""
 
 

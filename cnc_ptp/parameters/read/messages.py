@@ -1,4 +1,4 @@
-"""What there is to say about one parameter of a machine file: a problem stops the node, a notice goes to the log."""
+"""Messages about one parameter of a machine file: a problem stops the node, a notice goes to the log."""
 
 from typing import NamedTuple
 
@@ -6,13 +6,13 @@ from cnc_ptp.parameters.errors import Place, Problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 GENERAL = 26120
-"""Number of notices that have none of their own."""
+"""Number of notices without a number of their own."""
 
 
 class Notice(NamedTuple):
-    """What is corrected, or what the author may not expect: one line for the log.
+    """A value that is corrected, or has an effect that its author may not expect: one line for the log.
 
-    As text: place, number, name and node of the parameter, then what there is to say.
+    As text: place, number, name and node of the parameter, then the message.
     """
 
     place: Place
@@ -42,7 +42,7 @@ def notice(
     error_id: int = GENERAL,
     values: tuple[tuple[str, float, str], ...] = (),
 ) -> Notice:
-    """The notice about a parameter; `error_id` is the vendor's number where there is one."""
+    """The notice about a parameter; `error_id` is the vendor's number if there is one."""
     declaration = parameters.catalogue.by_id[number]
     value = parameters.number(number, *indexes) if declaration.type in ("int", "float") else None
     own = () if value is None else ((number, float(value), declaration.unit_for(parameters.axis_type or "T")),)

@@ -1,10 +1,10 @@
-"""All parameters of one node: what the file gives, defaults for the rest, with names, units and places."""
+"""All parameters of one node: values of the file, defaults for the rest, with names, units and places."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from cnc_ptp.parameters import units
+from cnc_ptp.parameters import list_units
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import (
     Array,
@@ -44,7 +44,7 @@ class Parameter(NamedTuple):
 class ParameterSet:
     """The parameters of the node `/node`. `kind` is machine, channel, axis or spindle.
 
-    `given` has the values of the file by ROS name; `implied` those that follow from the rest of the file in place of a
+    `given` has the values of the file by ROS name; `implied` those that follow from the rest of the file and replace a
     default (logical numbers, type of spindles); `invalid` the names whose value was refused.
     """
 
@@ -69,7 +69,7 @@ class ParameterSet:
     def value(self, number: str, *indexes: int) -> ParameterValue:
         """Value in the type and unit of the list: the given one, else the default.
 
-        A default gives way to the limits that the file sets: with vb_max at 100000 that of vb_eilgang is 100000 too.
+        The limits that the file gives apply to a default too: with vb_max at 100000 that of vb_eilgang is 100000.
         """
         declaration = self.catalogue.by_id[number]
         name = declaration.ros_name(indexes)
@@ -93,7 +93,7 @@ class ParameterSet:
 
     def kernel(self, number: str, *indexes: int) -> float:
         """Value of an int or float parameter in kernel units (mm, °, s, ratios)."""
-        return units.to_kernel(self.number(number, *indexes), self.unit(number))
+        return list_units.to_kernel(self.number(number, *indexes), self.unit(number))
 
     def percent(self, number: str) -> float:
         """Value in 0.1 % as percent."""
@@ -117,7 +117,7 @@ class ParameterSet:
         return self.catalogue.by_id[number].unit_for(self.axis_type)
 
     def where(self, number: str, *indexes: int) -> Place:
-        """Place of a given value, of the section otherwise."""
+        """Place of a given value, otherwise that of the section."""
         given = self.given.get(self.catalogue.by_id[number].ros_name(indexes))
         return given.place if given else self.place
 
@@ -146,7 +146,7 @@ class ParameterSet:
             yield from ((index, *others) for others in self.elements(inner, arrays[1:]))
 
     def find(self, ros_name: str) -> Parameter:
-        """The parameter with a ROS name; KeyError when the node has none."""
+        """The parameter with a ROS name; KeyError if the node has none."""
         key, indexes = split_indexes(ros_name)
         declaration = self.catalogue.by_key[self.kind][key]
         return Parameter(declaration, indexes, self.value(declaration.id, *indexes))

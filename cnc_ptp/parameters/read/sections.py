@@ -18,7 +18,7 @@ from cnc_ptp.parameters.read.values import BadValue, checked_value, shown
 
 
 def checked_section(section: Section, kind: str, problems: list[Problem]) -> ParameterSet:
-    """The section as a ParameterSet of all values that are right; what is wrong goes to `problems`."""
+    """The section as a ParameterSet of all valid values; the others go to `problems`."""
     implied: dict[str, ParameterValue] = {"kenngr.achs_typ": "ACHSTYP_SPINDEL"} if kind == "spindle" else {}
     letter = section_axis_type(section, kind)
     given: dict[str, Given] = {}

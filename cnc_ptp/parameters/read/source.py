@@ -1,7 +1,7 @@
 """Text of a ROS parameters file -> sections with flat parameter names, values and places.
 
-Works on the events of the YAML parser, so that every value keeps its line and column, that duplicates are seen and that
-no input, however deep or odd, does more harm than a Problem. Anchors and aliases are refused, as ROS refuses them.
+Works on the events of the YAML parser, so that every value keeps its line and column, duplicates are found, and
+any input, however deep or odd, gives at most a Problem. Anchors and aliases are refused, as ROS refuses them.
 """
 
 import re
@@ -37,7 +37,7 @@ class Entry(NamedTuple):
 
 @dataclass
 class Section:
-    """What a file says about one node; `node` is the name without the slash."""
+    """The entries of a file for one node; `node` is its name without the slash."""
 
     node: str
     place: Place
@@ -45,11 +45,11 @@ class Section:
 
 
 class Refused(Exception):
-    """Reading cannot go on; carries the problem."""
+    """Reading cannot continue; carries the problem."""
 
 
 def read_sections(text: str, file: str) -> tuple[list[Section], list[Problem]]:
-    """The sections of a ROS parameters file and what is wrong with its form; names and values are not checked here."""
+    """The sections of a ROS parameters file and the problems of its form; names and values are not checked here."""
     reader = Reader(file)
     try:
         reader.read_file(yaml.parse(text, Loader=PARSER))
@@ -94,7 +94,7 @@ class Reader:
             section = Section(key.value.lstrip("/"), self.place(key))
             for other in self.sections:
                 if other.node == section.node:
-                    text = f"section /{section.node} stands twice, first in line {other.place.line}"
+                    text = f"section /{section.node} is given twice, first in line {other.place.line}"
                     self.add(errors.DUPLICATE_KEY, key, text)
             self.sections.append(section)
             if isinstance(event, yaml.MappingStartEvent):
@@ -105,7 +105,7 @@ class Reader:
     def read_section(self, section: Section, events: Iterator[Any]) -> None:
         for key, event in self.pairs(events):
             if key.value != "ros__parameters":
-                text = f"section /{section.node} has {key.value} where ros__parameters must stand"
+                text = f"section /{section.node} has {key.value} where ros__parameters is expected"
                 self.add(errors.SYNTAX, key, text)
                 self.skip(event, events)
             elif isinstance(event, yaml.MappingStartEvent):
@@ -168,7 +168,7 @@ class Reader:
         self.skip(event, events)
 
     def skip(self, event: Any, events: Iterator[Any]) -> None:
-        """Goes behind the value that begins with `event`."""
+        """Skips the value that begins with `event`."""
         depth = 0
         while True:
             depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)

@@ -1,4 +1,4 @@
-"""One value against its declaration: right type, inside the range, one of the choices; constants to one spelling."""
+"""One value against its declaration: type, range and choices are checked, constants get one spelling."""
 
 import math
 import re
@@ -18,7 +18,7 @@ NEEDED = {
 
 
 class BadValue(ValueError):
-    """Says with error number and text what is wrong with a value."""
+    """An invalid value, with error number and text."""
 
     def __init__(self, error_id: int, text: str) -> None:
         super().__init__(error_id, text)
@@ -142,7 +142,7 @@ def constants(declaration: Declaration, value: Value) -> str:
 
 
 def spelling(declaration: Declaration, number: int, text: str) -> str:
-    """The constants that make up a number, joined by |; raises BadValue when some bit has no constant."""
+    """The constants that make up a number, joined by |; raises BadValue if some bit has no constant."""
     choices: Mapping[str, int] = declaration.choices
     for name, constant in choices.items():
         if constant == number:
@@ -154,19 +154,20 @@ def spelling(declaration: Declaration, number: int, text: str) -> str:
             rest &= ~constant
     if rest or not names:
         known = ", ".join(f"{name} 0x{constant:x}" for name, constant in choices.items())
-        raise BadValue(errors.OUT_OF_RANGE, f"value {text} is made of none of {known}")
+        what = "not a combination" if declaration.flags else "none"
+        raise BadValue(errors.OUT_OF_RANGE, f"value {text} is {what} of {known}")
     return " | ".join(reversed(names))
 
 
 def with_unit(value: object, unit: str) -> str:
-    """A limit with its unit: '5 (0.01/s)' where the unit is a number itself, '5 mm/s²' otherwise."""
+    """A limit with its unit: '5 (0.01/s)' if the unit itself begins with a number, '5 mm/s²' otherwise."""
     if not unit:
         return f"{value}"
     return f"{value} ({unit})" if unit[0].isdigit() else f"{value} {unit}"
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it, cut when it is long."""
+    """A value as messages show it, shortened if it is long."""
     if value is None or isinstance(value, bool):
         return {None: "null", True: "true", False: "false"}[value]
     text = f"[{', '.join(map(shown, value))}]" if isinstance(value, tuple) else f"{value!r}"

@@ -1,1 +1,1 @@
-"""The parameter sets as the kernel uses them: one frozen class a kind of unit, in kernel units."""
+"""The parameter sets as the kernel uses them: one frozen class per kind of unit, in kernel units."""

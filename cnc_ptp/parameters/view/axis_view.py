@@ -25,7 +25,7 @@ class AxisParameters:
     number: Annotated[int, ids.KOPF_ACHS_NR]
     rotary: bool
     modulo: bool
-    """A turntable or a conveyor: it counts on without an end, also from modulo_low to modulo_high, mm (°).
+    """A turntable or conveyor: its position is counted without end, and also from modulo_low to modulo_high, mm (°).
 
     Then the soft limits are infinite.
     """
@@ -36,7 +36,7 @@ class AxisParameters:
     max_velocity: Annotated[float, ids.DYNAMIK_VB_MAX]
     rapid_velocity: Annotated[float, ids.GETRIEBE_VB_EILGANG]
     reference_velocity: float
-    """A PTP start with more is refused."""
+    """A PTP start with a larger velocity is refused."""
     max_acceleration: Annotated[float, ids.DYNAMIK_A_MAX]
     acceleration: Annotated[float, ids.SLOPE_PROFIL_A_BESCHL]
     deceleration: Annotated[float, ids.SLOPE_PROFIL_A_BREMS]
@@ -46,7 +46,7 @@ class AxisParameters:
     soft_limit_positive: float
     position_window: Annotated[float, ids.GETRIEBE_WINDOW]
     encoder_increment: float
-    """mm or ° an increment; 0.0 is an ideal measuring system."""
+    """mm or ° per increment; 0.0 is an ideal measuring system."""
     override_type: Annotated[int, ids.PTP_OVERRIDE_TYPE]
     """PTP override: 1 reduced, 2 original, 3 and 4 the same iterated."""
     override_steps: Annotated[int, ids.PTP_OVERRIDE_STEPS]
@@ -58,7 +58,7 @@ class AxisParameters:
     external_timeout: Annotated[float, ids.PTP_EXTERNAL_TIMEOUT_MS]
     """Longest silence of external setpoints in motion."""
     target_time: Annotated[float, ids.PTP_TARGET_TIME_MS]
-    """In which the actual position must have come into the position window; 0 = not monitored."""
+    """Time within which the actual position must be in the position window; 0 = not monitored."""
     error_propagation_delayed: Annotated[bool, ids.COUPLING_ERROR_PROPAGATION_MODE]
     """An error reaches the other axes of the master/slave group only after error_propagation_delay."""
     error_propagation_delay: Annotated[float, ids.COUPLING_ERROR_PROPAGATION_DELAY_MS]

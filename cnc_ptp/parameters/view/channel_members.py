@@ -1,4 +1,4 @@
-"""Which axes and spindles a channel has, and what NC programs call them."""
+"""The axes and spindles of a channel, and their names in NC programs."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 Sets = Mapping[str, ParameterSet]
 COUPLING_GROUP = 0
-"""Of the groups, the one that programs can enable."""
+"""The group that programs can enable."""
 SPINDLES = 1
 """P-CHAN-00061: the pair consists of spindles."""
 
@@ -17,8 +17,8 @@ SPINDLES = 1
 class ChannelAxisEntry:
     """An axis or spindle of a channel.
 
-    `name` is for programs; `node` is None when no unit has the logical `number`; `indexes` are those in the channel
-    list, empty for a unit that the channel got without listing it. `own_name`: that of a spindle while it is not the
+    `name` is for programs; `node` is None if no unit has the logical `number`; `indexes` are those in the channel
+    list, empty for a unit that the channel has without listing it. `own_name`: that of a spindle while it is not the
     main spindle. `plc_control`: a spindle without a unit, the PLC moves it (P-CHAN-00069).
     """
 
@@ -35,7 +35,7 @@ def is_path_axis(parameters: ParameterSet) -> bool:
 
 
 def axis_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]:
-    """The axes of a channel as gruppe[i].achse[j] orders them; one that lists none gets all that no other lists."""
+    """The axes of a channel in the order of gruppe[i].achse[j]; one that lists none gets all that no other lists."""
     listed = list(listed_axes(channel, sets))
     if listed:
         return listed
@@ -56,7 +56,7 @@ def listed_axes(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEntry]
 def spindle_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]:
     """The spindles of a channel in the order of spindel[i]; a channel that lists none gets all of the machine.
 
-    The main spindle is called by P-CHAN-00053 (S when that is empty), whatever its own name.
+    The name of the main spindle is P-CHAN-00053 (S if that is empty), whatever its own name.
     """
     entries = list(listed_spindles(channel, sets)) or [
         unlisted(unit) for unit in sets.values() if unit.kind == "spindle"
@@ -76,7 +76,7 @@ def listed_spindles(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEn
 
 
 def main_spindle_number(channel: ParameterSet, entries: list[ChannelAxisEntry]) -> int:
-    """Logical number of the main spindle: P-CHAN-00051, or the first of spindles that were not listed; 0 for none."""
+    """Logical number of the main spindle: P-CHAN-00051, or the first one if no spindles are listed; 0 for none."""
     if entries and not entries[0].indexes and not channel.is_given(ids.MAIN_SPINDLE_AX_NR):
         return entries[0].number
     return int(channel.number(ids.MAIN_SPINDLE_AX_NR))
@@ -107,5 +107,5 @@ def unlisted(unit: ParameterSet) -> ChannelAxisEntry:
 
 
 def program_name(unit: ParameterSet | None) -> str:
-    """What a program calls a unit that the channel gives no name: P-AXIS-00297 or the node name in capitals."""
+    """The program name of a unit that has none from the channel: P-AXIS-00297 or the node name in capitals."""
     return (unit.text(ids.KOPF_LOG_ACHS_NAME) or unit.node.upper()) if unit else ""

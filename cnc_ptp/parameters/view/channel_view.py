@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Annotated, NamedTuple
 
 from cnc_ptp.parameters.declare import ids
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
-from cnc_ptp.parameters.units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.channel_members import (
     ChannelAxisEntry,
     axis_entries,
@@ -22,7 +22,7 @@ GEAR_M_FUNCTIONS = range(40, 46)
 
 
 class ChannelAxis(NamedTuple):
-    """An axis of a channel: what programs call it ("X") and its node ("x")."""
+    """An axis of a channel: its name in programs ("X") and its node ("x")."""
 
     name: str
     node: str
@@ -31,9 +31,9 @@ class ChannelAxis(NamedTuple):
 class ChannelSpindle(NamedTuple):
     """A spindle of a channel with the synchronisation of its functions.
 
-    name          what programs call it at start-up, and its name in the canonical stream
+    name          its name in programs at start-up and in the canonical stream
     node          empty for a spindle that the PLC moves through the channel's interface (P-CHAN-00069)
-    own_name      what programs call it while it is not the main spindle; empty is `name`
+    own_name      its name in programs while it is not the main spindle; empty is `name`
     ranges        (lowest, highest) speed of each gear stage, rpm; (0, 0) is an unused one
     """
 
@@ -57,7 +57,7 @@ class ChannelSpindle(NamedTuple):
 
 
 class ToolLimits(NamedTuple):
-    """What a tool permits to the spindle `node`, rpm and °/s²; None is not limited (P-TOOL-00012 … 00015)."""
+    """Limits of a tool for the spindle `node`, rpm and °/s²; None is not limited (P-TOOL-00012 … 00015)."""
 
     node: str
     min_speed_rpm: float | None
@@ -73,22 +73,22 @@ class ChannelParameters:
     axes: tuple[ChannelAxis, ...]
     spindles: tuple[ChannelSpindle, ...]
     main_spindle: str
-    """Program name of the main spindle, empty when the channel has no spindle."""
+    """Program name of the main spindle, empty if the channel has no spindle."""
     m_functions: Mapping[int, Synchronisation]
     """Synchronisation by M number; an M function that is missing here does not exist on the machine."""
     max_override_percent: float
     circle_center_tolerance: Annotated[float, ids.MITTELPKT_DIFF]
     """Largest shift of an arc's centre in mm …"""
     circle_center_ratio: Annotated[float, ids.MITTELPKT_FAKTOR]
-    """… and as a part of its radius."""
+    """… and as a fraction of its radius."""
     gear_change: Annotated[bool, ids.MAIN_SPINDLE_GEAR_CHANGE] = False
     """M40 to M45 and S change the gear of the main spindle (P-CHAN-00052)."""
     coupled: tuple[tuple[str, str], ...] = ()
     """Coupling group 0: (slave, master) by the name of the spindle (P-CHAN-00037, 00038)."""
     tools: Mapping[int, ToolLimits] = field(default_factory=dict)
-    """Limits of the tools that have any, by D number."""
+    """Limits of the tools that have some, by D number."""
     tool_records: frozenset[int] = frozenset()
-    """D numbers of all tools that the file knows."""
+    """D numbers of all tools in the file."""
     slope: str = "TRAPEZ"
     """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
 
@@ -112,7 +112,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Cha
 
 
 def channel_spindle(channel: ParameterSet, entry: ChannelAxisEntry) -> ChannelSpindle:
-    """One of spindel[i], or one that the channel has without listing it: then all parameters have their defaults."""
+    """One of spindel[i], or one that the channel has without listing it; then all parameters have their defaults."""
     return ChannelSpindle(
         name=entry.name,
         node="" if entry.plc_control else str(entry.node),
@@ -138,7 +138,7 @@ def coupled_spindles(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]
 
 
 def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> dict[int, ToolLimits]:
-    """What the tools permit; a limit that the file does not give is none."""
+    """Limits of the tools; one that the file does not give is None."""
     node = {entry.number: str(entry.node) for entry in spindles}
     tools = {}
     for tool in channel.used_indexes("wz"):
@@ -155,7 +155,7 @@ def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> 
 
 
 def limit(channel: ParameterSet, number: str, tool: int) -> float | None:
-    """A limit of a tool in kernel units; None where it is not given."""
+    """A limit of a tool in kernel units; None if it is not given."""
     return channel.kernel(number, tool) if channel.is_given(number, tool) else None
 
 

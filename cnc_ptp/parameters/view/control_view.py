@@ -1,4 +1,4 @@
-"""What position controller, feedforward, friction compensation and drive of one gear need, in kernel units."""
+"""Parameters of position controller, feedforward, friction compensation and drive in one gear, in kernel units."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from cnc_ptp.parameters.view.fields import given_fields
 VEL, ACC, JERK = 0x001, 0x002, 0x004
 ADD_VEL, ADD_ACC, ADD_JERK = 0x100, 0x200, 0x800
 DELAY_CYCLES = 6
-"""A feedforward delay must be below so many cycles (P-AXIS-00389, 00390)."""
+"""A feedforward delay must be shorter than this number of cycles (P-AXIS-00389, 00390)."""
 DEFAULT_JERK_DENOMINATOR = 100
 DEFAULT_TABLE_SIZE = 20
 MONITORING_TYPES = ESTIMATED, LINEAR, FIXED = 1, 2, 4
@@ -38,27 +38,27 @@ class LagMonitoring:
 
 @dataclass(frozen=True, slots=True)
 class DriveScaling:
-    """Drive formats: what one mm, mm/s (deg, deg/s) and Nm (N) is on the bus."""
+    """Drive formats: one mm, mm/s (deg, deg/s) and Nm (N) on the bus."""
 
     position: float
-    """Increments a mm (deg)."""
+    """Increments per mm (deg)."""
     velocity: float
-    """Digits a mm/s (deg/s)."""
+    """Digits per mm/s (deg/s)."""
     torque: float
-    """Digits a Nm (N); 0.0 where nothing can be put out (110465)."""
+    """Digits per Nm (N); 0.0 if no torque can be output (110465)."""
     analogue: float
-    """Bits of a DA word a mm/s (deg/s), P-AXIS-00129 / P-AXIS-00128."""
+    """Bits of a DA word per mm/s (deg/s), P-AXIS-00129 / P-AXIS-00128."""
     torque_per_acceleration: float
     """Nm (N) for 1 mm/s² (deg/s²): J · 2π · i / h, or m / 1000."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveParameters:
-    """The drive and what its telegram carries."""
+    """The drive and the contents of its telegram."""
 
     kind: Annotated[int, ids.KENNGR_ANTR_TYP]
     interface: str
-    """What is commanded: velocity, position, lag (DSC), torque, or none (virtual axis)."""
+    """Commanded quantity: velocity, position, lag (DSC), torque, or none (virtual axis)."""
     commands: frozenset[str]
     """Quantities in the command telegram: velocity, additive_torque …"""
     feedback: frozenset[str]
@@ -76,7 +76,7 @@ class DriveParameters:
 
 @dataclass(frozen=True, slots=True)
 class FeedforwardParameters:
-    """Feedforward (P-AXIS-00223 …). Velocity parts are dimensionless weights, times in s."""
+    """Feedforward (P-AXIS-00223 …). Weights are dimensionless, times in s."""
 
     mode: int
     weight: float
@@ -85,12 +85,12 @@ class FeedforwardParameters:
     time_constant: float
     """Ta of the conventional acceleration part, s."""
     torque_weight: float
-    """Weight of the additive torque, P-AXIS-00225 / P-AXIS-00226 without dimension."""
+    """Weight of the additive torque, P-AXIS-00225 / P-AXIS-00226."""
     jerk_weight: float
     velocity_delay: float
     acceleration_delay: float
     lead_cycles: int
-    """By how many cycles the feedforward leaves before its setpoint (PROFIdrive)."""
+    """Number of cycles by which the feedforward is output before its setpoint (PROFIdrive)."""
     prefilter_cycles: Annotated[int, ids.VORSTEUER_PREFILTER_CYCLES]
     always_active: Annotated[bool, ids.VORSTEUER_DEFAULT_ACTIVE]
 
@@ -124,7 +124,7 @@ class PlantParameters:
     static: float
     stribeck_velocity: Annotated[float, ids.FRICTION_STRIBECK_VELOCITY]
     viscous: float
-    """Nm (N) a mm/s (deg/s)."""
+    """Nm (N) per mm/s (deg/s)."""
     backlash: Annotated[float, ids.SIMULATION_BACKLASH]
     encoder_at_load: bool
     bus_delay_cycles: Annotated[int, ids.SIMULATION_BUS_DELAY_CYCLES]
@@ -135,12 +135,12 @@ class PlantParameters:
 
 @dataclass(frozen=True, slots=True)
 class ModuloError:
-    """Encoder increments that a modulo turn is short of (P-AXIS-00124 / P-AXIS-00125); 0 = no compensation."""
+    """Encoder increments that are missing in a modulo turn (P-AXIS-00124 / P-AXIS-00125); 0 = no compensation."""
 
     turn: float
     """Modulo range, deg."""
     increment: float
-    """deg an increment."""
+    """deg per increment."""
     increments_per_turn: float
 
 
@@ -157,7 +157,7 @@ class ControlParameters:
     modulo_error: ModuloError
     plant: PlantParameters
     path_delay_cycles: int = 0
-    """What other axes of the same path need: this one is to be late by as much."""
+    """Delay that other axes of the same path need, and this one therefore keeps too."""
 
     @property
     def delay_cycles(self) -> int:
@@ -207,9 +207,9 @@ def drive_scaling(parameters: ParameterSet, gear: int, cycle_time: float) -> Dri
 
 
 def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> float:
-    """Bits of a DA word a mm/s (deg/s): P-AXIS-00129 / P-AXIS-00128 bits at 1 m/min (1000 °/min).
+    """Bits of a DA word per mm/s (deg/s): P-AXIS-00129 / P-AXIS-00128 bits at 1 m/min (1000 °/min).
 
-    An axis whose position loop stays open (P-AXIS-00320) puts its speed out with P-AXIS-00205 to 00207 (spindle 2.2.4).
+    The speed of an axis with an open position loop (P-AXIS-00320) is scaled by P-AXIS-00205 to 00207 (spindle 2.2.4).
     """
     if telegram.is_open_loop(parameters):
         return velocity_scale(parameters, cycle_time)
@@ -217,13 +217,13 @@ def analogue_scale(parameters: ParameterSet, gear: int, cycle_time: float) -> fl
 
 
 def velocity_scale(parameters: ParameterSet, cycle_time: float) -> float:
-    """Digits a mm/s (deg/s): v_reso_num digits are v_reso_denom µm (0.001°) in the time base."""
+    """Digits per mm/s (deg/s): v_reso_num digits are v_reso_denom µm (0.001°) in the time base."""
     base = TIME_BASES.get(int(parameters.number(ids.ANTR_V_TIME_BASE)), cycle_time)
     return parameters.number(ids.ANTR_V_RESO_NUM) * base / parameters.kernel(ids.ANTR_V_RESO_DENOM)
 
 
 def torque_scale(parameters: ParameterSet) -> float:
-    """Digits a Nm (N): P-AXIS-00325 / P-AXIS-00326 digits are P-AXIS-00392; 0.0 with a zero denominator (110465)."""
+    """Digits per Nm (N): P-AXIS-00325 / P-AXIS-00326 digits are P-AXIS-00392; 0.0 with a zero denominator (110465)."""
     reference = parameters.number(ids.ANTR_ACC_REFERENCE_VALUE)
     if not reference or not parameters.number(ids.ANTR_TORQUE_SCALE_DENOM):
         return 0.0
@@ -265,7 +265,7 @@ def quotient(parameters: ParameterSet, numerator: str, denominator: str, *gear: 
 
 
 def velocity_weight(parameters: ParameterSet) -> float:
-    """P-AXIS-00514 / P-AXIS-00515, beside the global weight."""
+    """P-AXIS-00514 / P-AXIS-00515, in addition to the global weight."""
     return quotient(parameters, ids.VORSTEUER_FEEDFORWARD_V_ADD_NUM, ids.VORSTEUER_FEEDFORWARD_V_ADD_DENOM)
 
 
@@ -283,7 +283,7 @@ def flag_bits(parameters: ParameterSet, number: str) -> int:
 
 
 def permitted_delay(parameters: ParameterSet, number: str, cycle_time: float) -> float:
-    """A delay in s; 0 where it is not below six cycles (70348, 70349)."""
+    """A delay in s; 0 if it is not below six cycles (70348, 70349)."""
     delay = parameters.kernel(number)
     return delay if delay < DELAY_CYCLES * cycle_time * (1.0 - 1e-12) else 0.0
 
@@ -313,7 +313,7 @@ def friction_table_size(parameters: ParameterSet) -> int:
 
 
 def modulo_error(parameters: ParameterSet, gear: int) -> ModuloError:
-    """P-AXIS-00124 increments in P-AXIS-00125 turns, where P-AXIS-00120 switches the compensation on."""
+    """P-AXIS-00124 increments in P-AXIS-00125 turns, if P-AXIS-00120 switches the compensation on."""
     turns = parameters.number(ids.GETRIEBE_MODULO_UMDREH, gear) if parameters.axis_type != "T" else 0
     if not turns or not parameters.number(ids.LR_PARAM_MOD_KOMP):
         return ModuloError(0.0, 0.0, 0.0)

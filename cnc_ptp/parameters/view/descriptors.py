@@ -1,4 +1,4 @@
-"""What a node needs to declare its parameters in ROS, without rclpy."""
+"""Descriptors with which a node declares its parameters in ROS, without rclpy."""
 
 import math
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from cnc_ptp.parameters.read.parameter_set import ParameterSet
 class RosDescriptor(NamedTuple):
     """One ROS parameter. `type` is int, float, bool, string or strings; limits are None without a range, and inclusive.
 
-    Where a limit is another parameter, it is that parameter's value.
+    If a limit is another parameter, it is that parameter's value.
     """
 
     ros_name: str

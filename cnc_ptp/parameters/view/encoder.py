@@ -1,4 +1,4 @@
-"""Resolution of the measuring system, given by increments per way or by encoder, gear and feed constant."""
+"""Resolution of the measuring system, given by increments per distance or by encoder, gear and feed constant."""
 
 from fractions import Fraction
 
@@ -6,7 +6,7 @@ from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 
 CORRECTED = {ids.GETRIEBE_WEGAUFZ: 110386, ids.GETRIEBE_WEGAUFN: 110086}
-"""Parameters of which a 0 counts as 1, with the number of the warning."""
+"""Parameters whose 0 counts as 1, with the number of the warning."""
 
 
 def uses_feed_constant(parameters: ParameterSet) -> bool:
@@ -28,10 +28,10 @@ def resolution(parameters: ParameterSet, gear: int) -> Fraction:
 
 
 def increment(parameters: ParameterSet, gear: int) -> float:
-    """mm or ° an increment, 1e-4 / R."""
+    """mm or ° per increment, 1e-4 / R."""
     return float(1 / (10_000 * resolution(parameters, gear)))
 
 
 def encoder_increment(parameters: ParameterSet, gear: int) -> float:
-    """mm or ° an increment of the simulated encoder; 0.0 when it is off."""
+    """mm or ° per increment of the simulated encoder; 0.0 if it is off."""
     return increment(parameters, gear) if parameters.number(ids.SIMULATION_ENCODER) else 0.0

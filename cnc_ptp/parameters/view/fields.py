@@ -1,4 +1,4 @@
-"""Fields of a view that are parameters. Each says which one, by its id in the annotation:
+"""Fields of a view that are parameters. Each has the id of its parameter in the annotation:
 
 max_velocity: Annotated[float, ids.DYNAMIK_VB_MAX]
 """
@@ -21,7 +21,7 @@ READERS: dict[type, Callable[..., Any]] = {
 def given_fields(view: type, parameters: ParameterSet, *indexes: int) -> dict[str, Any]:
     """Field -> value of those fields of a class that are parameters: floats in kernel units, the others as in the list.
 
-    `indexes` are those of the record (the gear, the spindle of a channel …); a parameter takes as many as it has.
+    `indexes` are those of the record (the gear, the spindle of a channel …); a parameter takes as many as it needs.
     """
     return {name: READERS[kind](parameters, number, *indexes) for name, kind, number in parameter_fields(view)}
 

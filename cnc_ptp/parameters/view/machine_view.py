@@ -1,4 +1,4 @@
-"""A whole machine as the kernel uses it: typed, in kernel units (mm, °, s), one frozen class a kind of unit."""
+"""A whole machine as the kernel uses it: typed, in kernel units (mm, °, s), one frozen class per kind of unit."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -22,14 +22,14 @@ class MachineParameters:
     watchdog_ms: Annotated[int, ids.WATCHDOG_MS]
     life_sign_timeout_ms: Annotated[int, ids.LIFE_SIGN_TIMEOUT_MS]
     state_rate_hz: Annotated[float, ids.STATE_RATE_HZ]
-    """Live states a second of each unit, 0 = none."""
+    """Live states per second of each unit, 0 = none."""
     handshake_timeout_ms: Annotated[int, ids.HANDSHAKE_TIMEOUT_MS]
-    """For so long the PLC may leave a function unacknowledged, 0 is for ever."""
+    """Time within which the PLC must acknowledge a function, 0 is for ever."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]
     warnings: tuple[Notice, ...] = ()
-    """What is accepted but deserves a look, one line each."""
+    """Values that are accepted but may not do what is expected, one line each."""
     sets: Mapping[str, ParameterSet] = field(default_factory=dict, repr=False, compare=False)
 
     def raw(self, node: str) -> ParameterSet:
@@ -60,7 +60,7 @@ def equally_late(
 ) -> dict[str, AxisParameters]:
     """The axes, those of a channel behind delay lines of the same length: the longest that one of them needs.
 
-    Otherwise they would be off their path by v · T for each cycle between them.
+    Otherwise they would leave their path by v · T for each cycle between them.
     """
     late = dict(axes)
     for channel in channels:

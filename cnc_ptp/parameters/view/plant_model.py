@@ -1,7 +1,7 @@
 """The linear part of a simulated drive with its mechanics as differential equations.
 
-States: w set velocity behind the filter, i integral part of the velocity controller, m acceleration that the motor
-gives (torque over inertia), v velocity, x position. Inputs: command velocity u, acceleration f that friction takes.
+States: w set velocity behind the filter, i integral part of the velocity controller, m acceleration by the motor
+(torque over inertia), v velocity, x position. Inputs: commanded velocity u, deceleration f by friction.
 
     w' = (u - w) / Tf      i' = Kp / Tn (w - v)      m' = (Kp (w - v) + i - m) / Ti      v' = m - b v - f      x' = v
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from cnc_ptp.parameters.view.control_view import PlantParameters
 
 W, I, M, V, X, U, F = range(7)  # noqa: E741 - the letters of the equations
-"""Places of states and inputs in a row."""
+"""Indexes of states and inputs in a row."""
 
 Matrix = NDArray[np.float64]
 
@@ -26,18 +26,18 @@ Matrix = NDArray[np.float64]
 def velocity_controlled(plant: PlantParameters, *, gain: float, held: bool = False, stands: bool = False) -> Matrix:
     """d/dt of (w, i, m, v, x, u, f) as a 7 × 7 matrix; inputs are held, their rows are 0.
 
-    `gain` is Kp in 1/s. `held`: the torque limit holds, then i is the torque that is asked for and stands still.
+    `gain` is Kp in 1/s. `held`: the torque limit is active, then i is the required torque and constant.
     `stands`: friction holds the axis.
     """
     rows: Any = np.zeros((7, 7))
     if plant.time_constant > 0.0:
         rows[W, [W, U]] = -1.0 / plant.time_constant, 1.0 / plant.time_constant
-    asked = asked_acceleration(plant, gain=0.0 if held else gain)
+    required = required_acceleration(plant, gain=0.0 if held else gain)
     if not held and plant.velocity_integral_time > 0.0:
         rows[I] = gain / plant.velocity_integral_time * set_minus_actual(plant)
-    given = asked
+    given = required
     if plant.current_time_constant > 0.0:
-        rows[M] = asked / plant.current_time_constant
+        rows[M] = required / plant.current_time_constant
         rows[M, M] -= 1.0 / plant.current_time_constant
         given = unit(M)
     if not stands:
@@ -48,7 +48,7 @@ def velocity_controlled(plant: PlantParameters, *, gain: float, held: bool = Fal
     return rows  # type: ignore[no-any-return]
 
 
-def asked_acceleration(plant: PlantParameters, *, gain: float) -> Matrix:
+def required_acceleration(plant: PlantParameters, *, gain: float) -> Matrix:
     """Row of Kp (w - v) + i."""
     return unit(I) + gain * set_minus_actual(plant)
 
@@ -63,7 +63,7 @@ def viscous_rate(plant: PlantParameters) -> float:
     return plant.viscous / plant.torque_per_acceleration
 
 
-def unit(place: int) -> Matrix:
+def unit(index: int) -> Matrix:
     row = np.zeros(7)
-    row[place] = 1.0
+    row[index] = 1.0
     return row

@@ -1,4 +1,4 @@
-"""A spindle as the kernel uses it: what all gears share, and one record a gear stage."""
+"""A spindle as the kernel uses it: parameters that all gears share, and one record per gear stage."""
 
 import math
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ CONTROL_LIMIT_DRIVES = (
     DriveType.LIGHTBUS,
     DriveType.TERMINAL,
 )
-"""Drive types (P-AXIS-00020) for which P-AXIS-00220 exists; the others watch their measuring system themselves."""
+"""Drive types (P-AXIS-00020) for which P-AXIS-00220 exists; the others monitor their measuring system themselves."""
 OPEN_LOOP_FEEDBACK = {
     "OPEN_POSITION_LOOP_POS_FEEDBACK": "POSITION",
     "OPEN_POSITION_LOOP_VEL_FEEDBACK": "SPEED",
@@ -51,12 +51,12 @@ class CurveParameters(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class GearParameters:
-    """What depends on the gear stage. Positions in °, speeds in °/s, accelerations in °/s²."""
+    """Parameters of a gear stage. Positions in °, speeds in °/s, accelerations in °/s²."""
 
     stage: int
     max_speed: Annotated[float, ids.DYNAMIK_VB_MAX]
     positioning_speed: Annotated[float, ids.GETRIEBE_VB_EILGANG]
-    """Rapid traverse: M19 without a speed, and the way to the change position."""
+    """Rapid traverse: M19 without a speed, and the motion to the change position."""
     max_acceleration: Annotated[float, ids.DYNAMIK_A_MAX]
     acceleration: Annotated[float, ids.SLOPE_PROFIL_A_BESCHL]
     deceleration: Annotated[float, ids.SLOPE_PROFIL_A_BREMS]
@@ -64,9 +64,9 @@ class GearParameters:
     curve: CurveParameters | None
     """In place of acceleration and deceleration in endless rotation."""
     zero_speed: Annotated[float, ids.GETRIEBE_VB_MIN_NULL]
-    """Below this actual speed the spindle stands."""
+    """Below this actual speed the spindle is at a standstill."""
     control_limit: float
-    """Above it the measuring system fails; infinite where there is no such limit."""
+    """Above it the measuring system fails; infinite if there is no such limit."""
     change_position: Annotated[float, ids.GETRIEBE_GETR_SCHALT_POS]
     reference_position: Annotated[float, ids.GETRIEBE_POS_REFPKT]
     """Of the zero pulse."""
@@ -86,13 +86,13 @@ class SpindleParameters:
     number: Annotated[int, ids.KOPF_ACHS_NR]
     drive_type: Annotated[int, ids.KENNGR_ANTR_TYP]
     plc_controlled: bool
-    """The PLC controls it; the NC gets nothing but acknowledgements (P-AXIS-00015 0x40000)."""
+    """The PLC controls it; the NC gets only acknowledgements (P-AXIS-00015 0x40000)."""
     automatic_homing: bool
-    """Homes by itself before M19; otherwise M19 without reference is an error (P-AXIS-00015 0x100)."""
+    """Homes automatically before M19; otherwise M19 without reference is an error (P-AXIS-00015 0x100)."""
     open_loop: bool
     """Under position control for positioning and homing only, if at all (P-AXIS-00320)."""
     feedback: str
-    """What the drive sends: POSITION, SPEED or NONE."""
+    """Actual value that the drive sends: POSITION, SPEED or NONE."""
     speed_reached_band: Annotated[float, ids.KENNGR_VB_PROZENT]
     """Speed reached within (1 ± band) times the commanded speed."""
     preferred_direction: int
@@ -104,16 +104,16 @@ class SpindleParameters:
     gear: int
     """Gear stage at start, from 1."""
     gears: Mapping[int, GearParameters]
-    """By stage: those the machine file describes, and the one at start."""
+    """By stage: those in the machine file, and the one at start."""
     stops_at_reset: bool
     target_time: Annotated[float, ids.PTP_TARGET_TIME_MS]
-    """In which the actual position must have come into the window after M19; 0 = not monitored."""
+    """Time within which the actual position must be in the window after M19; 0 = not monitored."""
     settling_time: Annotated[float, ids.MONITORING_SETTLING_TIME_MS]
-    """For which position and speed must have been in their windows before M19 is reached."""
+    """Time for which position and speed must be in their windows before M19 is finished."""
     speed_time: Annotated[float, ids.MONITORING_SPEED_TIME_MS]
-    """The same for the speed of endless rotation."""
+    """Time within which the actual speed must be in its band in endless rotation; 0 = not monitored."""
     gear_change_time: Annotated[float, ids.GEAR_CHANGE_TIME_MS]
-    """In which the PLC must have acknowledged a gear change; 0 = for ever."""
+    """Time within which the PLC must acknowledge a gear change; 0 = for ever."""
     zero_pulse: Annotated[float, ids.SIMULATION_ZERO_PULSE]
     max_override_percent: float
     powered_at_start: Annotated[bool, ids.SIMULATION_POWERED_AT_START]
@@ -165,14 +165,14 @@ def curve_view(parameters: ParameterSet, gear: int) -> CurveParameters | None:
 
 
 def control_limit(parameters: ParameterSet, gear: int) -> float:
-    """P-AXIS-00220 where the drive type has it, infinity for 0 and the other types."""
+    """P-AXIS-00220 if the drive type has it, infinity for 0 and the other types."""
     if parameters.number(ids.KENNGR_ANTR_TYP) not in CONTROL_LIMIT_DRIVES:
         return math.inf
     return parameters.kernel(ids.GETRIEBE_VB_REGELGRENZE, gear) or math.inf
 
 
 def feedback(parameters: ParameterSet) -> str:
-    """POSITION, SPEED or NONE: what the operation mode says itself, else the telegram of the drive."""
+    """POSITION, SPEED or NONE: from the operation mode, else from the telegram of the drive."""
     return OPEN_LOOP_FEEDBACK.get(parameters.text(ids.ANTR_OPERATION_MODE), parameters.text(ids.SIMULATION_TELEGRAM))
 
 

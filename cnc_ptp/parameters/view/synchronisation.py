@@ -7,16 +7,16 @@ from cnc_ptp.parameters.declare.declarations import catalogue
 
 
 class Synchronisation(IntFlag):
-    """When a function is put out and when the channel waits for it (seed TF5200_spindle, page 27)."""
+    """When a function is given out and when the channel waits for it (TF5200 spindle, page 27)."""
 
-    NO_SYNCH = 0x00000000  # not put out to the PLC
-    MOS = 0x00000001  # put out, never waited for
-    MVS_SVS = 0x00000002  # put out before the motion, waited for before the motion
-    MVS_SNS = 0x00000004  # put out before the motion, waited for at the block end
-    MNS_SNS = 0x00000008  # put out after the motion, waited for there
-    MNE_SNS = 0x00000020  # put out after a measuring event, waited for at the block end
-    MVS_SLM = 0x00004000  # put out in the block, waited for at the next G01, G02, G03
-    MVS_SLP = 0x00008000  # put out in the block, waited for at #EXPL SYN
+    NO_SYNCH = 0x00000000  # not given out to the PLC
+    MOS = 0x00000001  # given out, never waited for
+    MVS_SVS = 0x00000002  # given out before the motion, waited for before the motion
+    MVS_SNS = 0x00000004  # given out before the motion, waited for at the block end
+    MNS_SNS = 0x00000008  # given out after the motion, waited for there
+    MNE_SNS = 0x00000020  # given out after a measuring event, waited for at the block end
+    MVS_SLM = 0x00004000  # given out in the block, waited for at the next G01, G02, G03
+    MVS_SLP = 0x00008000  # given out in the block, waited for at #EXPL SYN
     PLC_INFO = 0x00020000  # added to one of them: the PLC gets the spindle function too and must acknowledge it
 
 

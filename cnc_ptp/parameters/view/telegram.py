@@ -1,4 +1,4 @@
-"""Cyclic telegrams: which objects go to and come from a drive, and what these mean.
+"""Cyclic telegrams: the objects that go to and come from a drive, and their meaning.
 
 Sources: TF5200 feedforward 4, friction 2.4; SERCOS IDN and CiA 402 object numbers; PROFIdrive signals of telegram 5.
 """
@@ -69,7 +69,7 @@ PRESETS: dict[int, tuple[frozenset[str], frozenset[str]]] = {
     DriveType.VIRTUAL: (frozenset(), frozenset()),
     DriveType.CAN: PLAIN,
 }
-"""What a drive type (P-AXIS-00020) exchanges where no telegram is configured."""
+"""Quantities that a drive type (P-AXIS-00020) exchanges if no telegram is configured."""
 BUSES: dict[int, tuple[str, ...]] = {
     DriveType.CONVENTIONAL: ("DA",),
     DriveType.SERCOS: ("S-",),
@@ -80,7 +80,7 @@ BUSES: dict[int, tuple[str, ...]] = {
     DriveType.CANOPEN: ("6",),
     DriveType.CAN: ("6",),
 }
-"""How the objects of a drive type begin; the simulated drive (4) takes them all, the virtual axis (16) none."""
+"""First letters of the objects of a drive type; the simulated drive (4) takes them all, the virtual axis (16) none."""
 ANALOGUE = (DriveType.CONVENTIONAL, DriveType.TERMINAL)
 """Drive types whose command is a voltage of ±10 V."""
 WITHOUT_FORMAT = (DriveType.SIMULATION, DriveType.VIRTUAL)
@@ -99,7 +99,7 @@ def fits(name: str, kind: int) -> bool:
 
 
 class Configured(NamedTuple):
-    """An object of a telegram, and the parameter that has put it there."""
+    """An object of a telegram, and the parameter that configures it."""
 
     name: str
     number: str
@@ -125,18 +125,18 @@ def feedback_objects(parameters: ParameterSet) -> tuple[str, ...]:
 
 
 def default_bits() -> dict[str, int]:
-    """Lengths of all quantities where no telegram says otherwise: torques 16 bits, all others 32."""
+    """Lengths of all quantities if the telegram gives none: torques 16 bits, all others 32."""
     return {quantity: 16 if "torque" in quantity else 32 for quantity in EVERYTHING}
 
 
 def command_bits(parameters: ParameterSet) -> dict[str, int]:
-    """Lengths in bits: 16 for a DA word, P-MACH-00024 where it is given."""
+    """Lengths in bits: 16 for a DA word, P-MACH-00024 if it is given."""
     bits = default_bits() | _lengths(parameters, "mdt", (ids.MDT_NC_REF, ids.MDT_IDENT_NR, ids.MDT_IDENT_LEN))
     return bits | {"velocity": 16} if parameters.number(ids.KENNGR_ANTR_TYP) in ANALOGUE else bits
 
 
 def feedback_bits(parameters: ParameterSet) -> dict[str, int]:
-    """Lengths in bits: P-MACH-00027 where it is given."""
+    """Lengths in bits: P-MACH-00027 if it is given."""
     return default_bits() | _lengths(parameters, "at", (ids.AT_NC_REF, ids.AT_IDENT_NR, ids.AT_IDENT_LEN))
 
 
@@ -151,9 +151,9 @@ def _lengths(parameters: ParameterSet, array: str, elements: tuple[str, str, str
 
 
 def commands(parameters: ParameterSet) -> frozenset[str]:
-    """Quantities that can be commanded; beside the lag of DSC, NSOLL_B is an additive velocity.
+    """Quantities that can be commanded; next to the lag of DSC, NSOLL_B is an additive velocity.
 
-    A telegram that names additive values alone (TF5200 feedforward 4) has them beside the drive type's own command.
+    A telegram of additive values alone (TF5200 feedforward 4) has them in addition to the drive type's own command.
     """
     objects, preset = command_objects(parameters), PRESETS[int(parameters.number(ids.KENNGR_ANTR_TYP))][0]
     if not objects:
@@ -180,12 +180,12 @@ def feedback(parameters: ParameterSet) -> frozenset[str]:
 
 
 def is_open_loop(parameters: ParameterSet) -> bool:
-    """The position loop stays open, but for positioning and homing of a spindle (P-AXIS-00320; spindle 2.2.4)."""
+    """The position loop stays open, except for positioning and homing of a spindle (P-AXIS-00320; spindle 2.2.4)."""
     return parameters.text(ids.ANTR_OPERATION_MODE).startswith("OPEN_POSITION_LOOP")
 
 
 def interface(parameters: ParameterSet) -> str:
-    """What the NC commands: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
+    """Commanded quantity: velocity, position, lag or torque; none for a virtual axis (P-AXIS-00020, 00320)."""
     mode = OPERATION_MODES.get(parameters.text(ids.ANTR_OPERATION_MODE))
     return mode or next(iter(main_command(commands(parameters))), "none")
 

@@ -23,7 +23,7 @@ from loop_support import (
 )
 from scipy.signal import lfilter
 
-from cnc_ptp.control.lag_monitor import LagMonitor
+from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.parameters.view.control_view import LagMonitoring
 
 FIXED = LagMonitoring(kind=4, moving_limit=3.0, standstill_limit=0.5, dynamic=1000, filter_time=0.0)
@@ -31,11 +31,11 @@ SETTLING = 100
 """Cycles of 5/Kv at 50/s."""
 
 
-def monitor(of: LagMonitoring = FIXED, kv: float = KV) -> LagMonitor:
-    return LagMonitor(of, kv=kv, cycle_time=T)
+def monitor(of: LagMonitoring = FIXED, kv: float = KV) -> FollowingErrorMonitor:
+    return FollowingErrorMonitor(of, kv=kv, cycle_time=T)
 
 
-def rest(watch: LagMonitor, cycles: int, error: float = 0.0) -> None:
+def rest(watch: FollowingErrorMonitor, cycles: int, error: float = 0.0) -> None:
     for _ in range(cycles):
         watch.advance(error, 0.0)
 

@@ -23,5 +23,5 @@ DIVISORS: dict[str, int] = {
 
 
 def to_kernel(value: float, unit: str) -> float:
-    """`value` in list units -> kernel units: 5000 (0.01/s) -> 50.0 1/s. Units that are kernel units already stay."""
+    """`value` in list units -> kernel units: 5000 (0.01/s) -> 50.0 1/s. Kernel units stay unchanged."""
     return value / DIVISORS.get(unit, 1)

@@ -1,4 +1,4 @@
-"""What each command and argument of `COMMANDS` means, in words, for the reference (docs/commands.md)."""
+"""Texts of the commands and arguments of `COMMANDS` for the reference (docs/commands.md)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class ArgumentText(NamedTuple):
-    """Unit and meaning of an argument, and what happens when it is left out ("" where it may not be)."""
+    """Unit and meaning of an argument, and the effect of leaving it out ("" if it is required)."""
 
     unit: str
     meaning: str
@@ -137,7 +137,7 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "text": ArgumentText("", "NC text"),
     "id": ArgumentText("", "number of the request"),
 }
-"""By name; those of single commands that differ stand below."""
+"""By name; those that differ for single commands follow below."""
 
 SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("axis", "new_velocity_and_target", "velocity"): ArgumentText("mm/s, °/s", "from the activation position on"),

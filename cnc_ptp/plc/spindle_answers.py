@@ -1,4 +1,4 @@
-"""What the PLC does for spindles: it changes gears, and says which couplings may be (TF5200 spindle 2.8.2, 2.8.3)."""
+"""The PLC's answers to spindles: it changes gears and permits couplings (TF5200 spindle 2.8.2, 2.8.3)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from cnc_ptp.protocol.blocks import Command, CycleBlock, SpindleBlock
 
 
 def spindle_answers(inputs: Mapping[str, CycleBlock], *, changes_gears: bool) -> Iterator[Command]:
-    """Answers to what the spindles have reported; `changes_gears`: gear changes are acknowledged at once."""
+    """Answers to what the spindles have reported; `changes_gears`: gear changes are acknowledged immediately."""
     spindles = {name: block for name, block in inputs.items() if isinstance(block, SpindleBlock)}
     if changes_gears:
         yield from (Command(name, "gear_changed", {}) for name, block in spindles.items() if block.gear_request)
@@ -22,9 +22,9 @@ def spindle_answers(inputs: Mapping[str, CycleBlock], *, changes_gears: bool) ->
 
 
 def why_no_coupling(slave: str, master: str, masters: Mapping[str, str], spindles: Mapping[str, SpindleBlock]) -> str:
-    """Empty when `slave` may follow `master`: a master must be there and be no slave, a slave no master."""
+    """Empty when `slave` may follow `master`: a master must publish and be no slave, a slave no master."""
     if master not in spindles:
-        return f"nothing comes from spindle {master}"
+        return f"nothing is published by spindle {master}"
     if master in masters:
         return f"{master} is itself a slave of {masters[master]}"
     slaves = [name for name, of_name in masters.items() if of_name == slave]

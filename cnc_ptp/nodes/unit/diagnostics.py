@@ -1,4 +1,4 @@
-"""What /diagnostics says of a unit: what is wrong, or its state, and figures."""
+"""Diagnostics of a unit: its faults, or its state, and figures."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording import node_figures as figures
 
 NEAR_LIMIT = 0.8
-"""Part of its limit from which on a following error is a warning."""
+"""Part of its limit from which a following error is a warning."""
 Finding = tuple[bytes, str]
 """A level of DiagnosticStatus and what is wrong."""
 
 
-class Health:
-    """Gathers what the node of a unit has to tell; a report covers the time since the one before."""
+class UnitDiagnostics:
+    """Gathers the diagnostics of a unit's node; a report covers the time since the previous one."""
 
     def __init__(self, unit: Unit, *, block_ms: float, length_unit: str) -> None:
         """`block_ms`: time of a block; `length_unit` of following errors: mm or deg."""

@@ -15,7 +15,7 @@ SETTLING = 5.0
 """Time constants 1/Kv that the lag of a motion has to fall before the axis counts as at a standstill."""
 
 
-class LagMonitor:
+class FollowingErrorMonitor:
     """Decides in each cycle which following error is too large; `advance` once per cycle."""
 
     __slots__ = (
