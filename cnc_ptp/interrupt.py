@@ -12,7 +12,7 @@ INTERRUPTED = 26106
 
 
 def end_command(number: int, frame: FrameType | None) -> None:
-    """Handler of a signal while no run is under way: tells it, and ends the process with 128 + `number`."""
+    """Handler of a signal while no run is under way: reports it, and ends the process with 128 + `number`."""
     name = signal.Signals(number).name
     text = f"the command was interrupted ({name}) while no run was under way; it ends here"
     print(f"P-ERR-{INTERRUPTED} {text}", file=sys.stderr)
@@ -20,7 +20,7 @@ def end_command(number: int, frame: FrameType | None) -> None:
 
 
 class EndRequest:
-    """Takes the signals from its making to `restore`, or for a `with` block; a callback in work is finished first."""
+    """Takes the signals from its making to `restore`, or for a `with` block; an active callback is finished first."""
 
     def __init__(self) -> None:
         self.number = 0
@@ -49,7 +49,7 @@ class EndRequest:
         return self.repeated or time.monotonic() > self.deadline
 
     def text(self, what_follows: str) -> str:
-        """What is told of it."""
+        """The message about it."""
         name = signal.Signals(self.number).name
         return f"P-ERR-{INTERRUPTED} the run was interrupted ({name}); {what_follows}"
 

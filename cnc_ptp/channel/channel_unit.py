@@ -259,7 +259,7 @@ class ChannelUnit(Unit):
                 self._add(rows, [self._motion.point])
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
-        """CycleRows of the active motion; it ends early when the motion does, at the exact instant inside a cycle."""
+        """Rows of the active motion; it ends early when the motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
         self._add(rows, points)
         if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
@@ -375,9 +375,9 @@ class ChannelUnit(Unit):
                 self._check_refused(first_cycle, node, block)
         self._sequence.read(first_cycle, inputs)
         self._warn(first_cycle)
-        self._tell_held(first_cycle)
+        self._report_held(first_cycle)
 
-    def _tell_held(self, cycle: int) -> None:
+    def _report_held(self, cycle: int) -> None:
         """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
         held = [f"{what}, which is held by override 0" for what in self._sequence.held_by_override(cycle)]
         if self._path_held():

@@ -77,10 +77,10 @@ class FunctionOutput:
                 outgoing.expected.append(expectation)
                 wait = Wait(Moment.BEFORE, expectation)
                 outgoing.waits.append(wait)
-                self._tell_gear(function, block, wait, outgoing)
+                self._request_gear(function, block, wait, outgoing)
         return outgoing
 
-    def _tell_gear(self, change: GearChange, block: CanonicalBlock, wait: Wait, outgoing: Outgoing) -> None:
+    def _request_gear(self, change: GearChange, block: CanonicalBlock, wait: Wait, outgoing: Outgoing) -> None:
         """M40 to M45 go to the PLC when the gear changes, as their m_synch says (spindle p.37)."""
         number = FIRST_M + change.stage - 1
         synchronisation = self._channel.m_functions.get(number, Synchronisation.MOS)

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
-from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.function_output import UNSENT, FunctionOutput
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
@@ -47,6 +47,7 @@ class Phase(Enum):
 
 
 WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
+ORDER = {moment: rank for rank, moment in enumerate(Moment)}
 ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
 """What the path waits for at the end of the program, but not in its own block."""
 
@@ -148,12 +149,14 @@ class ProgramSequence:
 
     def overdue(self, cycle: int, limit: int) -> HandshakeRequest | None:
         """The oldest request that the PLC has left unacknowledged for `limit` cycles."""
-        sent = (request for request in self.open_requests.values() if request.cycle >= 0)
+        sent = (request for request in self.open_requests.values() if request.cycle != UNSENT)
         return next((request for request in sent if cycle - request.cycle >= limit), None)
 
     def acknowledge(self, request_id: int) -> None:
         """The PLC has acknowledged a request."""
-        self._functions.acknowledged(self.open_requests.pop(request_id))
+        request = self.open_requests.pop(request_id)
+        if request.cycle != UNSENT:
+            self._functions.acknowledged(request)
 
     def take_outgoing(self, first_cycle: int) -> Outgoing:
         """Commands and requests of the cycle block that starts at `first_cycle`; its waits count from there."""
@@ -180,7 +183,9 @@ class ProgramSequence:
 
     def _waited_for(self) -> list[Wait]:
         """The waits that hold the path now."""
-        return [wait for wait in self._waits if wait.until in self._due] if self.phase in WAITING else []
+        if self.phase not in WAITING:
+            return []
+        return sorted((wait for wait in self._waits if wait.until in self._due), key=lambda wait: ORDER[wait.until])
 
     def _speeds_waited_for(self) -> set[str]:
         """Nodes of the spindles whose speed the path waits for: a missed speed is noticed there."""

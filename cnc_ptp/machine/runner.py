@@ -59,7 +59,7 @@ class UnitRunner:
         return block
 
     def _note_state(self, block: CycleBlock) -> None:
-        """An event when the unit ends the block in another state than the block before."""
+        """An event when the unit ends the block in another state than the previous block."""
         if isinstance(block, PlcBlock) or block.state[-1] == self._state:
             return
         codes = ChannelStateCode if isinstance(block, ChannelBlock) else AxisStateCode

@@ -1,4 +1,4 @@
-"""Watch for sources that fall silent: life signs, topics and blocks, in any unit of time."""
+"""Watch for sources that fall silent: life signs and topics, in any unit of time."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def _run(
 
 
 def stopped(end: EndRequest, nodes: list[Node], *, note: Callable[[], None]) -> bool:
-    """After an interrupt, reported once (`told`): everything stops on its ramps, at most for STOP_TIMEOUT."""
+    """After an interrupt, reported once (`note`): everything stops on its ramps, at most for STOP_TIMEOUT."""
     if not end.given:
         return False
     if end.deadline == 0.0:

@@ -78,7 +78,7 @@ class AxisGroups:
         """
         block = CommandsOfBlock(self._masters)
         for command in commands:
-            if command.target in self._spindles:  # couples otherwise (spindle_groups.py)
+            if command.target in self._spindles:  # couples otherwise (spindle_answers.py)
                 block.completed.append(command)
             elif not block.must_wait(command):
                 master = master_in(command)

@@ -201,9 +201,10 @@ class Refusal(NamedTuple):
 
     @classmethod
     def decode(cls, message: str) -> Refusal:
+        """Of what `encode` has made; a message of another form has the number 0."""
         source, _, refusal = message.partition(": P-ERR-")
         number, _, text = refusal.partition(" ")
-        return cls(source, int(number), text)
+        return cls(source, int(number), text) if number.isdecimal() else cls("", 0, message)
 
 
 @dataclass(slots=True)

@@ -271,12 +271,12 @@ class Spindle:
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""
-        had_procedure = self.work.procedure is not None or not self.speed_was_reached
+        had_job = self.work.procedure is not None or not self.speed_was_reached
         if self.state == S.DISABLED and self.loop.measures_position:
             self.place(cycle, self.loop.position)
         self._brake(cycle)
         self.error_id = error_id
-        self.job_error = had_procedure
+        self.job_error = had_job
         self.take(T.FAULT)
         self.when_faulted()
         text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"

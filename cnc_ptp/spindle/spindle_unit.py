@@ -215,8 +215,8 @@ class SpindleUnit(Unit):
     def outcome(self, number: int) -> bool | None:
         """Outcome of a positioning or homing: None while it waits or is active, then whether it finished."""
         procedure = self.spindle.work.procedure
-        in_work = procedure is not None and procedure.number == number
-        if in_work or any(order.number == number for order in self._orders.waiting):
+        active = procedure is not None and procedure.number == number
+        if active or any(order.number == number for order in self._orders.waiting):
             return None
         return self.spindle.work.last_done == number
 

@@ -42,10 +42,10 @@ class JogTopics:
         """
         client = message.header.frame_id
         if not paced:
-            self._tell(JOG_IN_FREE_RUN, axis, client, free_run_text(axis))
+            self._report(JOG_IN_FREE_RUN, axis, client, free_run_text(axis))
             return None
         if self._is_foreign(axis, client, now):
-            self._tell(SECOND_JOG, axis, client, second_client_text(axis, client))
+            self._report(SECOND_JOG, axis, client, second_client_text(axis, client))
             return None
         if not is_newer(message.sequence, self._sequence.get((axis, client), 0)):
             return None
@@ -70,7 +70,7 @@ class JogTopics:
     def _is_foreign(self, axis: str, client: str, now: float) -> bool:
         return self._silence.is_heard(axis, now) and client != self._client[axis]
 
-    def _tell(self, error_id: int, axis: str, client: str, text: str) -> None:
+    def _report(self, error_id: int, axis: str, client: str, text: str) -> None:
         if (error_id, axis, client) not in self._reported:
             self._reported.add((error_id, axis, client))
             self._warn(error_id, text)

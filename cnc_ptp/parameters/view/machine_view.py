@@ -24,7 +24,7 @@ class MachineParameters:
     state_rate_hz: Annotated[float, ids.STATE_RATE_HZ]
     """Live states per second of each unit, 0 = none."""
     handshake_timeout_ms: Annotated[int, ids.HANDSHAKE_TIMEOUT_MS]
-    """Time within which the PLC must acknowledge a function, 0 is for ever."""
+    """Time within which the PLC must acknowledge a function, 0 is no limit."""
     channels: Mapping[str, ChannelParameters]
     axes: Mapping[str, AxisParameters]
     spindles: Mapping[str, SpindleParameters]

@@ -113,7 +113,7 @@ class SpindleParameters:
     speed_time: Annotated[float, ids.MONITORING_SPEED_TIME_MS]
     """Time within which the actual speed must be in its band in endless rotation; 0 = not monitored."""
     gear_change_time: Annotated[float, ids.GEAR_CHANGE_TIME_MS]
-    """Time within which the PLC must acknowledge a gear change; 0 = for ever."""
+    """Time within which the PLC must acknowledge a gear change; 0 = no limit."""
     zero_pulse: Annotated[float, ids.SIMULATION_ZERO_PULSE]
     max_override_percent: float
     powered_at_start: Annotated[bool, ids.SIMULATION_POWERED_AT_START]
