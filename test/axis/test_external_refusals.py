@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from error_support import refused
 from machine_support import MachineBench, UnitBench, axis_bench
 from superposition_support import (
     EXTERNAL,
@@ -67,7 +68,6 @@ def test_enable_while_stopping() -> None:
 
 def test_enable_on_the_path_of_a_channel() -> None:
     bench = MachineBench("%P\nG01 X100 F6000\nM30", end_when_idle=False).run(0.2)
-    refused = "P-ERR-23026 axis x: external_enable refused: {} beside the path of a channel {}; nothing was changed"
     assert bench.refusal("x", "external_enable", mode="absolute") == refused(23026)
     assert bench.refusal("x", "external_enable", mode="relative", target=12.5) == refused(23026, target=12.5)
 
@@ -358,7 +358,7 @@ def test_a_jump_in_motion() -> None:
     rows += constant(500.0, first_cycle=60, count=50, start=125.0)
     feed(bench, rows, 200)
     (text,) = bench.event_texts()
-    assert text.startswith("P-ERR-23033 axis x: external setpoint 125.0 mm is 100.5 mm away, farther than ")
+    assert text.startswith("P-ERR-23033 axis x: external setpoint 125.0 mm is 100.5 mm away, more than ")
     assert_stops_on_its_ramp(bench, 60)
     assert column(bench, "set_position").max() < 25.0 + 0.5 * 500.0 * 0.5
 
