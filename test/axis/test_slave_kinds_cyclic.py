@@ -176,7 +176,7 @@ def test_cam_with_slave_offset_is_told_when_the_slave_stands_elsewhere() -> None
     bench.do("y", "couple_cam", master="x", table=COSINE, slave_offset=7.0)
     text = (
         "axis y: cannot follow x: the cam table puts the slave at 7 with its slave_offset, the axis is at 0; "
-        "the axis stands, it is not coupled"
+        "the axis stands and is not coupled"
     )
     assert [(event.error_id, event.text) for event in bench.events] == [(23053, text)]
     assert bench.state("y") == S.STANDSTILL

@@ -93,8 +93,8 @@ def test_two_channels_that_command_one_spindle_at_once() -> None:
     """The first one gets it; the second one's program is aborted, its axes have not moved."""
     bench = both("M3 S6000\nG01 X1 F3000", "M4 S500\nG01 Y1 F3000")
     assert bench.errors() == [
-        "P-ERR-22018 channel second: s has refused a command, P-ERR-24012 spindle s: start refused: the spindle is at "
-        "work for 'channel', 'second' must wait until that is finished; nothing was changed; the path stops on its ramp "
+        "P-ERR-22018 channel second: s has refused a command, P-ERR-24012 spindle s: start refused: the spindle "
+        "works for 'channel', 'second' must wait until that is finished; nothing was changed; the path stops on its ramp "
         "and the program is aborted"
     ]
     assert bench.last("second").state[-1] == C.ERROR and bench.position("y") == 0.0

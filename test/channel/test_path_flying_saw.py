@@ -197,7 +197,7 @@ def test_a_saw_that_comes_too_late_is_a_fault() -> None:
     bench = conveyor()
     saw(bench, ahead=0.1)
     bench.run(0.5)
-    reason = bench.errors()[0].split("on top of the path: ")[1]
+    reason = bench.errors()[0].split("in addition to the path: ")[1]
     assert bench.errors() == [
         f"P-ERR-23051 axis x: cannot follow z in addition to the path: {reason}",
         f"P-ERR-22012 channel channel: x is in error P-ERR-23051{PATH_STOPS}",

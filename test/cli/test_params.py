@@ -25,7 +25,7 @@ def test_one_hit_is_shown_in_full():
     [
         (["frict"], "P-AXIS-00522", {"P-COMP-00041", "P-COMP-00062", "P-SIM-00012"}),
         (["following"], "P-AXIS-00236", {"P-AXIS-00168", "P-AXIS-00169"}),
-        (["FOLLOWING", "standing"], "P-AXIS-00172", {"P-AXIS-00169"}),
+        (["FOLLOWING", "standstill"], "P-AXIS-00172", {"P-AXIS-00169"}),
         (["8"], "P-AXIS-00008", {"P-CHAN-00008", "P-SIM-00008", "P-MACH-00008"}),
         (["P-TOOL"], "P-TOOL-00012", {"P-TOOL-00015"}),
         (["a_max"], "P-AXIS-00008", {"P-TOOL-00015"}),

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.machine.wiring import build_unit
-from cnc_ptp.nodes.unit.diagnostics import Health
+from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick, Event, PlcBlock, Severity
@@ -22,7 +22,7 @@ class Watched:
 
     def __init__(self, machine, name, unit="mm"):
         self.runner = UnitRunner(build_unit(read_machine(machine), name), watchdog_cycles=10**9)
-        self.health = Health(self.runner.unit, block_ms=10.0, length_unit=unit)
+        self.health = UnitDiagnostics(self.runner.unit, block_ms=10.0, length_unit=unit)
 
     def run(self, blocks, **inputs):
         for _ in range(blocks):
@@ -152,7 +152,7 @@ def test_an_error_without_a_text_has_its_number():
     axis.command("group_error", source="y", error=26101)
     axis.run(1)
     assert re.fullmatch(r"ErrorStop, P-ERR-\d+ .+", axis.status()[1])
-    axis.health = Health(axis.runner.unit, block_ms=10.0, length_unit="mm")  # it has not heard the event
+    axis.health = UnitDiagnostics(axis.runner.unit, block_ms=10.0, length_unit="mm")  # it has not heard the event
     axis.health.note(Event(0, "x", Severity.ERROR, 4711, "another one"))
     axis.health.add_block(axis.block)
     assert re.fullmatch(r"ErrorStop, P-ERR-\d+", axis.status()[1])

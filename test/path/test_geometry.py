@@ -183,7 +183,7 @@ def test_no_axis_exceeds_its_limits_also_after_a_change_of_override(kind, draw_a
         ),
         (
             lambda: Arc((10.0, 0.0), (0.0, 10.1), (0.0, 0.0), (0, 1), 10.0, 90.0, XYZ),
-            "P-ERR-22101 arc around (0.0, 0.0) with radius 10 mm (programmed 10 mm) ends 0.1 mm beside its target; "
+            "P-ERR-22101 arc around (0.0, 0.0) with radius 10 mm (programmed 10 mm) ends 0.1 mm away from its target; "
             "the limit is 0.011 mm; the motion is refused",
         ),
         (

@@ -358,4 +358,4 @@ def test_state_of_another_size_is_refused(scratch):
 
 def test_event_that_cannot_be_decoded_is_refused(scratch):
     other_tool(scratch, "cnc_ptp/msg/Event", [b"\0\1\0\0 no event"])
-    assert "a message of /y/state is no cnc_ptp/msg/Event: " in refusal(scratch, scratch.read_bytes())
+    assert "a message of /y/state is not a cnc_ptp/msg/Event: " in refusal(scratch, scratch.read_bytes())
