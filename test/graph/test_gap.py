@@ -115,7 +115,7 @@ def test_a_missing_tick_ends_in_a_controlled_stop(bench):
     lost = [(record.cycle, record.command, record.arguments_json) for record in bench.outside.records[1:]]
     assert lost == [(300, "upstream_lost", '{"source": "clock"}')]
     assert bench.outside.blocks[-1].error_id[-1] == 26101
-    assert bench.axis.health.lost_blocks == 1
+    assert bench.axis.diagnostics.lost_blocks == 1
 
 
 def test_a_missing_block_ends_in_a_controlled_stop(bench):
@@ -197,7 +197,7 @@ def test_what_comes_twice_is_computed_once(bench):
     text = "x: block 20 of '{0}' came twice, the first one counts; is there a second '{0}'?"
     bench.spin_until(lambda: len(errors(bench.outside)) == 2)
     assert errors(bench.outside) == [(26142, text.format("clock")), (26142, text.format("plc"))]
-    status = bench.axis.health.status(bench.axis._gate.duplicates)
+    status = bench.axis.diagnostics.status(bench.axis._gate.duplicates)
     assert (status.level, status.message) == (b"\x02", "2 blocks came twice")
 
 
