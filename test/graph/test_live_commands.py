@@ -161,16 +161,23 @@ def test_a_motion_that_is_stopped_on_its_way_is_status_1(machine):
 
 
 def test_a_second_jog_is_told_that_it_is_ignored(machine):
+    """Up to four times: a busy machine may suspend the first jog for longer than 0.2 s, which ends it."""
+    assert any(is_ignored_beside_a_jog() for _ in range(4))
+
+
+def is_ignored_beside_a_jog() -> bool:
+    """Whether a second jog is ignored; False if the first one has ended by itself meanwhile."""
     first = subprocess.Popen(command("jog", "y", "+", "--speed", "0.5"), stdout=subprocess.PIPE, text=True)
-    try:
-        while not re.search(r"y +ContinuousMotion", call("status").stdout):
-            assert first.poll() is None
-        second = call("jog", "y", "-", "--speed", "8", "--time", "5")
-        assert (second.exit_code, second.stdout) == (1, "")
-        assert "y: the jog is ignored: another client jogs the axis, or the machine is in free run" in second.stderr
-    finally:
-        first.send_signal(signal.SIGINT)
-        assert first.wait(timeout=30.0) == 0
+    second = None
+    while first.poll() is None and second is None:
+        if re.search(r"y +ContinuousMotion", call("status").stdout):
+            second = call("jog", "y", "-", "--speed", "8", "--time", "5")
+    first.send_signal(signal.SIGINT)
+    if first.wait(timeout=30.0) != 0 or second is None:
+        return False
+    assert (second.exit_code, second.stdout) == (1, "")
+    assert "y: the jog is ignored: another client jogs the axis, or the machine is in free run" in second.stderr
+    return True
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
