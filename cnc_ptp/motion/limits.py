@@ -62,7 +62,7 @@ def check_limit(name: str, value: float) -> None:
             BAD_LIMIT,
             f"motion limit {name} = {value!r} must be between {SMALLEST_LIMIT:g} and {LARGEST_LIMIT:g}",
             "the motion is refused",
-            limit=name,
+            name=name,
             value=value,
         )
 
@@ -75,6 +75,6 @@ def check_state(**values: float) -> None:
                 OUT_OF_RANGE,
                 f"motion value {name} = {value!r} must be between {-LARGEST_STATE:g} and {LARGEST_STATE:g}",
                 "the motion is refused",
-                state=name,
+                name=name,
                 value=value,
             )
