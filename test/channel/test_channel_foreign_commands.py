@@ -94,7 +94,7 @@ def test_another_command_while_the_path_waits_for_standstill() -> None:
 
 @pytest.mark.parametrize("at", [2.05, 2.3])
 def test_the_plc_positions_a_spindle_that_was_to_stop(at: float) -> None:
-    """Its order waits until M5 is done, or comes after it; the path goes on when the spindle stands."""
+    """Its command waits until M5 is finished, or comes after it; the path continues when the spindle is at a standstill."""
     scenario = f"- {{at: {at}, to: s, do: orient, position_deg: 90, speed_rpm: 5, source: plc}}"
     bench = run("M3 S10000\nG04 X2\nM5\nG01 X20 F6000", mill(m5=MVS_SVS), scenario)
     assert bench.errors() == [] and bench.column("s", "state")[moves(bench)[0][0]] == S.STANDSTILL

@@ -15,7 +15,7 @@ both = pytest.mark.parametrize(("command", "arguments"), [ORIENT, HOME])
 
 def given(bench: UnitBench, command: str, arguments: dict[str, Any]) -> int:
     """Gives the command; its number."""
-    number: int = bench.unit.next_order
+    number: int = bench.unit.next_number
     bench.accepted(command, **arguments)
     return number
 
