@@ -100,7 +100,7 @@ class Sample:
 
 
 class Watch:
-    """Samples the processes of the run once a second: this one and its children."""
+    """Samples the processes of the run once per second: this one and its children."""
 
     def __init__(self, *, memory_at: float, own: str) -> None:
         """`memory_at`: cycle at which the memory is read. `own`: name for this process."""
@@ -112,7 +112,7 @@ class Watch:
         self.run = GraphRun()
 
     def look(self, cycle: int) -> None:
-        """Called many times a second with the last cycle that was reported."""
+        """Called many times per second with the last cycle that was reported."""
         now = time.monotonic()
         if cycle and not self.run.startup:
             self.run.startup = now - self._started

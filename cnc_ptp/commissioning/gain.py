@@ -18,7 +18,7 @@ class GainProposal:
     """Kv in 1/s, times in s.
 
     `total`: Ta + dead time + T/2 (the command is held for a cycle, half of it late on average). `limit`: Kv at which
-    the loop begins to oscillate, the lowest of all (Ta, dead time) that fit. `proposed` = 1/(4·total): damping 1, no
+    the loop starts to oscillate, the lowest of all (Ta, dead time) that fit. `proposed` = 1/(4·total): damping 1, no
     overshoot. `fastest` = 1/(2·total): damping 0.71, 4 % overshoot, more is not advisable.
     """
 

@@ -183,7 +183,7 @@ def _wanted_velocity(trace: AxisTrace) -> Array:
 
 
 def _lagged(velocity: Array, spans: list[Span], cycles: float) -> Array:
-    """Each stretch without gaps behind a lag of so many cycles, settled at its beginning."""
+    """Each stretch without gaps behind a lag of so many cycles, settled at its start."""
     pole = math.exp(-1.0 / cycles) if cycles else 0.0
     parts = [velocity[first:end] for first, end in spans]
     lagged = [lfilter([1.0 - pole], [1.0, -pole], part, zi=[pole * part[0]])[0] for part in parts]

@@ -71,7 +71,7 @@ class RotationCommands:
         """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.
 
         Without `homes`, at an abort or reset, nothing is homed and a spindle that stands keeps its position. While the
-        PLC changes the gear the spindle stands; it stays at rest afterwards.
+        PLC changes the gear the spindle is at a standstill and stays there afterwards.
         """
         spindle = self._spindle
         if spindle.work.gear_request:

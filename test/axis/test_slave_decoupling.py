@@ -68,7 +68,7 @@ def test_at_standstill_target_and_velocity_are_not_used(arguments: dict[str, flo
     bench = SlaveBench()
     bench.do("y", "couple", master="x", factor=0.5)
     assert bench.do("y", "decouple", **arguments) == (
-        f"P-WARN-23057 axis y: decouple: the axis stands; {unused} is not used, start it"
+        f"P-WARN-23057 axis y: decouple: the axis is at a standstill; {unused} is not used, start it"
     )
     bench.run(0.1)
     assert bench.state("y") == S.STANDSTILL and set(bench.column("y", "set_position")) == {0.0}

@@ -86,7 +86,7 @@ def test_numbers_survive_to_the_bit(cycles: list[int], values: tuple[float, ...]
             "cycle;position;velocity;acceleration;direction\n",
             f"1 column 'cycle' is missing; the first line must name {COLUMNS}",
         ),
-        (HEADER.replace("velocity", "cycle"), f"1 column 'cycle' stands twice; the first line must name {COLUMNS}"),
+        (HEADER.replace("velocity", "cycle"), f"1 column 'cycle' occurs twice; the first line must name {COLUMNS}"),
         (HEADER, "1 no setpoint follows the first line"),
         (HEADER + "\n \n,,,,\n", "1 no setpoint follows the first line"),
         (HEADER + "0,0,0,0\n", "2 '0,0,0,0' has 4 values instead of 5"),

@@ -92,7 +92,7 @@ def largest_step(values: Column) -> float:
 
 
 def integrated(name: str) -> Column:
-    """Set position as the integral of set velocity and acceleration, exact for constant jerk (error J·T³/12 a cycle)."""
+    """Set position as the integral of set velocity and acceleration, exact for constant jerk (error J·T³/12 per cycle)."""
     v, a = x(name, "set_velocity"), x(name, "set_acceleration")
     steps = CYCLE_TIME * 0.5 * (v[1:] + v[:-1]) + CYCLE_TIME**2 / 12.0 * (a[:-1] - a[1:])
     return np.concatenate([[0.0], np.cumsum(steps)])

@@ -62,8 +62,8 @@ class UnitNode(Node):
 
     Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
     and of the master of a coupled axis.
-    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once a second /diagnostics and
-    /lateness; while somebody subscribes /<name>/state.
+    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once per second /diagnostics
+    and /lateness; while somebody subscribes /<name>/state.
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
     """
@@ -74,7 +74,7 @@ class UnitNode(Node):
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
-        states a second, None = as the machine file says.
+        states per second, None = as the machine file says.
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
