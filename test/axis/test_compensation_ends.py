@@ -1,4 +1,4 @@
-"""How a position compensation ends early: compensation stop, stop, halt, emergency stop, fault, power off."""
+"""Early ends of a position compensation: compensation stop, stop, halt, emergency stop, fault, power off."""
 
 from __future__ import annotations
 

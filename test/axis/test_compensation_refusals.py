@@ -1,4 +1,4 @@
-"""What a position compensation is refused for; the running motion stays as it is, to the bit."""
+"""Refusals of a position compensation; the active motion is unchanged, to the bit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How figures, goals and peers are shown and written."""
+"""Figures, goals and peers as text and as JSON."""
 
 import json
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What a channel notices of its spindle when commands of others come in the very block of its own."""
+"""A channel's view of its spindle when others command it in the same block."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the feedforward puts out: weights, delays, lead and prefilter against an integrated continuous profile."""
+"""Output of the feedforward: weights, delays, lead and prefilter against an integrated continuous profile."""
 
 from __future__ import annotations
 

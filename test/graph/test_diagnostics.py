@@ -1,4 +1,4 @@
-"""What /diagnostics says of a unit, without a graph: the worst finding first, numbers with their units."""
+"""The message on /diagnostics about a unit, without a graph: the worst finding first, numbers with their units."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the PLC makes of jog messages: a command for each change, an end for each silence."""
+"""Jog messages at the PLC: a command for each change, an end for each silence."""
 
 import math
 from itertools import count

@@ -1,4 +1,4 @@
-"""What became of a positioning or a homing, as its action tells: while it waits, active, at its end, overtaken."""
+"""Outcome of a positioning or a homing, as its action reports it: waiting, active, finished, replaced."""
 
 from __future__ import annotations
 
