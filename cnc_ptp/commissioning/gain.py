@@ -32,7 +32,7 @@ def propose_gain(fit: DriveFit) -> GainProposal:
     """Kv from the loop Ta·s² + s + Kv = 0 with damping D = 1/(2·sqrt(Kv·Ta)), Ta including all small delays.
 
     D = 1 gives Kv = 1/(4·Ta), D = 1/sqrt(2) Kv = 1/(2·Ta). Source: the second-order loop in its standard form; Groß,
-    Hamann, Wiegärtner, Electrical Feed Drives in Automation, position control. Where the limit is closer than three
+    Hamann, Wiegärtner, Electrical Feed Drives in Automation, position control. If the limit is closer than three
     times the proposal, a third of the limit is proposed.
     """
     total = fit.delay + 0.5 * fit.cycle_time

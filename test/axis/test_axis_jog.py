@@ -217,7 +217,7 @@ def test_from_beyond_the_limit_only_the_other_direction_is_taken_in_motion_too(s
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_compensation_comes_to_rest_after_the_jog_has_come_to_the_limit(sign: float) -> None:
-    """It turns the axis round with 50 mm/s² and is let out with 300 mm/s², in closed form; only then the axis stands."""
+    """It reverses the axis with 50 mm/s² and ends with 300 mm/s², in closed form; only then the axis is at rest."""
     bench = limited(-1000.0, 1000.0)
     bench.accepted("jog", velocity=sign * 500.0)
     bench.run(500)

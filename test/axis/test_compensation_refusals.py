@@ -299,7 +299,7 @@ def test_in_the_natural_brake_phase() -> None:
 
 @pytest.mark.parametrize("after", [0, 200, 499])
 def test_in_the_stop_of_a_reversal(after: int) -> None:
-    """A new target behind the axis: it stops automatically; on the way back a compensation is possible."""
+    """A new target behind the axis: it stops automatically; during the return a compensation is possible."""
     bench, twin = twins(cycles=2000)
     for each in (bench, twin):
         each.accepted("new_target", target=1000.0)

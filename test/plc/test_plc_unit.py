@@ -1,4 +1,4 @@
-"""The PLC: end of a run, stop of everything, life sign, watchdog, abort of runs that cannot go on."""
+"""The PLC: end of a run, stop of everything, life sign, watchdog, abort of runs that cannot continue."""
 
 from __future__ import annotations
 

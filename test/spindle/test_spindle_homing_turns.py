@@ -1,4 +1,4 @@
-"""Homing is finished before what comes after it, and told where it is given up; the states are those of the graphs."""
+"""Homing is finished before later commands, and reported when it is aborted; the states are those of the graphs."""
 
 from __future__ import annotations
 

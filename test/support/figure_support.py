@@ -77,7 +77,7 @@ def seven_phases(distance: float, velocity: float, up: float, down: float, j: fl
 
 
 def through(phases: list[tuple[float, float]], velocity: float, acceleration: float) -> tuple[float, float, float]:
-    """Way, velocity and acceleration after phases of (duration, jerk)."""
+    """Distance, velocity and acceleration after phases of (duration, jerk)."""
     way = 0.0
     for t, j in phases:
         way += velocity * t + acceleration * t**2 / 2.0 + j * t**3 / 6.0

@@ -248,7 +248,7 @@ class UnitNode(Node):
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
         if self._gate.closed:
-            return self.refuse(command, RUN_OVER, "the run is over")
+            return self.refuse(command, RUN_OVER, "the run has ended")
         with self._working():
             record = self._runner.command(command)
         self._publish_records()
@@ -349,7 +349,7 @@ class UnitNode(Node):
     # watchdog
 
     def _watch(self) -> None:
-        """Reports that this node is alive while it waits, and gives up sources silent for the watchdog time."""
+        """Reports that this node is alive while it waits, and drops sources silent for the watchdog time."""
         now = time.monotonic()
         stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
         if stalled or self._gate.closed or not self._running:
