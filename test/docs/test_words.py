@@ -53,9 +53,8 @@ MESSAGE = re.compile(r"\| \d{4,6}\b.*?\| [A-Z]+(?:, [A-Z]+)? \|[^|]*\|")
 
 
 def phrases(text: str) -> list[str]:
-    """Phrases that the glossary has a better word for, in the order of AVOIDED."""
-    prose = " ".join(text.split())
-    return [found.group().lower() for phrase in AVOIDED if (found := re.search(rf"\b{phrase}\b", prose, re.IGNORECASE))]
+    """Phrases that the glossary has a better word for."""
+    return [found.group().lower() for found in PATTERN.finditer(" ".join(text.split()))]
 
 
 def avoided(page: str) -> list[str]:
