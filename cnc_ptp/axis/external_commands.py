@@ -18,6 +18,7 @@ from cnc_ptp.axis.faults import (
     NOT_READY,
 )
 from cnc_ptp.errors import warning_text
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
@@ -130,8 +131,8 @@ class ExternalCommands:
     def _check_limits(self, packet: Setpoint) -> None:
         parameters, unit = self._axis.parameters, self._axis.unit
         for name, value, most, per, source in (
-            ("velocity", packet.velocity, parameters.max_velocity, f"{unit}/s", "P-AXIS-00212"),
-            ("acceleration", packet.acceleration, parameters.max_acceleration, f"{unit}/s²", "P-AXIS-00008"),
+            ("velocity", packet.velocity, parameters.max_velocity, f"{unit}/s", ids.DYNAMIK_VB_MAX),
+            ("acceleration", packet.acceleration, parameters.max_acceleration, f"{unit}/s²", ids.DYNAMIK_A_MAX),
         ):
             if abs(value) > most:
                 reason = f"{name} {value} {per} is above the maximum {most} {per} ({source})"

@@ -13,6 +13,21 @@ RUN_FAILED = 1
 """The run ended in an error, or a recording differs."""
 
 
+class WarningLine(str):
+    """A line of output that warns: its text after "warning: ", printed in yellow."""
+
+    __slots__ = ()
+
+    def __new__(cls, text: str) -> WarningLine:
+        return super().__new__(cls, f"warning: {text}")
+
+
+def print_lines(console: Console, lines: Iterable[str]) -> None:
+    """Prints the lines of a report, those that warn in yellow."""
+    for line in lines:
+        console.print(line, markup=False, style="yellow" if isinstance(line, WarningLine) else None)
+
+
 def print_error(error: CncError) -> None:
     """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
     console = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from cnc_ptp.commissioning.faults import BAD_VELOCITIES, NO_ROOM, refusal
 from cnc_ptp.commissioning.timing import Seconds
+from cnc_ptp.parameters.declare import ids
 
 EDGE = 0.01
 """Part of the travel that stays free at either end."""
@@ -36,7 +37,7 @@ class Room:
     deceleration: float
     jerk: float
     encoder_increment: float = 0.0
-    limited_by: str = "P-AXIS-00212"
+    limited_by: str = ids.DYNAMIK_VB_MAX
     """The parameter that limits the highest velocity."""
 
     @property

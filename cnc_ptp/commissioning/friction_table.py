@@ -9,6 +9,7 @@ import numpy as np
 
 from cnc_ptp.commissioning.faults import NO_FRICTION, NO_SCALE, refusal
 from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
+from cnc_ptp.parameters.declare import ids
 
 MODE = 3
 SCALES = (1000, 100, 10, 1)
@@ -94,7 +95,10 @@ def _require_friction(axis: str, points: Sequence[FrictionPoint], digits: float)
 
 
 def _require_scale(axis: str, scaling: Scaling) -> None:
-    for number, value in (("P-AXIS-00326", scaling.denominator), ("P-AXIS-00392", scaling.reference)):
+    for number, value in (
+        (ids.ANTR_TORQUE_SCALE_DENOM, scaling.denominator),
+        (ids.ANTR_ACC_REFERENCE_VALUE, scaling.reference),
+    ):
         if value == 0.0:
             raise refusal(
                 NO_SCALE, axis, f"{number} is 0, so torque has no drive unit (P-ERR-110465); no table was made, set it"

@@ -8,8 +8,11 @@ from __future__ import annotations
 
 from math import ceil, inf
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.view.control_view import ESTIMATED, FIXED, LINEAR, MONITORING_TYPES, LagMonitoring
 
+BY_ESTIMATE = f"{ids.GETRIEBE_SLEP_DYN}, estimated"
+BY_VELOCITY = f"{ids.GETRIEBE_SLEP_DYN}, linear"
 SCALE = 1024
 SETTLING = 5.0
 """Time constants 1/Kv that the lag of a motion has to fall before the axis counts as at a standstill."""
@@ -65,14 +68,14 @@ class FollowingErrorMonitor:
         if kind == ESTIMATED:
             estimate = self._next_estimate(velocity)
             if max(standing, estimate) >= moving:
-                return moving, "P-AXIS-00168"
-            return (estimate, "P-AXIS-00167, estimated") if estimate > standing else (standing, "P-AXIS-00169")
+                return moving, ids.GETRIEBE_SLEP_MAX
+            return (estimate, BY_ESTIMATE) if estimate > standing else (standing, ids.GETRIEBE_SLEP_MIN)
         if kind not in (LINEAR, FIXED):
             return inf, ""
         if velocity == 0.0 and self._rest >= self._settling:
-            return standing, "P-AXIS-00169"
+            return standing, ids.GETRIEBE_SLEP_MIN
         linear = abs(velocity) * self._factor if kind == LINEAR else 0.0
-        return (linear, "P-AXIS-00167, linear") if linear > moving else (moving, "P-AXIS-00168")
+        return (linear, BY_VELOCITY) if linear > moving else (moving, ids.GETRIEBE_SLEP_MAX)
 
     def exceeded(self, following_error: float, velocity: float) -> bool:
         """True when the error has been above the limit for longer than the filter time; changes nothing."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
 from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedforward, number
-from cnc_ptp.nc.lexer import Token, column_of
+from cnc_ptp.nc.lexer import NUMBER, Token, column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
 ON, WEIGHTS, OFF = 135, 136, 137
@@ -17,7 +17,7 @@ SELECTION = "feedforward"
 
 _BRACKET = re.compile(r"G\s*=?\s*0*13[567](?!\d)", re.ASCII)
 _WORD = re.compile(r"\s*G\s*=?\s*0*(13[567])(?!\d)(?:\s*=\s*([^\sA-Z]*))?", re.ASCII)
-_NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
+_NUMBER = re.compile(NUMBER, re.ASCII)
 
 
 def block_function(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:

@@ -14,25 +14,25 @@ from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
 
 MAX_DIGITS = 9
-_NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
+NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
 _NAME = r"[A-Z_][A-Z0-9_]*+"
 
-PLAIN_WORDS = re.compile(rf"\s*([A-Z])\s*=?\s*({_NUMBER})\s*", re.ASCII)
+PLAIN_WORDS = re.compile(rf"\s*([A-Z])\s*=?\s*({NUMBER})\s*", re.ASCII)
 """Splits a line into remainder, letter, number, remainder, ...; with all remainders empty the line is plain words."""
 
 _TOKEN = re.compile(
     rf"""\s*(?:
       (?P<call> LL\s+ (?P<callee>[^\s"\],#$\[]+) )
-    | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{_NUMBER}) (?![\d.]) )
-    | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{_NUMBER}) (?!\s*[=\[]|[\d.]) )
-    | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{_NUMBER}) (?![\d.]) )
+    | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{NUMBER}) (?![\d.]) )
+    | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{NUMBER}) (?!\s*[=\[]|[\d.]) )
+    | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{NUMBER}) (?![\d.]) )
     | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>[^\[\]]*) \] )
-    | (?P<bare> {_NUMBER} (?![\d.]) )
+    | (?P<bare> {NUMBER} (?![\d.]) )
     )""",
     re.ASCII | re.VERBOSE,
 )
 _KINDS = ("call", "position", "word", "named", "bracket", "bare")
-_BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({_NUMBER})(?![\d.])", re.ASCII)
+_BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({NUMBER})(?![\d.])", re.ASCII)
 _BRACKET_NAME = re.compile(r"\s*([A-Z_]{2,}+)()(?=\s|$)", re.ASCII)
 _UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
 

@@ -12,12 +12,13 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Function, SpindleLink
 from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.lexer import NUMBER
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock, Pair, Pairs, Spindle
 from cnc_ptp.nc.spindles import current_main, name_of, names
 from cnc_ptp.spindle.ratio import LARGEST_RATIO, SMALLEST_RATIO, is_permitted
 
 DEFINITION = "[group, slave=master, ...] or [group, slave=master, num, den, ...]"
-_NUMBER = re.compile(r"[+-]?(?:\d{1,9}\.?\d*|\.\d+)", re.ASCII)
+_NUMBER = re.compile(NUMBER, re.ASCII)
 
 
 class _Command:

@@ -64,8 +64,8 @@ class PlayerNode(Node):
         self._messages: Iterator[RawMessage] = iter_messages(path, topics=self._played.keys())
         self._next: RawMessage | None = next(self._messages, None)
         self._rate = rate
-        self._deadline = time.monotonic() + DISCOVERY
-        self._subscribers, self._settled = 0, math.inf
+        self._deadline = self._settled = math.inf
+        self._subscribers = 0
         self._begin: float | None = None
         self._end: float | None = None
         self.published = 0
@@ -103,6 +103,7 @@ class PlayerNode(Node):
 
     def _await_subscribers(self, now: float) -> None:
         """Starts when no more subscribers come, at the latest at the deadline: earlier messages are lost."""
+        self._deadline = min(self._deadline, now + DISCOVERY)
         subscribers = sum(publisher.get_subscription_count() for publisher in self._played.values())
         if subscribers != self._subscribers:
             self._subscribers, self._settled = subscribers, now + SETTLED

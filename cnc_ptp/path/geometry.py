@@ -18,6 +18,11 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_LIMIT
 
+BAD_POINTS = 22100
+TARGET_OFF_ARC = 22101
+EMPTY_ARC = 22102
+BAD_FEED = 22103
+
 AxisState = tuple[float, float, float, float]
 """Position, velocity, acceleration, jerk of one axis."""
 
@@ -138,7 +143,7 @@ class Arc:
         self.radius = hypot(x, y)
         if not (0.0 < self.radius < inf and 0.0 < abs(sweep_deg) < inf):
             raise CncError(
-                22102,
+                EMPTY_ARC,
                 f"arc with radius {self.radius!r} mm and sweep {sweep_deg!r} deg: both must be finite and not 0",
                 "the motion is refused",
                 radius=self.radius,
@@ -161,7 +166,7 @@ class Arc:
         limit = CLOSING_TOLERANCE_MM + CLOSING_TOLERANCE * self.radius
         if miss > limit:
             raise CncError(
-                22101,
+                TARGET_OFF_ARC,
                 f"arc around ({self.center[0]!r}, {self.center[1]!r}) with radius {self.radius:.6g} mm "
                 f"(programmed {radius:.6g} mm) ends {miss:.6g} mm away from its target; the limit is {limit:.6g} mm",
                 "the motion is refused",
@@ -273,7 +278,7 @@ def _combine(feed: float, parts: Sequence[Limits]) -> Limits:
 def _check_feed(feed: float) -> None:
     """Refuse a feed that is not above 0 (inf is rapid traverse). Raises CncError 22103."""
     if not feed > 0.0:
-        raise CncError(22103, f"path feed {feed!r} mm/s must be greater than 0", "the motion is refused", feed=feed)
+        raise CncError(BAD_FEED, f"path feed {feed!r} mm/s must be greater than 0", "the motion is refused", feed=feed)
 
 
 def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
@@ -283,9 +288,9 @@ def _check_points(start: Sequence[float], target: Sequence[float]) -> None:
     """
     if len(start) != len(target):
         reason = f"path from {len(start)} to {len(target)} axes"
-        raise CncError(22100, reason, "the motion is refused", start=len(start), target=len(target))
+        raise CncError(BAD_POINTS, reason, "the motion is refused", start=len(start), target=len(target))
     for name, point in (("start", start), ("target", target)):
         for n, value in enumerate(point):
             if not isfinite(value):
                 reason = f"path {name} of axis {n} = {value!r} must be a finite number"
-                raise CncError(22100, reason, "the motion is refused", point=name, axis=n, value=value)
+                raise CncError(BAD_POINTS, reason, "the motion is refused", point=name, axis=n, value=value)

@@ -11,6 +11,11 @@ from cnc_ptp.motion.profile import MotionState
 from cnc_ptp.path.geometry import Element
 from cnc_ptp.path.planner import JERK_LIMITED, Planner
 
+STILL_MOVING = 22110
+BAD_FEED = 22111
+BAD_DWELL = 22112
+BAD_OVERRIDE = 22113
+
 PathRow = tuple[float, float, float, float, bool]
 """One cycle on the path: length s (mm), velocity, acceleration, jerk, element finished."""
 
@@ -99,7 +104,7 @@ class PathInterpolator:
         feed = limits.velocity if feed is None or feed == inf else feed
         if not feed > 0.0:
             reason = f"path feed {feed!r} mm/s must be greater than 0"
-            raise CncError(22111, reason, "the element is not started", feed=feed)
+            raise CncError(BAD_FEED, reason, "the element is not started", feed=feed)
         check_limits(limits)
         velocity = min(feed * self.override, limits.velocity)
         if velocity < SMALLEST_LIMIT and element.length > 0.0:
@@ -118,7 +123,7 @@ class PathInterpolator:
         self._check_free("a dwell")
         if not 0.0 <= seconds <= LONGEST_DWELL:
             reason = f"dwell of {seconds!r} s must be between 0 and {LONGEST_DWELL:g} s"
-            raise CncError(22112, reason, "it is not started", seconds=seconds, limit=LONGEST_DWELL)
+            raise CncError(BAD_DWELL, reason, "it is not started", seconds=seconds, limit=LONGEST_DWELL)
         s = self._length if self.done else self.state[0]
         self._limits = None
         self._begin(s, Profile(((0.0, s, 0.0, 0.0, 0.0), (seconds, s, 0.0, 0.0, 0.0))), True)
@@ -131,7 +136,7 @@ class PathInterpolator:
         """
         if not 0.0 <= override <= LARGEST_OVERRIDE:
             reason = f"path override {override!r} must be between 0 and {LARGEST_OVERRIDE:g}"
-            raise CncError(22113, reason, "it is not changed", factor=override, limit=LARGEST_OVERRIDE)
+            raise CncError(BAD_OVERRIDE, reason, "it is not changed", factor=override, limit=LARGEST_OVERRIDE)
         if override != self.override:
             self.override = override
             self._plan_anew()
@@ -169,7 +174,7 @@ class PathInterpolator:
     def _check_free(self, what: str) -> None:
         if not self.done and not self.stopped:
             raise CncError(
-                22110,
+                STILL_MOVING,
                 f"{what} was started {self.distance_to_go:.6g} mm before the end of the running path element",
                 "the active one continues",
                 distance_to_go=self.distance_to_go,

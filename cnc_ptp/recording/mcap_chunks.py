@@ -27,6 +27,10 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.recording.layout import Bytes
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, MESSAGE_HEAD, RECORD_PREFIX
 
+UNREADABLE = 26001
+NOT_MCAP = 26002
+CORRUPT = 26003
+
 Record = TypeVar("Record")
 KNOWN_OPCODES = frozenset(int(opcode) for opcode in Opcode)
 FIRST_PRIVATE_OPCODE = 0x80
@@ -71,7 +75,7 @@ class McapRecords:
             self._data = memoryview(path.read_bytes())
         except OSError as error:
             raise CncError(
-                26001, f"recording {path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
+                UNREADABLE, f"recording {path}: cannot be opened: {error.strerror}", "nothing was read, check the path"
             ) from error
         self._data_ended = False
         self._require_magic()
@@ -154,7 +158,7 @@ class McapRecords:
 
     def corrupt(self, offset: int, reason: str) -> CncError:
         return CncError(
-            26003,
+            CORRUPT,
             f"recording {self.path}: corrupt at offset {offset}: {reason}",
             "nothing was read, take an intact copy of the file or save what is whole with 'mcap recover'",
         )
@@ -163,7 +167,7 @@ class McapRecords:
         begin = bytes(self._data[: len(MCAP0_MAGIC)])
         if begin != MCAP0_MAGIC:
             raise CncError(
-                26002,
+                NOT_MCAP,
                 f"recording {self.path}: not an MCAP file: it begins with {begin!r} instead of {MCAP0_MAGIC!r}",
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )

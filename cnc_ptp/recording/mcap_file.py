@@ -43,6 +43,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
 from cnc_ptp.recording.layout import Bytes
 
+NOT_WRITTEN = 26007
+
 Times = npt.NDArray[np.uint64]
 
 MESSAGE_HEAD = np.dtype(
@@ -106,7 +108,7 @@ class McapFile:
                 self._stream.truncate()
         except OSError as error:
             raise CncError(
-                26007, f"recording {path}: cannot be created: {error.strerror}", "nothing is recorded"
+                NOT_WRITTEN, f"recording {path}: cannot be created: {error.strerror}", "nothing is recorded"
             ) from error
         forget_beside(path)
         if found is None:
@@ -297,7 +299,7 @@ class McapFile:
 
     def _failed(self, error: OSError) -> CncError:
         self._failure = CncError(
-            26007,
+            NOT_WRITTEN,
             f"recording {self.path}: cannot be written at offset {self._offset}: {error.strerror}",
             "recording ends here, the chunks before it stay readable",
         )

@@ -17,6 +17,7 @@ from pathlib import Path
 import cnc_ptp
 from cnc_ptp.errors import CncError
 
+UNKNOWN_TYPE = 26005
 DIVIDER = "=" * 80
 PRIMITIVES = {
     "bool": "?",
@@ -131,7 +132,7 @@ def message_file(type_name: str) -> Path:
         if path.is_file():
             return path
     raise CncError(
-        26005,
+        UNKNOWN_TYPE,
         f"recording: message type {full_name(type_name)} is not installed (looked for msg/{name}.msg in the "
         f"ROS prefixes and {sys.prefix}/share/{package})",
         f"it cannot be recorded, install package {package}",
@@ -159,7 +160,7 @@ def _fields(owner: str, text: str) -> Iterator[Field]:
         match = _FIELD.fullmatch(code)
         if match is None:
             raise CncError(
-                26005,
+                UNKNOWN_TYPE,
                 f"recording: message type {full_name(owner)}: '{code}' is not a field",
                 "the schema is not usable",
             )
@@ -185,7 +186,7 @@ def _require_complete(name: str, types: dict[str, tuple[Field, ...]]) -> None:
         for field in fields:
             if field.type not in PRIMITIVES and field.type != "string" and field.type not in types:
                 raise CncError(
-                    26005,
+                    UNKNOWN_TYPE,
                     f"recording: message type {full_name(name)}: type {field.type} of field "
                     f"{full_name(owner)}.{field.name} is neither defined in the schema nor supported",
                     "the schema is not usable",

@@ -21,6 +21,7 @@ from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import Recorded
 from cnc_ptp.recording.writer import Stamps, topic_of
 
+NOT_VERIFIABLE = 26004
 Replay = Callable[[Recorded], Iterable[tuple[str, CycleBlock]]]
 BATCH_BLOCKS = 500
 FIRST_DIFFERENCES = 20
@@ -136,7 +137,7 @@ def verify(recorded: Recorded, replay: Replay) -> VerifyResult:
     """
     if not recorded.machine_yaml:
         raise CncError(
-            26004,
+            NOT_VERIFIABLE,
             f"recording {recorded.path}: holds no attachment machine.yaml",
             "it cannot be verified, record it with cnc_ptp",
         )
@@ -195,7 +196,7 @@ class _Check:
         recorded, computed = self.rows.dtype.names or (), kind.layout.dtype.names or ()
         if unknown := [name for name in recorded if name not in computed]:
             raise CncError(
-                26004,
+                NOT_VERIFIABLE,
                 f"recording {self.recorded.path}: {self.result.topic} has the fields {', '.join(unknown)}, which this "
                 "version does not compute",
                 "it cannot be verified, use the version that recorded it",

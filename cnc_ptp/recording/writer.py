@@ -44,6 +44,8 @@ from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
 from cnc_ptp.recording.schemas import full_name, load_schema, type_hash
 
+TWO_TYPES = 26008
+CLOSED = 26009
 ROOM = bytes(HEAD_SIZE)  # for the record head in front of each message
 MACHINE_FILE = "machine.yaml"
 METADATA = "cnc_ptp"
@@ -384,7 +386,7 @@ class Recording:
             self._topics[topic] = known
         elif type_name not in known.type_names:
             raise CncError(
-                26008,
+                TWO_TYPES,
                 f"recording {self.path}: topic {topic} holds {known.type_names[1]}, a message of "
                 f"{full_name(type_name)} came",
                 "it was not recorded",
@@ -394,7 +396,7 @@ class Recording:
     def _require_open(self, what: str) -> None:
         if self._closed:
             raise CncError(
-                26009, f"recording {self.path}: {what} came after the recording was closed", "it was not recorded"
+                CLOSED, f"recording {self.path}: {what} came after the recording was closed", "it was not recorded"
             )
 
     def _begin_chunk(self, first_cycle: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
@@ -22,9 +23,9 @@ from cnc_ptp.spindle.spindle import Spindle
 from cnc_ptp.spindle.tool_limits import ToolLimits
 
 LIMIT_RANGES = {
-    "max_speed_rpm": (1e-3 / DEG_S_PER_RPM, 2e6 / DEG_S_PER_RPM, "P-TOOL-00014"),
-    "min_speed_rpm": (0.0, 2e6 / DEG_S_PER_RPM, "P-TOOL-00013"),
-    "max_acceleration": (1.0, 1e8, "P-TOOL-00015"),
+    "max_speed_rpm": (1e-3 / DEG_S_PER_RPM, 2e6 / DEG_S_PER_RPM, ids.WZ_VB_MAX),
+    "min_speed_rpm": (0.0, 2e6 / DEG_S_PER_RPM, ids.WZ_VB_MIN),
+    "max_acceleration": (1.0, 1e8, ids.WZ_A_MAX),
 }
 """Permitted range of tool limits: rpm, °/s²."""
 

@@ -6,6 +6,7 @@ from math import inf
 
 from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
@@ -148,7 +149,7 @@ class SpindleCycles:
         missing = f"was not reached {seconds} after the setpoint"
         if spindle.speed_lost_at > -inf:
             missing = f"was lost and has not come back for {seconds}"
-        limit = "P-AXIS-00217" if wanted else "P-AXIS-00216"
+        limit = ids.KENNGR_VB_PROZENT if wanted else ids.GETRIEBE_VB_MIN_NULL
         spindle.fault(cycle, SPEED_NOT_REACHED, f"speed {wanted:g} rpm {missing} ({limit}, P-MACH-00050)")
 
     def _bits(self) -> int:

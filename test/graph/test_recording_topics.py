@@ -88,9 +88,20 @@ def test_qualities_of_the_recording_are_those_of_the_nodes():
     assert player.qos_of(TopicInfo("/rosout", "rcl_interfaces/msg/Log")) == qos_profile_rosout_default
 
 
-def test_replay_publishes_with_the_recorded_quality_and_says_so(recording):
-    total = sum(1 for _ in iter_messages(recording))
-    topics = len(read_recording(recording).topics)
+@pytest.fixture(scope="module")
+def published(recording):
+    """What `replay --publish` prints, the durability that it offers by topic, and the overrides that a reader gets.
+
+    A busy machine can need longer to match a reader than the player waits for it: then it is played again.
+    """
+    for _ in range(3):
+        output, offered, overrides = publish(recording)
+        if overrides:
+            break
+    return output, offered, overrides
+
+
+def publish(recording):
     process.initialise()
     node = Node("test_reader", enable_rosout=False)
     heard = []
@@ -110,7 +121,13 @@ def test_replay_publishes_with_the_recorded_quality_and_says_so(recording):
                 offered[topic] = info.qos_profile.durability
     node.destroy_node()
     rclpy.try_shutdown()
-    output = publishing.stdout.read()
+    return publishing.stdout.read(), offered, [message.percent for message in heard]
+
+
+def test_replay_publishes_with_the_recorded_quality_and_says_so(recording, published):
+    total = sum(1 for _ in iter_messages(recording))
+    topics = len(read_recording(recording).topics)
+    output, offered, overrides = published
     first, last = output.splitlines()
     assert re.fullmatch(
         rf"publishing {re.escape(str(recording))} on ROS domain \d+: {topics} topics, {total} messages, "
@@ -120,7 +137,7 @@ def test_replay_publishes_with_the_recorded_quality_and_says_so(recording):
     assert last == f"published {total} of {total} messages on {topics} topics"
     remembered = {topic for topic, durability in offered.items() if durability == QoSDurabilityPolicy.TRANSIENT_LOCAL}
     assert (remembered, len(offered)) == ({"/x/block", "/events"}, 4)
-    assert [message.percent for message in heard] == [70.0]
+    assert overrides == [70.0]
 
 
 def test_plc_inputs_are_left_out_unless_asked_for(recording):

@@ -16,6 +16,7 @@ from cnc_ptp.nodes.bridge.jog_topics import PATIENCE as SILENCE
 from cnc_ptp.nodes.bridge.jog_topics import free_run_text, second_client_text
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
+from cnc_ptp.nodes.process import take_priority
 from cnc_ptp.nodes.topics import COMMAND, EVENT, PLC_INPUT, jog_topic
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity
@@ -44,6 +45,7 @@ def jog(axis: str, direction: str, speed: float, distance: float | None, seconds
         jogger = Jogger(client, axis, speed if direction == "+" else -speed)
         if not jogger.ready():
             return jogger.report("the machine does not listen, or shows nothing of the axis; nothing has moved")
+        take_priority()  # a jog ends after 0.2 s of silence: other busy programs must not cause that
         jogger.run(lambda: end.given, distance, seconds)
         return jogger.end()
 

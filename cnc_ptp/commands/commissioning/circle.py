@@ -15,7 +15,7 @@ from cnc_ptp.commands.commissioning.circle_page import circle_page
 from cnc_ptp.commands.commissioning.circle_picture import circle_picture
 from cnc_ptp.commands.commissioning.circle_report import CircleTest, Variant, VariantResult, circle_lines
 from cnc_ptp.commands.commissioning.trial_run import run_trial
-from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED, print_lines
 from cnc_ptp.commands.output_file import check_output, write_output
 from cnc_ptp.commands.picture_file import check_picture, picture_kind
 from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_program, find_plane, measured_turn
@@ -255,8 +255,7 @@ def run_variant(
 def show(test: CircleTest, outputs: Sequence[str], magnification: float | None) -> None:
     """Prints the table and writes the pictures."""
     console = Console(highlight=False, soft_wrap=True)
-    for line in circle_lines(test):
-        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    print_lines(console, circle_lines(test))
     for output in outputs:
         kind = picture_kind(output)
         page = kind == "html"

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from cnc_ptp.commands.console import WarningLine
 from cnc_ptp.commissioning.roundness import CircleResult
 
 UM = 1000.0
@@ -143,12 +144,12 @@ def warning_lines(test: CircleTest) -> Iterator[str]:
     """The feed that was not reached, friction compensation that an axis does not have."""
     lowest = min(result.lowest_feed for result in test.results)
     if lowest < (1.0 - FEED_TOLERANCE) * test.feed:
-        yield (
-            f"warning: the feed of {test.feed:g} mm/min was not reached everywhere, the lowest is {lowest:.0f} "
+        yield WarningLine(
+            f"the feed of {test.feed:g} mm/min was not reached everywhere, the lowest is {lowest:.0f} "
             "mm/min; the axes' acceleration is too small for this radius"
         )
     if test.uncompensated and any(result.variant.friction for result in test.results):
-        yield (
-            f"warning: axis {', '.join(test.uncompensated)} has no friction compensation, it needs lr_param.frict_comp "
+        yield WarningLine(
+            f"axis {', '.join(test.uncompensated)} has no friction compensation, it needs lr_param.frict_comp "
             "(P-AXIS-00522) and a table; only the other axis was switched"
         )

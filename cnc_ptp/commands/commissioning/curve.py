@@ -9,7 +9,7 @@ from rich.console import Console
 from cnc_ptp.commands.commissioning.curve_page import curve_page
 from cnc_ptp.commands.commissioning.curve_picture import curve_picture
 from cnc_ptp.commands.commissioning.curve_report import curve_lines, curve_yaml
-from cnc_ptp.commands.console import RUN_FAILED, print_error
+from cnc_ptp.commands.console import RUN_FAILED, print_error, print_lines
 from cnc_ptp.commands.output_file import check_output, deliver, write_output
 from cnc_ptp.commands.picture_file import KINDS, picture_kind
 from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault, fit_curve
@@ -53,8 +53,7 @@ def curve_fit(
     )
     fault = curve_fault(fit)
     console = Console(highlight=False, soft_wrap=True)
-    for line in curve_lines(fit, usable=fault is None):
-        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    print_lines(console, curve_lines(fit, usable=fault is None))
     draw(console, fit, [output for output in outputs if picture_kind(output) not in YAML])
     if fault is not None:
         print_error(fault)

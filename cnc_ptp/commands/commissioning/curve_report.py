@@ -7,6 +7,7 @@ from math import inf
 
 import numpy as np
 
+from cnc_ptp.commands.console import WarningLine
 from cnc_ptp.commissioning.curve_fit import CurveFit
 from cnc_ptp.commissioning.curve_points import SPEED_UNITS
 from cnc_ptp.commissioning.trace import Array
@@ -75,16 +76,16 @@ def warning_lines(fit: CurveFit) -> Iterator[str]:
     for point, miss in zip(fit.points, fit.misses(), strict=True):
         if abs(miss) > LARGE_MISS * point.acceleration:
             percent = 100.0 * miss / point.acceleration
-            yield f"warning: the curve lies {percent:+.1f} % off the point at {point.speed:g} °/s"
+            yield WarningLine(f"the curve lies {percent:+.1f} % off the point at {point.speed:g} °/s")
     minimum, last = fit.parameters.minimum, fit.points[-1]
     for point in fit.points:
         if point.acceleration < minimum:
-            yield (
-                f"warning: a_min {minimum:g} °/s² (P-AXIS-00010) is above the point at {point.speed:g} °/s, the drive "
+            yield WarningLine(
+                f"a_min {minimum:g} °/s² (P-AXIS-00010) is above the point at {point.speed:g} °/s, the drive "
                 f"has {point.acceleration:g} °/s² there"
             )
     if fit.top_speed > last.speed:
-        yield f"warning: no point lies between {last.speed:g} °/s and the largest speed {fit.top_speed:g} °/s"
+        yield WarningLine(f"no point lies between {last.speed:g} °/s and the largest speed {fit.top_speed:g} °/s")
 
 
 def curve_yaml(fit: CurveFit, spindle: str, gear: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cnc_ptp.commands.commissioning.axis_data import AxisData
+from cnc_ptp.commands.console import WarningLine
 from cnc_ptp.commissioning.dynamics import DriveFit
 from cnc_ptp.commissioning.excitation import highest_velocity
 from cnc_ptp.commissioning.gain import GainProposal
@@ -69,18 +70,20 @@ def rough(data: AxisData, fit: DriveFit) -> str | None:
 
 def warnings(data: AxisData, fit: DriveFit, gain: GainProposal) -> Iterator[str]:
     """Warnings about the present machine file."""
-    head, kv, reason = f"warning: axis {data.axis.name}:", data.kv, rough(data, fit)
+    head, kv, reason = f"axis {data.axis.name}:", data.kv, rough(data, fit)
     if reason is not None:
-        yield f"warning: {reason}"
+        yield WarningLine(reason)
     if abs(fit.gain - 1.0) > GAIN_TOLERANCE:
-        yield (
+        yield WarningLine(
             f"{head} the drive moves {100.0 * (fit.gain - 1.0):+.1f} % off its command; check the scaling of the "
             "velocity (P-AXIS-00205, P-AXIS-00206, P-AXIS-00128, P-AXIS-00129)"
         )
     if kv >= gain.limit:
-        yield f"{head} Kv {kv:g} 1/s is not below the limit of about {gain.limit:.0f} 1/s; the axis oscillates"
+        yield WarningLine(
+            f"{head} Kv {kv:g} 1/s is not below the limit of about {gain.limit:.0f} 1/s; the axis oscillates"
+        )
     elif kv > gain.fastest:
-        yield f"{head} Kv {kv:g} 1/s is above {gain.fastest:.1f} 1/s; the axis overshoots"
+        yield WarningLine(f"{head} Kv {kv:g} 1/s is above {gain.fastest:.1f} 1/s; the axis overshoots")
 
 
 def load_of(data: AxisData, inertia: InertiaFit) -> tuple[float, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from cnc_ptp.commands.commissioning.axis_data import AxisData
+from cnc_ptp.commands.console import WarningLine
 from cnc_ptp.commissioning.friction import FrictionCurve, FrictionPoint
 from cnc_ptp.commissioning.friction_table import MODE, FrictionTable, Scaling
 from cnc_ptp.parameters.declare import ids
@@ -43,7 +44,7 @@ def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
         yield f"left out, the axis does not move: {speeds_shown(curve.standing)} {data.unit}/s; {reason}"
     doubt = doubtful(data, curve)
     if doubt is not None:
-        yield f"warning: {doubt}"
+        yield WarningLine(doubt)
 
 
 def doubtful(data: AxisData, curve: FrictionCurve) -> str | None:

@@ -14,7 +14,7 @@ from cnc_ptp.commands.commissioning.friction_report import (
     scaling_of,
     speeds_shown,
 )
-from cnc_ptp.commands.console import RUN_FAILED
+from cnc_ptp.commands.console import RUN_FAILED, WarningLine, print_lines
 from cnc_ptp.commands.output_file import check_output, deliver
 from cnc_ptp.commissioning.coverage import missing_speeds, scenario_lines
 from cnc_ptp.commissioning.dynamics import fit_drive
@@ -66,19 +66,17 @@ def identify_friction(
     curve = friction_curve(trace, settling=timing.settling, half_digit=data.half_digit)
     table = friction_table(curve, scaling_of(data), max_points=friction_table_size(data.raw))
     console = Console(highlight=False, soft_wrap=True)
-    for line in curve_lines(data, curve):
-        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    print_lines(console, curve_lines(data, curve))
     if data.recorded is not None:
-        for line in coverage_lines(data, [point.speed for point in curve.points], timing):
-            console.print(line, markup=False)
+        print_lines(console, coverage_lines(data, [point.speed for point in curve.points], timing))
     if table.without_friction:
         console.print(f"left out, no friction there (0 or less): {speeds_shown(table.without_friction)} {data.unit}/s")
     if table.dropped:
         kept = f"{len(table.entries)} of {len(curve.points)} points"
         console.print(f"{kept} are in the table (P-COMP-00062); between them the curve is straight")
     if len(table.entries) == 1:
-        text = "warning: the table has one point, its friction counts at all velocities; drive more of them"
-        console.print(text, style="yellow")
+        text = "the table has one point, its friction counts at all velocities; drive more of them"
+        print_lines(console, [WarningLine(text)])
     deliver(console, output, friction_yaml(data, curve, table, source))
     return 0
 
@@ -106,8 +104,7 @@ def identify_dynamics(
     fit = fit_drive(trace)
     gain, inertia = propose_gain(fit), fit_inertia(trace, time_constant=fit.time_constant)
     console = Console(highlight=False, soft_wrap=True)
-    for line in found_lines(data, fit, gain, inertia):
-        console.print(line, markup=False, style="yellow" if line.startswith("warning") else None)
+    print_lines(console, found_lines(data, fit, gain, inertia))
     deliver(console, output, dynamics_yaml(data, fit, gain, inertia, source))
     return 0
 
@@ -124,8 +121,8 @@ def warn_of_cut_recording(data: AxisData) -> None:
     recorded = data.recorded
     if recorded is not None and not recorded.complete:
         reason = recorded.missing or "its end is missing"
-        text = f"warning: {recorded.path} was cut off ({reason}); only what it holds is evaluated"
-        Console(stderr=True, highlight=False, soft_wrap=True).print(text, style="yellow", markup=False)
+        text = f"{recorded.path} was cut off ({reason}); only what it holds is evaluated"
+        print_lines(Console(stderr=True, highlight=False, soft_wrap=True), [WarningLine(text)])
 
 
 def check_files(output: str | None, record: str | None, machine: str | None, recording: str | None) -> None:
