@@ -126,7 +126,7 @@ class PathSource:
 
 
 class MasterSource:
-    """The master of a coupled axis: its set values, or or its actual values if those are to be followed."""
+    """The master of a coupled axis: its set values, or its actual values if those are to be followed."""
 
     def __init__(self, axis: Axis, *, axes: Mapping[str, AxisParameters], cycle_time: float) -> None:
         """`axes` of the machine by name, `cycle_time` in s."""

@@ -176,16 +176,14 @@ class ProgramSequence:
         ended = spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues") for text in ended]
         runs = self.phase not in (Phase.IDLE, Phase.RAMP_DOWN)
+        waited_for = self._speeds_waited_for()
         for spindle in spindles:
-            lost = spindle.lost_speed(cycle, watched=runs and spindle.node not in self._speeds_waited_for())
-            if lost:
+            if lost := spindle.lost_speed(cycle, watched=runs and spindle.node not in waited_for):
                 self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program continues"))
 
     def _waited_for(self) -> list[Wait]:
         """The waits that hold the path now."""
-        if self.phase not in WAITING:
-            return []
-        return sorted((wait for wait in self._waits if wait.until in self._due), key=lambda wait: ORDER[wait.until])
+        return [wait for wait in self._waits if wait.until in self._due] if self.phase in WAITING else []
 
     def _speeds_waited_for(self) -> set[str]:
         """Nodes of the spindles whose speed the path waits for: a missed speed is noticed there."""
@@ -217,9 +215,9 @@ class ProgramSequence:
             return True
         if self.phase not in WAITING:
             return False
-        open_waits = [w for w in self._waited_for() if not w.fulfilled(first_cycle, self._feedback, self.open_requests)]
-        self._waits = [wait for wait in self._waits if wait.until not in self._due] + open_waits
-        if open_waits:
+        done = [w for w in self._waited_for() if w.fulfilled(first_cycle, self._feedback, self.open_requests)]
+        self._waits = [wait for wait in self._waits if wait not in done]
+        if self._waited_for():
             return False
         if self.phase is Phase.WAIT_GEAR:
             self._functions_before()
@@ -258,9 +256,8 @@ class ProgramSequence:
     def _await_answers(self) -> None:
         """The program ends when the spindles have had one block in which to refuse their commands."""
         for spindle in self._functions.spindles:
-            self._waits += [
-                Wait(Moment.AFTER, Expectation(spindle.node), sent_cycle=cycle) for cycle in spindle.answers()
-            ]
+            expected = Expectation(spindle.node)
+            self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
     def _begin_block(self) -> None:
         if self.blocks_done >= len(self.blocks):
@@ -317,17 +314,23 @@ class ProgramSequence:
     def _queue(self, outgoing: Outgoing) -> None:
         """Functions go out with the next block; the path waits for them if their synchronisation type says so.
 
-        A newer function of a spindle replaces the wait for an older one.
+        A newer function of a spindle replaces the wait for an older one, unless the path waits for that already: it
+        must not start because its spindle has been commanded something else by a measuring event.
         """
         self._outgoing.commands += outgoing.commands
         self._outgoing.requests += outgoing.requests
         self.notes += outgoing.notes
+        later = [wait for wait in self._waits if self.phase not in WAITING or wait.until not in self._due]
         for newer in outgoing.expected:
             waits_too = any(wait.expected is newer for wait in outgoing.waits)
-            for wait in self._waits:
+            for wait in later:
                 wait.renew(newer, waits_too=waits_too)
-        self._waits += outgoing.waits
+        self._add_waits(outgoing.waits)
         self.open_requests |= {request.id: request for request in outgoing.requests if request.acknowledge_needed}
+
+    def _add_waits(self, waits: Sequence[Wait]) -> None:
+        """The list is in the order of the moments."""
+        self._waits = sorted([*self._waits, *waits], key=lambda wait: ORDER[wait.until])
 
 
 def moments_before(block: CanonicalBlock) -> list[Moment]:

@@ -69,6 +69,7 @@ class PlcBridgeNode(UnitNode):
         self._factors = Silence(self._life_sign_timeout)
         self._jogs = JogTopics(self._warn)
         self._joints_due = 0
+        self._answers: CouplingServices | None = None
 
     def setup(self) -> None:
         """As UnitNode, with the topics of the PLC, couplings and joint states."""
@@ -192,10 +193,11 @@ class PlcBridgeNode(UnitNode):
         self.plc.input(command)
 
     def run_ended(self) -> None:
-        self._answers.end()
+        if self._answers is not None:
+            self._answers.end()
 
     def destroy_node(self) -> None:
-        self._answers.end()
+        self.run_ended()
         super().destroy_node()
 
     def after_block(self, block: CycleBlock) -> None:

@@ -5,8 +5,8 @@ read/       a machine file -> one ParameterSet per node, each value checked agai
 view/       parameter sets -> the parameters of the kernel: AxisParameters and others, in kernel units
 check/      parameters against each other: problems, and notices for the log
 
-errors.py and units.py are below all of them, loader.py above: `load_machine(text, file)` is pure, `read_machine(path)`
-reads a file. Both give MachineParameters or raise ParameterError with everything that is wrong.
+errors.py and list_units.py are below all of them, loader.py above: `load_machine(text, file)` is pure,
+`read_machine(path)` reads a file. Both give MachineParameters or raise ParameterError with everything that is wrong.
 """
 
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue

@@ -197,6 +197,18 @@ def test_a_measuring_event_that_nobody_waits_for_is_refused() -> None:
     )
 
 
+@pytest.mark.parametrize(("word", "activity"), [("M05", "m5"), ("S500", "s"), ("M04 S500", "m4")])
+def test_a_measuring_event_does_not_end_the_wait_that_holds_the_path(word: str, activity: str) -> None:
+    """The event comes while G01 waits for the speed of M03: it must not start with a spindle that does something else."""
+    bench = MachineBench(
+        f"%P\nM03 S3000\nG01 X10 F3000 {word}\nM30",
+        "- {at: 0.05, to: channel, do: measuring_event}",
+        machine=mill(m3=MVS_SLM, **{activity: MNE_SNS}),
+    ).run()
+    assert [event.error_id for event in bench.events if event.source == "channel"] == [22021]
+    assert not any(bench.column("x", "set_velocity"))
+
+
 # ---------------------------------------------------------------- positioning
 
 

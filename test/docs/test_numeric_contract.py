@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 from pathlib import Path
@@ -18,7 +19,6 @@ ROWS = [line.strip("| ").split(" | ") for line in SECTION.splitlines() if "`test
 INPUTS = dict(
     line.strip("| ").split(" | ") for line in SECTION.split("| input | range |\n|---|---|\n")[1].splitlines()[:5]
 )
-CHECKER = "test/support/motion_checker.py"
 
 
 def numbers(text: str) -> list[float]:
@@ -29,25 +29,40 @@ def test_the_table_has_rows() -> None:
     assert len(ROWS) > 12 and len(INPUTS) == 5
 
 
+def function(place: str) -> ast.FunctionDef:
+    """The one at `path name`, as the table writes it."""
+    file, name = place.split()
+    tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
+    return next(node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == name)
+
+
+def tolerances(of: ast.FunctionDef) -> set[float]:
+    """Numbers in a function that can be a tolerance; RELATIVE of the checker by its value."""
+    nodes = list(ast.walk(of))
+    found = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)}
+    return found | {RELATIVE for node in nodes if isinstance(node, ast.Name) and node.id == "RELATIVE"}
+
+
+def asserts_equality(of: ast.FunctionDef) -> bool:
+    """An assertion of the function compares without a tolerance."""
+    for node in (part for test in ast.walk(of) if isinstance(test, ast.Assert) for part in ast.walk(test.test)):
+        if isinstance(node, ast.Attribute) and node.attr == "isin":
+            return True
+        if isinstance(node, ast.Compare) and isinstance(node.ops[0], ast.Eq) and "approx" not in ast.unparse(node):
+            return True
+    return False
+
+
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
 def test_each_number_is_one_of_its_test(row: list[str]) -> None:
-    """The tests named exist and ask for what the row says: to the bit by ==, else for the number itself."""
+    """The functions named ask for what the row says: to the bit by ==, else within the number."""
     _, within, tests = row
-    sources = [(ROOT / name).read_text(encoding="utf-8") for name in re.findall(r"`([^`]+)`", tests)]
-    assert sources
-    for number in re.findall(r"1e-\d+", within):
-        assert any(number in source for source in sources)
-    assert re.search(r"1e-\d+", within) or "bit" in within
-    if "bit" in within:
-        assert all("==" in source or "isin" in source for source in sources)
-
-
-def test_numbers_of_the_checker() -> None:
-    of_checker = [within for _, within, tests in ROWS if CHECKER in tests and "1e-" in within]
-    assert len(of_checker) == 3
-    assert {number for within in of_checker for number in re.findall(r"1e-\d+", within)} == {
-        f"{RELATIVE:.0e}".replace("e-0", "e-")
-    }
+    functions = [function(place) for place in re.findall(r"`([^`]+)`", tests)]
+    asked = {float(number) for number in re.findall(r"1e-\d+", within)}
+    assert functions and (asked or "bit" in within)
+    for of in functions:
+        assert asked <= tolerances(of)
+        assert "bit" not in within or asserts_equality(of)
 
 
 def test_ranges_of_inputs() -> None:

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
+
 PACKAGE = Path(__file__).parents[2] / "cnc_ptp"
 GENERATED = ("msg", "srv", "action")
 FLOORS = (
@@ -61,12 +63,32 @@ def test_no_import_circle():
     list(TopologicalSorter(graph()).static_order())
 
 
-def test_the_kernel_imports_neither_ros_nor_plots():
-    """Only nodes, and the commands above them, know rclpy and the interfaces generated for it."""
-    foreign = ("rclpy", "cnc_ptp.msg", "cnc_ptp.srv", "cnc_ptp.action", "plotly")
-    kernel = FLOORS[: FLOORS.index("recording")]
-    for name, file in modules().items():
-        if floor(name) in kernel:
-            assert not [
-                word for word in foreign if f"import {word}" in (text := file.read_text()) or f"from {word}" in text
-            ]
+ROS = {"rclpy", *(f"cnc_ptp.{name}" for name in GENERATED)}
+PLOTS = {"plotly"}
+
+
+def named(code: str) -> set[str]:
+    """Every module, and every name of a package, that a code imports, with the packages that it is in."""
+    found = set()
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return {".".join(name.split(".")[: n + 1]) for name in found for n in range(name.count(".") + 1)}
+
+
+@pytest.mark.parametrize(("foreign", "first"), [(ROS, "nodes"), (PLOTS, "recording")])
+def test_what_only_upper_floors_may_import(foreign: set[str], first: str) -> None:
+    """Nodes and the floors above them know rclpy and the interfaces generated for it; the kernel knows no plots."""
+    below = FLOORS[: FLOORS.index(first)]
+    importing = [name for name, file in modules().items() if floor(name) in below and named(file.read_text()) & foreign]
+    assert importing == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    ["import rclpy.node", "from rclpy.node import Node", "from cnc_ptp import msg", "from cnc_ptp.srv import Stop"],
+)
+def test_every_form_of_an_import_is_found(code: str) -> None:
+    assert named(code) & ROS

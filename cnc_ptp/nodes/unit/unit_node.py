@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -106,6 +107,7 @@ class UnitNode(Node):
         now = time.monotonic()
         self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
         self._heartbeat_at = self._checked = now
+        self._claim: socket.socket | None = None
         self._machine = machine
         self._own_name = MACHINE if unit.kind == PLC else unit.name
 
@@ -426,4 +428,5 @@ class UnitNode(Node):
 
     def destroy_node(self) -> None:
         super().destroy_node()
-        self._claim.close()
+        if self._claim is not None:
+            self._claim.close()
