@@ -16,13 +16,13 @@ from typing import Any
 import click
 from rich.console import Console
 
-from bench.figures import FULL, SHORT, Effort, Figure, Say, table
+from bench.figures import FULL, SHORT, Effort, Figure, ShowProgress, table
 
 TOPICS = ("interpreter", "motion", "control", "recording", "offline", "graph", "service", "slaves", "spindles")
 
 
 @contextmanager
-def progress(topic: str) -> Iterator[Say]:
+def progress(topic: str) -> Iterator[ShowProgress]:
     """A line with the topic and what is measured at the moment; on a terminal only."""
     console = Console(stderr=True)
     if not console.is_terminal:
@@ -34,9 +34,9 @@ def progress(topic: str) -> Iterator[Say]:
 
 def measure(topic: str, effort: Effort) -> list[Figure]:
     """All figures of a topic. A topic's module is loaded when its turn comes: not all need ROS."""
-    figures: Callable[[Effort, Say], Iterator[Figure]] = import_module(f"bench.{topic}").figures
-    with progress(topic) as say:
-        return list(figures(effort, say))
+    figures: Callable[[Effort, ShowProgress], Iterator[Figure]] = import_module(f"bench.{topic}").figures
+    with progress(topic) as show:
+        return list(figures(effort, show))
 
 
 def host() -> dict[str, Any]:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from bench.figures import Effort, Figure, Say, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, stopwatch
 from cnc_ptp.control.control_loop import ControlLoop
 from cnc_ptp.control.drives import CascadedDrive, Drive, FirstOrderDrive, make_drive
 from cnc_ptp.control.feedforward import CouplingLimits
@@ -39,7 +39,7 @@ def circle(cycle_time: float) -> list[State]:
 
 
 def of_loop(control: ControlParameters, setpoints: Sequence[State], cycle_time: float, limits: CouplingLimits) -> float:
-    """µs a cycle of the whole loop."""
+    """µs per cycle of the whole loop."""
     loop = ControlLoop(control, cycle_time=cycle_time, limits=limits, drive=make_drive(control, cycle_time))
     step = loop.step
     with stopwatch() as watch:
@@ -49,7 +49,7 @@ def of_loop(control: ControlParameters, setpoints: Sequence[State], cycle_time: 
 
 
 def of_drive(make: Callable[[], Drive], setpoints: Sequence[State]) -> float:
-    """µs a cycle of a drive that is commanded the velocities."""
+    """µs per cycle of a drive that is commanded the velocities."""
     step = make().step
     with stopwatch() as watch:
         for _, velocity, _, _ in setpoints:
@@ -62,7 +62,7 @@ def least_of(rounds: int, measures: Sequence[Callable[[], float]]) -> list[float
     return [min(column) for column in zip(*[[measure() for measure in measures] for _ in range(rounds)], strict=True)]
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """All figures; the axis is x of config/mill.yaml, with its friction table switched on."""
     axis = read_machine(MACHINE).axes["x"]
     cycle_time = 1e-6 * read_machine(MACHINE).cycle_time_us
@@ -76,7 +76,7 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
         feedforward=replace(control.feedforward, mode=0),
         friction=replace(control.friction, permitted=False, active=False),
     )
-    say("loops and drives, in turn")
+    show("loops and drives, in turn")
     values = least_of(
         ROUNDS * effort.runs,
         [

@@ -13,7 +13,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-Say = Callable[[str], None]
+ShowProgress = Callable[[str], None]
 """Shows what is being measured."""
 
 

@@ -10,7 +10,7 @@ from statistics import mean
 
 import numpy as np
 
-from bench.figures import Effort, Figure, Say
+from bench.figures import Effort, Figure, ShowProgress
 from bench.graph_run import SUPERVISOR, GraphRun, run_graph
 from bench.jobs import MACHINE, long_program
 from cnc_ptp.parameters import read_machine
@@ -21,7 +21,7 @@ COMPOSED_SECONDS = 120.0
 LEAST_SECONDS = 5.0
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """The real-time run, then the rates without a paced clock."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -29,16 +29,16 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
         program.write_text(long_program(max(effort.graph_seconds, COMPOSED_SECONDS)))
         job = (MACHINE, str(program))
         seconds = effort.graph_seconds
-        say(f"{seconds:.0f} s in real time, 8 processes")
+        show(f"{seconds:.0f} s in real time, 8 processes")
         paced = run_graph(*job, seconds=seconds, record=record, free_run=False, composed=False)
         yield from real_time(paced)
         yield Figure("samples missing in the recording", missing_samples(record), "", goal=0.0, at_most=True)
         yield from resources(paced)
-        say("free run, 8 processes")
+        show("free run, 8 processes")
         free_seconds = max(LEAST_SECONDS, FREE_RUN_SECONDS * effort.size)
         free = run_graph(*job, seconds=free_seconds, record=record, free_run=True, composed=False)
         yield from rate("free run as 8 processes", free)
-        say("free run, composed")
+        show("free run, composed")
         composed_seconds = max(LEAST_SECONDS, COMPOSED_SECONDS * effort.size)
         composed = run_graph(*job, seconds=composed_seconds, record=record, free_run=True, composed=True)
         yield from rate("free run composed in one process", composed)

@@ -53,27 +53,27 @@ def run_graph(
     """Runs `seconds` of machine time in a new process, in a ROS domain that others do not use."""
     os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        job = (machine, program, scenario, seconds, record, free_run)
-        return pool.submit(_run, job, composed).result()
+        options = (machine, program, scenario, seconds, record, free_run)
+        return pool.submit(_run, options, composed).result()
 
 
 def _run(arguments: tuple[str, str | None, str | None, float, str, bool], composed: bool) -> GraphRun:
     from cnc_ptp.nodes.composed import run_composed
-    from cnc_ptp.nodes.supervisor import RunOrder, Supervisor
+    from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
     from cnc_ptp.parameters import read_machine
     from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS
 
-    job = RunOrder(*arguments)
-    parameters, seconds = read_machine(job.machine), arguments[3]
+    options = RunOptions(*arguments)
+    parameters, seconds = read_machine(options.machine), arguments[3]
     watch = Watch(memory_at=0.8 * seconds * 1e6 / parameters.cycle_time_us, own=COMPOSED if composed else SUPERVISOR)
 
     def show(monitor: object) -> None:
         watch.look(monitor.cycle)  # type: ignore[attr-defined]
 
     if composed:
-        monitor, failures = run_composed(parameters, job, show=show)
+        monitor, failures = run_composed(parameters, options, show=show)
     else:
-        supervisor = Supervisor(parameters, job, show=show)
+        supervisor = Supervisor(parameters, options, show=show)
         monitor, failures = supervisor.run(), supervisor.failures
     run = watch.finish()
     run.failures = failures + monitor.errors
@@ -100,7 +100,7 @@ class Sample:
 
 
 class Watch:
-    """Samples the processes of the run once a second: this one and its children."""
+    """Samples the processes of the run once per second: this one and its children."""
 
     def __init__(self, *, memory_at: float, own: str) -> None:
         """`memory_at`: cycle at which the memory is read. `own`: name for this process."""
@@ -112,7 +112,7 @@ class Watch:
         self.run = GraphRun()
 
     def look(self, cycle: int) -> None:
-        """Called many times a second with the last cycle that was reported."""
+        """Called many times per second with the last cycle that was reported."""
         now = time.monotonic()
         if cycle and not self.run.startup:
             self.run.startup = now - self._started

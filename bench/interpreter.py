@@ -1,11 +1,11 @@
-"""NC blocks a second: `G1 X Y Z F` lines parsed and modally resolved."""
+"""NC blocks per second: `G1 X Y Z F` lines parsed and modally resolved."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator
 
-from bench.figures import Effort, Figure, Say, medians_of, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 
@@ -22,7 +22,7 @@ def program_text(blocks: int) -> str:
     return "\n".join([*lines, "M30"])
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Parsing and interpretation together, then apart."""
     blocks = effort.scaled(BLOCKS)
     text = program_text(blocks)
@@ -40,7 +40,7 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
                 pass
         return watch.wall / blocks
 
-    say(f"{blocks:,} blocks")
+    show(f"{blocks:,} blocks")
     parsing, resolving = medians_of(effort.runs, [parse, resolve])
     yield Figure("`G1 X Y Z F` blocks", 1.0 / (parsing + resolving), "blocks/s", goal=60_000.0)
     yield Figure("text to words", 1e6 * parsing, "µs/block")

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 import ruckig
 
-from bench.figures import Effort, Figure, Say, medians_of, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from cnc_ptp.motion import Limits, plan_rest_to_rest, plan_rest_to_rest_batch, plan_to_position, plan_to_velocity
 from cnc_ptp.path import Arc, AxisLimits, Line, PathInterpolator
 
@@ -78,14 +78,14 @@ class RuckigPeer:
         return True
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Plans, evaluation, path."""
     peer = RuckigPeer()
-    say("plans")
+    show("plans")
     yield from plans(effort, peer)
-    say("evaluation")
+    show("evaluation")
     yield from evaluation(effort, peer)
-    say("path")
+    show("path")
     yield from path(effort)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bench.figures import Effort, Figure, Say, Stopwatch, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, Stopwatch, stopwatch
 from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
 from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
@@ -89,21 +89,21 @@ def measure_unit(unit: Unit, shares: dict[str, float]) -> None:
     unit.step = measured  # type: ignore[method-assign]
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Speed on the example, split of the time, memory."""
     with tempfile.TemporaryDirectory() as folder:
-        yield from speed(effort, say, str(Path(folder) / "run.mcap"))
-        yield from memory(effort, say, Path(folder))
+        yield from speed(effort, show, str(Path(folder) / "run.mcap"))
+        yield from memory(effort, show, Path(folder))
 
 
-def speed(effort: Effort, say: Say, record: str) -> Iterator[Figure]:
+def speed(effort: Effort, show: ShowProgress, record: str) -> Iterator[Figure]:
     """examples/bracket.nc with its overrides on config/mill.yaml, with and without recording in turn."""
     recorded: list[OfflineRun] = []
     kernel: list[OfflineRun] = []
     split: list[OfflineRun] = []
     seconds = None if effort.size >= 0.1 else 1.0
     for n in range(effort.runs):
-        say(f"bracket, run {n + 1} of {effort.runs}")
+        show(f"bracket, run {n + 1} of {effort.runs}")
         recorded.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds, record=record))
         kernel.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds))
         split.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds, split=True))
@@ -129,14 +129,14 @@ def block_time_us(run: OfflineRun, seconds: float) -> float:
     return 1e6 * seconds / run.blocks
 
 
-def memory(effort: Effort, say: Say, folder: Path) -> Iterator[Figure]:
+def memory(effort: Effort, show: ShowProgress, folder: Path) -> Iterator[Figure]:
     """Largest resident size of a run that records, after a tenth and after all of a long program."""
     long = LONG * effort.size
     program = folder / "long.nc"
     program.write_text(long_program(long))
     peaks = []
     for seconds in (0.1 * long, long):
-        say(f"memory of {seconds:.0f} s")
+        show(f"memory of {seconds:.0f} s")
         arguments = [MACHINE, str(program), str(seconds), str(folder / "long.mcap")]
         command = [sys.executable, "-m", "bench.peak_memory", *arguments]
         peaks.append(float(subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mcap.writer import CompressionType, Writer
 
-from bench.figures import Effort, Figure, Say, median_of, medians_of, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, median_of, medians_of, stopwatch
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
@@ -113,15 +113,15 @@ class McapPeer:
         return int(writer.register_channel(topic, "cdr", schema_id))
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Writing, then reading, comparing and the report."""
     run = run_of_blocks(effort.scaled(BLOCKS, least=4))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.mcap"
         record_all(path, run)
-        say("writing")
+        show("writing")
         yield from writing(effort, run, path)
-        say("reading")
+        show("reading")
         yield from reading(effort, run, path)
 
 

@@ -12,7 +12,7 @@ from multiprocessing import get_context
 from statistics import median, quantiles
 from typing import Any
 
-from bench.figures import Effort, Figure, Say
+from bench.figures import Effort, Figure, ShowProgress
 
 MACHINE = "config/ptp.yaml"
 CALLS = 300
@@ -22,10 +22,10 @@ STEP = 0.1
 PATIENCE = 20.0
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Starts the graph, calls `move_relative` of an axis at a standstill again and again."""
     calls = effort.scaled(CALLS)
-    say(f"{calls} service calls")
+    show(f"{calls} service calls")
     os.environ["ROS_DOMAIN_ID"] = str(101 + os.getpid() % 100)
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         times = pool.submit(measure, calls).result()

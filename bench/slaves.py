@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from bench.figures import Effort, Figure, Say, medians_of, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from bench.graph_run import run_graph
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.run_entries import read_entries
@@ -20,16 +20,16 @@ OFFLINE_AXES, OFFLINE_SECONDS = 32, 4.0
 CASCADE_AXES = 8
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """Rates offline, lateness of a cascade in the graph."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        say(f"{OFFLINE_AXES} coupled axes offline")
+        show(f"{OFFLINE_AXES} coupled axes offline")
         seconds = OFFLINE_SECONDS * effort.size
         tree = files(folder, OFFLINE_AXES, lambda n: n // 2 if n % 2 else n - 1)
         rate = medians_of(effort.runs, [lambda: offline_rate(*tree, seconds)])[0]
         yield Figure(f"{OFFLINE_AXES} coupled axes offline, not recorded", rate, "x real time", goal=20.0)
-        say(f"cascade of {CASCADE_AXES} processes")
+        show(f"cascade of {CASCADE_AXES} processes")
         machine, scenario = files(folder, CASCADE_AXES, lambda n: n - 1)
         record = str(folder / "run.mcap")
         run = run_graph(

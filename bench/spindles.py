@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from bench.figures import Effort, Figure, Say, stopwatch
+from bench.figures import Effort, Figure, ShowProgress, stopwatch
 from bench.jobs import MACHINE
 from cnc_ptp.commands.run.simulate import write
 from cnc_ptp.machine.offline import OfflineMachine
@@ -115,7 +115,7 @@ def times_real_time(
     return seconds / watch.wall
 
 
-def figures(effort: Effort, say: Say) -> Iterator[Figure]:
+def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     """All rates, the best of several runs."""
     seconds = SECONDS * effort.size
     with tempfile.TemporaryDirectory() as folder:
@@ -126,7 +126,7 @@ def figures(effort: Effort, say: Say) -> Iterator[Figure]:
                 ("the axes on their paths", True, None),
                 ("the same with full recording", True, Path(folder) / "run.mcap"),
             ):
-                say(f"{SPINDLES} spindles {name}, {doing}")
+                show(f"{SPINDLES} spindles {name}, {doing}")
                 scenario = entries(speeds, hold, seconds, paths=paths)
                 rate = max(times_real_time(machine, scenario, seconds, record) for _ in range(effort.runs))
                 title = f"{SPINDLES} spindles and 2 channels offline, {name}, {doing} (best)"

@@ -88,7 +88,7 @@ def simulate_command(**options: Any) -> None:
 @namespace_option
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, for commands, until Ctrl-C.")
 @click.option(
-    "--state-rate", type=STATES_PER_SECOND, help="Live states a second on /<unit>/state, 0 = none (P-MACH-00070)."
+    "--state-rate", type=STATES_PER_SECOND, help="Live states per second on /<unit>/state, 0 = none (P-MACH-00070)."
 )
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process per node, until the job is finished."""
@@ -156,7 +156,7 @@ def jog_command(machine: str | None, **options: Any) -> None:
 
 @main.command("watch")
 @click.argument("units", nargs=-1, metavar="[UNIT]...", shell_complete=complete_shown_unit)
-@click.option("--rate", type=RATE, default=5.0, show_default=True, help="Times a second.")
+@click.option("--rate", type=RATE, default=5.0, show_default=True, help="Times per second.")
 @click.option("--time", "seconds", type=POSITIVE, help="Seconds; without it until Ctrl-C.")
 @COMPLETE_FROM
 @namespace_option
@@ -288,7 +288,7 @@ def identify_group() -> None:
 @identify_options
 @click.option("--velocity", "velocities", type=float, multiple=True, help="Drive these velocities (mm/s, deg/s) only.")
 def identify_friction_command(**options: Any) -> None:
-    """Identify the friction of AXIS: drive constant velocities both ways, read the torque, write the table as YAML."""
+    """Identify the friction of AXIS: drive in both directions at constant velocities, read the torque, write YAML."""
     from cnc_ptp.commands.commissioning.identify import identify_friction
 
     require_source(options)

@@ -92,12 +92,12 @@ def named_turns(figure: FigureScenario) -> Iterator[tuple[str, list[int]]]:
 def pair_of_turns(numbers: Column, chosen: list[int], set_points: Column, points: Column) -> CircleResult:
     """The evaluation of turns, whose circle is that of the set positions. Raises CncError, ValueError."""
     commanded = {block: set_points[numbers == block] for block in chosen}
-    missing = [f"N{block}" for block, way in commanded.items() if len(way) < 3]
+    missing = [f"N{block}" for block, path in commanded.items() if len(path) < 3]
     if missing:
         raise ValueError(f"the program does not move in {', '.join(missing)}")
     circle = least_squares_circle(np.vstack(list(commanded.values())))
-    angles = {block: turned(way - np.array(circle.centre)) for block, way in commanded.items()}
-    turns = tuple(Turn(block, bool(way[-1] < way[0]), float(way[0])) for block, way in angles.items())
+    angles = {block: turned(path - np.array(circle.centre)) for block, path in commanded.items()}
+    turns = tuple(Turn(block, bool(path[-1] < path[0]), float(path[0])) for block, path in angles.items())
     program = CircleProgram("", turns, PLANES["XY"], circle.centre, circle.radius)
     clockwise = turns[0].clockwise
     measured = measured_turn(program, clockwise, numbers.astype(np.int64), points)

@@ -47,10 +47,10 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
         unit = run.units[axis]
         names = [Name("plant", BLUE.set), Name("recording", RED.set)] if number else []
         draw_header(plot, f"torque in {unit.torque}" if not number else "", names)
-        sheet.write(left + 0.5 * WIDE, sheet.height - 17.0, f"velocity in {unit.way}/s", ha="center")
+        sheet.write(left + 0.5 * WIDE, sheet.height - 17.0, f"velocity in {unit.length}/s", ha="center")
         plot.set_ylim(-highest, highest)
         if number:
-            label_viscous(plot, plant, reach, f"{unit.way}/s")
+            label_viscous(plot, plant, reach, f"{unit.length}/s")
         else:
             label_parts(plot, plant)
     return sheet.drawing

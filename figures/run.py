@@ -27,22 +27,22 @@ NOT_SHOWN = INTERNAL | {"reset_feedforward"}
 
 @dataclass(frozen=True, slots=True)
 class DrawnUnit:
-    """Kind and units of measurement of a unit: `kind` of cnc_ptp.plots.panels, `way` mm or deg, `torque` N or Nm."""
+    """Kind and units of measurement of a unit: `kind` of cnc_ptp.plots.panels, `length` mm or deg, `torque` N or Nm."""
 
     kind: str
-    way: str
+    length: str
     torque: str
 
     def unit_of(self, field: str) -> str:
         """`set_velocity` is in mm/s."""
-        return unit_of(field, self.way, self.torque)
+        return unit_of(field, self.length, self.torque)
 
 
 @dataclass(frozen=True, slots=True)
 class FigureRun:
     """A run of `cycles` cycles.
 
-    `columns[unit][field]` has one value a cycle, fields as in the unit's block (mm, s, deg). Commands of
+    `columns[unit][field]` has one value per cycle, fields as in the unit's block (mm, s, deg). Commands of
     cycle 0 are the set-up and have no marker.
     """
 

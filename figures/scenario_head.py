@@ -94,7 +94,7 @@ def read_head(path: Path) -> FigureScenario:
             known = ", ".join(f"{key}: ..." for key in (*KEYS, *CHOICES))
             raise FigureError(path, f"'{line}' in the head is not one of {known}")
         if key in head:
-            raise FigureError(path, f"'{key}' stands twice in the head")
+            raise FigureError(path, f"'{key}' occurs twice in the head")
         head[key] = value.strip()
     for key in KEYS:
         if not head.get(key):

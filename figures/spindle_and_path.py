@@ -21,7 +21,7 @@ from figures.spindle_states import stretches
 
 HEIGHT = 120.0
 SECONDS = 60.0
-"""In a minute: feed is shown in mm/min."""
+"""Per minute: feed is shown in mm/min."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ def draw(figure: FigureScenario, run: FigureRun) -> Figure:
     sheet = Sheet(figure, 3 * (HEADER + HEIGHT + GAP))
     unit = run.units[axis]
     drawn = (
-        (f"velocity in {unit.way}/s", [(Name("set", GREEN.set), velocity)]),
+        (f"velocity in {unit.length}/s", [(Name("set", GREEN.set), velocity)]),
         (
             "friction current in digits",
             [(Name("of the table", RED.actual), full), (Name("weighted", RED.set), current)],
@@ -107,5 +107,5 @@ def tint(
     if with_texts:
         lookahead = f"{friction.reversal_lookahead} cycles (P-COMP-00044)"
         note(plot, lookahead, (before, 1.0), (-4.0, -12.0), of=("data", "axes fraction"), ha="right")
-        way = f"{1000.0 * friction.position_delay:g} µm (P-COMP-00043)"
-        note(plot, way, (after, 1.0), (4.0, -12.0), of=("data", "axes fraction"))
+        delay = f"{1000.0 * friction.position_delay:g} µm (P-COMP-00043)"
+        note(plot, delay, (after, 1.0), (4.0, -12.0), of=("data", "axes fraction"))

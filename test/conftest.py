@@ -26,7 +26,7 @@ def strict(take):
 
 @pytest.fixture(autouse=True, scope="session")
 def only_ways_of_the_table() -> Iterator[None]:
-    """No test of this process takes an axis or a spindle from a state to another in a way that the tables do not know."""
+    """No test of this process takes an axis or a spindle from a state to another by a transition that is not in the tables."""
     from cnc_ptp.axis.axis import Axis
     from cnc_ptp.spindle.spindle import Spindle
 

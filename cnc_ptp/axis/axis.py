@@ -239,7 +239,8 @@ class Axis:
         if self.carried is not None:
             self.fault(cycle, error_id, f"cannot follow {self.coupling.master} in addition to the path: {reason}")
             return
-        text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; the axis stands and is not coupled"
+        effect = "the axis is at a standstill and not coupled"
+        text = f"axis {self.name}: cannot follow {self.coupling.master}: {reason}; {effect}"
         self.coupling = None
         self.take(T.DECOUPLE_AT_REST if self.powered else T.DECOUPLE_WITHOUT_POWER)
         self._report_warning(cycle, error_id, text)
@@ -297,7 +298,11 @@ class Axis:
     def _report_limit(self, cycle: int) -> None:
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
         limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
-        now = "the axis stands" if rest == position else f"the axis stands at {rest:g} {self.unit}"
+        now = (
+            "the axis is at a standstill"
+            if rest == position
+            else f"the axis is at a standstill at {rest:g} {self.unit}"
+        )
         if self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints move the axis now"
         self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has reached the {limit.text}; {now}")

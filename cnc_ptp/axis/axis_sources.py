@@ -23,7 +23,7 @@ from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock
 from cnc_ptp.protocol.unit import UPSTREAM_LOST
 
 PATH_TOLERANCE = 1e-9
-"""Largest distance (mm, deg) between an axis and the start of the path that takes it over."""
+"""Largest distance (mm, deg) of an axis from the start of the path that takes it over."""
 
 
 def in_range(state: MotionState) -> bool:
@@ -66,7 +66,7 @@ class PathSource:
         return setpoints
 
     def watch(self, cycle: int, velocity: float) -> None:
-        """A path no longer waits in a direction when it turns round, or when another element begins."""
+        """A path no longer waits in a direction when it reverses, or when another element starts."""
         axis, n = self._axis, cycle - self._first_cycle
         if not axis.path_direction:
             return
@@ -97,7 +97,7 @@ class PathSource:
         return None
 
     def _enter(self, cycle: int, start: float) -> None:
-        """The channel moves the axis from now on; a fault unless it stands at `start`, the path's first setpoint."""
+        """The channel moves the axis from now on; a fault if it is not at `start`, the path's first setpoint."""
         axis = self._axis
         if axis.state == S.ERROR_STOP or axis.on_path:
             return
@@ -106,7 +106,7 @@ class PathSource:
             reason = f"the channel moves the path while the axis is in {state_name(axis.state)}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
         elif abs(start - position) > PATH_TOLERANCE:
-            reason = f"the path of the channel begins at {start} {axis.unit}, the axis stands at {position} {axis.unit}"
+            reason = f"the path of the channel starts at {start} {axis.unit}, the axis is at {position} {axis.unit}"
             axis.fault(cycle, PATH_NOT_ACCEPTED, reason)
         else:
             axis.absorb(cycle)

@@ -6,10 +6,10 @@ and ends with r2: AK+ and AK- for D > 0, AK- and AK+ for D < 0. Its peak v solve
     |D| = v·T - v²/2·(1/r1 + 1/r2)      with v <= VK and v·(1/r1 + 1/r2) <= T
 
 and if no such v exists, the largest one is taken: what cannot be reached is cut off. The compensation is tied to the
-basic motion: it goes in its direction, its velocity follows that of the trapezoid times h = min(1, |v|/VP), and its
-time stands while both stand. It never changes faster than r1 and r2: where the basic motion takes h in or out faster,
+basic motion: it moves in the same direction, its velocity follows that of the trapezoid times h = min(1, |v|/VP), and
+its time stops while both are at rest. It never changes faster than r1 and r2: where the basic motion changes h faster,
 it lags behind and may come to rest after the basic motion. As it stays within the trapezoid, D is never exceeded; it
-is reached exactly where the basic motion keeps VP or more, less of it otherwise.
+is reached exactly if the basic motion keeps VP or more, less of it otherwise.
 """
 
 from __future__ import annotations

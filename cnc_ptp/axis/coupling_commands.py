@@ -333,7 +333,7 @@ class CouplingCommands:
     def _at_rest(self, target: float | None, velocity: float | None) -> str:
         given = {"target": target, "velocity": velocity}
         unused = " and ".join(f"{name} {value:g}" for name, value in given.items() if value is not None)
-        text = f"axis {self._axis.name}: decouple: the axis stands; {unused} is not used, start it"
+        text = f"axis {self._axis.name}: decouple: the axis is at a standstill; {unused} is not used, start it"
         return warning_text(DECOUPLE_AT_REST, text)
 
     # the group

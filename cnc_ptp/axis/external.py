@@ -109,7 +109,7 @@ class ExternalSetpoints:
             self.mode = mode
 
     def carry(self, position: float) -> None:
-        """The contribution alone places the axis, the basic motion stands at 0: setpoints come out to the bit."""
+        """The contribution alone places the axis, the basic motion rests at 0: setpoints come out to the bit."""
         self._rest = standing(position)
 
     def takes(self, cycle: int) -> bool:

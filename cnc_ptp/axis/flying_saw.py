@@ -54,10 +54,10 @@ class FlyingSaw(Coupling):
         self.synchronous = False
 
     def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        """Raises CncError 23051 while the slave stands if there is no time or distance left to synchronise."""
+        """Raises CncError 23051 before the start of the slave if no time or distance is left to synchronise."""
         if self._table is None:
             if states[0][1] == 0.0:
-                raise CncError(SAW_TOO_LATE, "the master stands; a flying saw needs a moving master")
+                raise CncError(SAW_TOO_LATE, "the master is at a standstill; a flying saw needs a moving master")
             self._plan(position, states[0])
         return [self._next(position, state) for state in states]
 

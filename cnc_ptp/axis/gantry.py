@@ -62,7 +62,7 @@ class GantryPair:
             axis.fault(cycle, GANTRY_DIFFERENCE, reason, setpoint)
 
     def ends(self, first_cycle: int, position: float, master: AxisBlock) -> bool:
-        """The slave is in error: true when it ends, with its master, or alone where the master does not stop."""
+        """The slave is in error: true when it ends, with its master, or alone if the master does not stop."""
         self._blocks_in_error += 1
         if not (master.set_velocity[0] or master.set_acceleration[0]):
             self._axis.end_with_master(first_cycle, position)

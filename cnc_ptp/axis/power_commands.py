@@ -21,7 +21,7 @@ class PowerCommands:
     def do_power(self, cycle: int, *, enabled: bool) -> str | None:
         """Enables or disables the axis; a moving axis is stopped on its ramp first.
 
-        Where the position loop was open it is closed at the actual position, so that the enable moves nothing.
+        If the position loop was open, it is closed at the actual position, so that the enable moves nothing.
         """
         axis = self._axis
         if enabled == axis.powered:

@@ -239,7 +239,7 @@ class PtpGenerator:
         """Ends the job and ramps down with A- and J of the active motion, or of `limits` if there is none.
 
         `at_least`: the ramp is not weaker than `limits` either. Otherwise a brake phase continues. `locks`: new targets
-        wait until the axis stands (a stop); without it they act immediately (a halt).
+        wait until the axis is at a standstill (a stop); without it they act immediately (a halt).
         """
         ramp = self._ramp_limits or limits
         if at_least:
@@ -254,7 +254,7 @@ class PtpGenerator:
     def redirect(self, cycle: int, request: Request) -> None:
         """New target, with or without a new velocity, for the active positioning (TX1250 2.3, 2.4).
 
-        A pending activation is deleted. During a stop the request waits until the axis stands.
+        A pending activation is deleted. During a stop the request waits until the axis is at a standstill.
         Raises CncError 23001 and 23002 for a velocity or target that no table can be made for; then nothing is changed.
         """
         check_state(target=request.target)
@@ -292,7 +292,7 @@ class PtpGenerator:
         self._suspended = self._activation = self._due = None
 
     def take_over(self, cycle: int, position: float, velocity: float, acceleration: float, jerk: float = 0.0) -> None:
-        """Continues from a state that another setpoint source has at `cycle`; unless it stands, a stop must follow."""
+        """Continues from the state of another setpoint source at `cycle`; if that moves, a stop must follow."""
         ramp = self._ramp_limits
         self.finish()
         self._set(cycle, Profile([(0.0, position, velocity, acceleration, jerk)]), ramp)
@@ -359,7 +359,7 @@ class PtpGenerator:
         return self._job_of(target, limits, plan_rest_to_rest(position, target, limits).rows)
 
     def _job_in_motion(self, cycle: int, target: float, limits: Limits) -> Job:
-        """The job to `target` for an axis in motion; if it stops and returns, the way back counts."""
+        """The job to `target` for an axis in motion; if it stops and returns, its return counts."""
         if isinf(target):
             return Job(target, limits, limits.velocity)
         leg = last_leg(plan_to_position(*self._start(cycle), target, limits))
@@ -409,7 +409,7 @@ class PtpGenerator:
         """Leads to the new target; the new velocity becomes active now, later or never.
 
         If the axis has passed the target, or cannot stop before it, it stops and returns, with the old velocity; if
-        that cannot be reached on the way back but the new one can, with the new one.
+        that cannot be reached during the return but the new one can, with the new one.
         """
         before = self.job or self._stopped_job
         if before is None:

@@ -21,7 +21,7 @@ class StopCommands:
         self._axis = axis
 
     def do_stop(self, cycle: int) -> str | None:
-        """Stops on the ramp of the start. New targets wait until the axis stands (state Stopping)."""
+        """Stops on the ramp of the start. New targets wait until the axis is at a standstill (state Stopping)."""
         return self._stop("stop", cycle, locks=True)
 
     def do_halt(self, cycle: int) -> str | None:

@@ -10,7 +10,7 @@ from cnc_ptp.motion.profile import Segment
 
 
 def standing(position: float) -> Profile:
-    """The table of an axis that stands at `position`."""
+    """The table of an axis at a standstill at `position`."""
     return Profile([(0.0, position, 0.0, 0.0, 0.0)])
 
 
@@ -20,7 +20,7 @@ def reaches(profile: Profile, velocity: float) -> bool:
 
 
 def last_leg(profile: Profile) -> Sequence[Segment]:
-    """The rows from the last standstill within the table on: the way back if it stops and returns, else all."""
+    """The rows from the last standstill within the table on: the return if it stops and returns, else all."""
     rows = profile.rows
     for index in range(len(rows) - 2, 0, -1):
         if rows[index][2] == 0.0 and rows[index][3] == 0.0:

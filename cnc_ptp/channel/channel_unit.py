@@ -345,7 +345,7 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        self._motion.set_factor(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
+        self._motion.set_override(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """An axis on the path without feed release in its direction holds the path; one warning per element.

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, current_activity, orders_wait, stands
+from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, commands_wait, current_activity, stands
 from cnc_ptp.nc.canonical import SpindleFunction
 from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
@@ -234,7 +234,7 @@ class CommandedSpindle:
         block, since = self.block, self._expected_since
         if block is None or since is None or cycle <= since or self.expectation.condition is not Condition.SPEED:
             return ""
-        waits = orders_wait(block)
+        waits = commands_wait(block)
         if self.expectation.carried_out(block):
             self._turned |= block.source == self._channel or not waits
         elif watched and (self._turned or not waits):

@@ -96,14 +96,14 @@ class Expectation:
 NOTHING = Expectation()
 
 
-def orders_wait(block: SpindleBlock) -> bool:
+def commands_wait(block: SpindleBlock) -> bool:
     """Commands wait in the spindle; the one in question may be among them."""
     return bool(block.status_bits[-1] & SpindleBit.ORDERS_WAIT)
 
 
 def must_wait(block: SpindleBlock) -> bool:
     """The path has to wait: commands wait in the spindle, or a gear is changed, after which its rotation continues."""
-    return orders_wait(block) or block.gear_change_active[-1]
+    return commands_wait(block) or block.gear_change_active[-1]
 
 
 def stands(block: SpindleBlock, channel: str) -> bool:

@@ -116,7 +116,7 @@ def fit_drive(trace: AxisTrace) -> DriveFit:
 def _deviation(pieces: Sequence[_Piece], time_constant: float, dead: int, cycle_time: float) -> float:
     """Two standard deviations of Ta, s, from residuals r and their slopes d = dr/dTa: 2·sqrt(Σ(Σrd)²) / Σd².
 
-    The inner sum is over CORRELATED seconds, in which neighbouring residuals may be alike (sandwich estimator of Newey
+    The inner sum covers CORRELATED seconds, in which neighbouring residuals may be alike (sandwich estimator of Newey
     and West for blocks): friction leaves residuals that are no noise.
     """
     step = max(0.01 * time_constant, 0.5 * cycle_time if time_constant < cycle_time else 0.0)

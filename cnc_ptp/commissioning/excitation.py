@@ -18,7 +18,7 @@ SPEEDS = 30
 RANGE = 5000.0
 """Highest over lowest speed."""
 LOWEST_INCREMENTS = 50.0
-"""Increments of the encoder in a second at the lowest speed."""
+"""Increments of the encoder per second at the lowest speed."""
 LOWEST_SPEED = 0.02
 """mm/s (deg/s): the table counts µm/s."""
 
@@ -82,20 +82,20 @@ def motion_time(room: Room, velocity: float, steady: float) -> float:
     return sum(ramp_times(room, velocity)) + steady_time(room, velocity, steady)
 
 
-def way(room: Room, velocity: float, steady: float) -> float:
-    """mm (deg) of such a motion: half the velocity in the ramps, as they are symmetric."""
+def motion_distance(room: Room, velocity: float, steady: float) -> float:
+    """mm (deg) from rest to rest: half the velocity in the ramps, as they are symmetric."""
     return velocity * (0.5 * sum(ramp_times(room, velocity)) + steady_time(room, velocity, steady))
 
 
 def highest_velocity(room: Room, steady: Seconds) -> float:
     """The highest velocity at which the axis has room for its `steady` seconds; mm/s (deg/s)."""
     usable = room.travel * (1.0 - 2.0 * EDGE)
-    if way(room, room.max_velocity, steady(room.max_velocity)) <= usable:
+    if motion_distance(room, room.max_velocity, steady(room.max_velocity)) <= usable:
         return room.max_velocity
     low, high = 0.0, room.max_velocity
     for _ in range(60):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if way(room, middle, steady(middle)) <= usable else (low, middle)
+        low, high = (middle, high) if motion_distance(room, middle, steady(middle)) <= usable else (low, middle)
     return low
 
 
@@ -127,7 +127,7 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: Seconds) -> list[f
                 f"the velocity {speed:g} {room.unit}/s is not above 0 and up to {room.max_velocity:g} {room.unit}/s "
                 f"({room.limited_by}); nothing was started",
             )
-        needed, usable = way(room, speed, steady(speed)), room.travel * (1.0 - 2.0 * EDGE)
+        needed, usable = motion_distance(room, speed, steady(speed)), room.travel * (1.0 - 2.0 * EDGE)
         if needed > usable:
             raise refusal(
                 BAD_VELOCITIES,
@@ -140,7 +140,7 @@ def check_speeds(room: Room, speeds: Sequence[float], steady: Seconds) -> list[f
 
 def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest: float) -> list[Motion]:
     """A motion to where there is room, then each speed back and forth; `rest` s before each motion."""
-    longest = max(way(room, speed, steady(speed)) for speed in speeds)
+    longest = max(motion_distance(room, speed, steady(speed)) for speed in speeds)
     start, side = _start(room, longest)
     motions: list[Motion] = []
     time = rest
@@ -154,7 +154,7 @@ def forth_and_back(room: Room, speeds: Sequence[float], *, steady: Seconds, rest
     for speed in speeds:
         for direction in (side, -side):
             duration = motion_time(room, speed, steady(speed))
-            motions.append(Motion(time, direction * way(room, speed, steady(speed)), speed, duration))
+            motions.append(Motion(time, direction * motion_distance(room, speed, steady(speed)), speed, duration))
             time += duration + PAUSE + rest
     return motions
 

@@ -120,7 +120,7 @@ def _stands_still(trace: AxisTrace, torque: Array, phases: Sequence[SteadyPhase]
     return refusal(
         NOT_STEADY,
         trace.axis,
-        f"stands still at every constant velocity ({shown}), the torque comes up to {largest:.4g} and not above the "
+        f"does not move at any constant velocity ({shown}), the torque comes up to {largest:.4g} and not above the "
         "friction: is the torque limit of the drive too low, or the axis blocked? no table was made",
     )
 

@@ -18,7 +18,7 @@ class GainProposal:
     """Kv in 1/s, times in s.
 
     `total`: Ta + dead time + T/2 (the command is held for a cycle, half of it late on average). `limit`: Kv at which
-    the loop begins to oscillate, the lowest of all (Ta, dead time) that fit. `proposed` = 1/(4·total): damping 1, no
+    the loop starts to oscillate, the lowest of all (Ta, dead time) that fit. `proposed` = 1/(4·total): damping 1, no
     overshoot. `fastest` = 1/(2·total): damping 0.71, 4 % overshoot, more is not advisable.
     """
 
@@ -32,7 +32,7 @@ def propose_gain(fit: DriveFit) -> GainProposal:
     """Kv from the loop Ta·s² + s + Kv = 0 with damping D = 1/(2·sqrt(Kv·Ta)), Ta including all small delays.
 
     D = 1 gives Kv = 1/(4·Ta), D = 1/sqrt(2) Kv = 1/(2·Ta). Source: the second-order loop in its standard form; Groß,
-    Hamann, Wiegärtner, Electrical Feed Drives in Automation, position control. Where the limit is closer than three
+    Hamann, Wiegärtner, Electrical Feed Drives in Automation, position control. If the limit is closer than three
     times the proposal, a third of the limit is proposed.
     """
     total = fit.delay + 0.5 * fit.cycle_time

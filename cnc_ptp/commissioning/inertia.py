@@ -67,7 +67,7 @@ class InertiaFit:
 class _Windows:
     """Rows (change of velocity, ± time, distance, time, change of torque) (n, 5) and impulses (n,) of windows.
 
-    They begin in cycles (n,); `instruments` (n, 5) are the rows of the velocity that was wanted.
+    They begin in cycles (n,); `instruments` (n, 5) are the rows of the set velocity.
     """
 
     cycles: Array
@@ -77,7 +77,7 @@ class _Windows:
 
 
 def fit_inertia(trace: AxisTrace, *, time_constant: float) -> InertiaFit | None:
-    """The inertia, or None where the recording holds no torque or not enough acceleration for it.
+    """The inertia, or None if the recording holds no torque or not enough acceleration for it.
 
     `time_constant`: s, the lag of the drive behind its command.
     """
@@ -101,7 +101,7 @@ def fit_inertia(trace: AxisTrace, *, time_constant: float) -> InertiaFit | None:
 
 
 def _inverse(instruments: Array, rows: Array) -> Array | None:
-    """(Zᵀ·X)⁻¹; None where the columns do not differ."""
+    """(Zᵀ·X)⁻¹; None if the columns do not differ."""
     product = instruments.T @ rows
     scale = np.sqrt(np.mean(rows**2, axis=0)), np.sqrt(np.mean(instruments**2, axis=0))
     if not (np.all(scale[0]) and np.all(scale[1])):
@@ -126,7 +126,7 @@ def _scatter(windows: _Windows, solution: Array, weights: Array, block: int) -> 
 
 
 def _ripple(age: float, spread: float, trace: AxisTrace, time_constant: float) -> float:
-    """Part of k that momentary torques may lack, 0.0 where the torque is as old as a mean of the cycle; ages in s."""
+    """Part of k that momentary torques may lack, 0.0 if the torque is as old as a mean of the cycle; ages in s."""
     cycles = age / trace.cycle_time - (0.5 if trace.mean_velocity else 0.0)
     off = abs(cycles % 1.0 - 0.5)
     if off >= MOMENTARY:
@@ -183,7 +183,7 @@ def _wanted_velocity(trace: AxisTrace) -> Array:
 
 
 def _lagged(velocity: Array, spans: list[Span], cycles: float) -> Array:
-    """Each stretch without gaps behind a lag of so many cycles, settled at its beginning."""
+    """Each stretch without gaps behind a lag of so many cycles, settled at its start."""
     pole = math.exp(-1.0 / cycles) if cycles else 0.0
     parts = [velocity[first:end] for first, end in spans]
     lagged = [lfilter([1.0 - pole], [1.0, -pole], part, zi=[pole * part[0]])[0] for part in parts]
@@ -194,7 +194,7 @@ def _lagged(velocity: Array, spans: list[Span], cycles: float) -> Array:
 def _one_way(velocity: Array, wanted: Array, span: Span, step: int) -> npt.NDArray[np.intp]:
     """Where windows of `step` cycles begin that are fast enough and do not turn back; not in the first cycle.
 
-    Which are fast enough is the wanted velocity's business: the noise of the actual one would choose for itself.
+    The set velocity decides which are fast enough, as the actual one is noisy.
     """
     lowest = LOWEST_PART * float(np.max(np.abs(wanted)))
     part, direction = wanted[span[0] + 1 : span[1]], np.sign(velocity[span[0] + 1 : span[1]])

@@ -81,11 +81,11 @@ def bidirectional_deviation(turns: Sequence[Array]) -> float:
 def quadrant_peaks(angles: Array, deviations: Array, *, clockwise: bool) -> tuple[QuadrantPeak, ...]:
     """The four peaks: largest deviation near each reversal from the shape of the path away from all reversals.
 
-    The shape is a constant and HARMONICS waves a turn, fitted by least squares outside the windows BEFORE … AFTER.
+    The shape is a constant and HARMONICS waves per turn, fitted by least squares outside the windows BEFORE … AFTER.
     """
-    ways = [(angles - angle if not clockwise else angle - angles) for angle in (0.0, 90.0, 180.0, 270.0)]
-    ways = [(way + 180.0) % 360.0 - 180.0 for way in ways]
-    windows = [(way >= -BEFORE) & (way <= AFTER) for way in ways]
+    offsets = [(angles - angle if not clockwise else angle - angles) for angle in (0.0, 90.0, 180.0, 270.0)]
+    offsets = [(offset + 180.0) % 360.0 - 180.0 for offset in offsets]
+    windows = [(offset >= -BEFORE) & (offset <= AFTER) for offset in offsets]
     shape = _shape(angles, deviations, ~np.any(windows, axis=0))
     rest = deviations - shape
     return tuple(_peak(number, rest, angles, window) for number, window in enumerate(windows))

@@ -17,7 +17,7 @@ Span = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class AxisTrace:
-    """Columns (n,) with one value a cycle, in the order of the cycles; mm, s, N (linear) or deg, s, Nm.
+    """Columns (n,) with one value per cycle, in the order of the cycles; mm, s, N (linear) or deg, s, Nm.
 
     `actual_torque` is None if no torque was recorded. A row holds the drive's report before its cycle and its
     command in that cycle.

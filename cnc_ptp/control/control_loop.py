@@ -193,7 +193,7 @@ class ControlLoop:
         return positions, velocities, errors, commands, none, none, none, none, torques, none
 
     def _remember(self, setpoint: MotionState) -> None:
-        """Before the first setpoint the axis stood there."""
+        """Before the first setpoint the axis was at rest there."""
         if self._history:
             self._history.appendleft(setpoint)
         else:

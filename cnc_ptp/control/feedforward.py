@@ -28,7 +28,7 @@ DECAYED = 3.0
 
 
 class Feedforward:
-    """Values of one axis: `update` once a cycle, then the three outputs hold.
+    """Values of one axis: `update` once per cycle, then the three outputs hold.
 
     velocity             conventional part, added to the output of the position controller, mm/s (deg/s)
     additive_velocity    additive velocity command of the drive, mm/s (deg/s)

@@ -11,7 +11,7 @@ class ModuloCompensation:
     """Adds, increment by increment, what the encoder lacks after whole turns.
 
     A turn of the modulo range M shows on the encoder as M - e · P-AXIS-00124 / P-AXIS-00125, with e deg per increment.
-    The difference is spread evenly over the turn; whole increments are added, and removed again on the way back.
+    The difference is spread evenly over the turn; whole increments are added, and removed again in the other direction.
     """
 
     __slots__ = ("_increment", "_increments_per_deg", "_origin")

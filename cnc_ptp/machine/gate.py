@@ -137,12 +137,12 @@ class BlockGate:
             self.follow(None)
 
     def close(self) -> None:
-        """The run is over: no more block is computed."""
+        """The run has ended: no more block is computed."""
         self._closed = True
 
     @property
     def closed(self) -> bool:
-        """True when the run is over and all that belongs to it is computed."""
+        """True when the run has ended and all that belongs to it is computed."""
         return self._closed or (self._last_tick_came and not self._ticks and self._open is None)
 
     @property

@@ -67,7 +67,7 @@ def _stops_first(v: float, a: float, limits: Limits) -> bool:
 def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits) -> Profile:
     """Two profiles joined in one table: the stop ramp, then from rest to rest back to the target.
 
-    Distances are counted from p, so that the way back keeps its digits far away from zero.
+    Distances are counted from p, so that the return keeps its digits far away from zero.
     """
     rows, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits))
     back = rest_to_rest(stop, target - p, limits)

@@ -1,4 +1,4 @@
-"""Commands beginning with #, alone in their block: #MAIN SPINDLE, #EXPL SYN, #SLOPE, couplings of spindles (#AX LINK).
+"""Commands that start with #, alone in their block: #MAIN SPINDLE, #EXPL SYN, #SLOPE, couplings of spindles (#AX LINK).
 
 A new command is a new row of COMMANDS. TF5200 spindle 2.2.3, 2.5, 2.8.3; #SLOPE and the spelling are those of the
 vendor's programming manual.

@@ -176,7 +176,7 @@ def check(
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
 ) -> list[ProgramError]:
-    """All syntax errors of a program (one a line) and the first modal error, in the order of the lines.
+    """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
     The modal check runs the program from `start` (default 0) up to its first error or the first line with a syntax
     error, since everything after that would be a guess. An error that `check_target` raises comes out as it is,

@@ -38,7 +38,7 @@ _UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-
 
 
 SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
-"""Block skip at the beginning of a line, with its level."""
+"""Block skip at the start of a line, with its level."""
 
 
 class Token(NamedTuple):
@@ -142,7 +142,7 @@ def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
 def column_of(source: Source, word: str, *, last: bool = False) -> int:
     """Column (1-based) of a word by its name (X, S2) or of a G or M code (G01) in a parsed line; else 1.
 
-    A code may stand in the brackets of a spindle. `last`: of several, the last one instead of the first.
+    A code may be in the brackets of a spindle. `last`: of several, the last one instead of the first.
     """
     columns = list(_columns(source, word))
     return columns[-1 if last else 0] if columns else 1

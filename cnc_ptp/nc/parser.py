@@ -26,7 +26,7 @@ def parse_program(text: str, file: str, *, mdi: bool = False) -> Program:
 
 
 def parse_all(text: str, file: str, *, mdi: bool = False) -> tuple[Program, list[ProgramError]]:
-    """Parsed program and its syntax errors, one a line in their order; a faulty line becomes a block that raises."""
+    """Parsed program and its syntax errors, one per line in their order; a faulty line becomes a block that raises."""
     reader = _Reader(file, mdi)
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
     for line, content in enumerate(lines, start=1):

@@ -146,7 +146,7 @@ class NcBlock(NamedTuple):
 
 
 class HashCommand(NamedTuple):
-    """A command beginning with #, alone in its block: its name, arguments in brackets (None without), their column."""
+    """A command that starts with #, alone in its block: name, arguments in brackets (None without), their column."""
 
     name: str
     arguments: tuple[str, ...] | None

@@ -1,4 +1,4 @@
-"""Faults of spindle functions and of commands beginning with #; numbers as in faults.py, our own from 21061."""
+"""Faults of spindle functions and of commands that start with #; numbers as in faults.py, our own from 21061."""
 
 from cnc_ptp.nc.faults import Fault
 

@@ -21,7 +21,7 @@ from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
-from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOrder, observers_of, only_run
+from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOptions, observers_of, only_run
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.unit import PLC
@@ -30,31 +30,35 @@ UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
 
 
 def run_composed(
-    machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
+    machine: MachineParameters, options: RunOptions, *, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
-    """Runs the job in this process; `show` is called about 20 times a second; `watched`: units are shown.
+    """Runs the graph in this process; `show` is called about 20 times per second; `watched`: units are shown.
 
     Returns what went wrong outside the units.
     """
-    with only_run(job):
-        return _run(machine, job, show, watched)
+    with only_run(options):
+        return _run(machine, options, show, watched)
 
 
 def _run(
-    machine: MachineParameters, job: RunOrder, show: Callable[[RunMonitor], None], watched: bool = False
+    machine: MachineParameters, options: RunOptions, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
     monitor = RunMonitor(machine)
-    if watched or job.stay:
+    if watched or options.stay:
         monitor.watch_units()
-    recorders = 1 if job.record else 0
+    recorders = 1 if options.record else 0
     clock = ClockNode(
-        machine, wait_for=observers_of(job), free_run=job.free_run, cycles=cycles_of(machine, job.duration)
+        machine, wait_for=observers_of(options), free_run=options.free_run, cycles=cycles_of(machine, options.duration)
     )
-    nodes: list[Node] = [monitor, *unit_nodes(machine, job, recorders=recorders, state_rate=job.state_rate), clock]
+    nodes: list[Node] = [
+        monitor,
+        *unit_nodes(machine, options, recorders=recorders, state_rate=options.state_rate),
+        clock,
+    ]
     recorder = None
-    if job.record:
-        machine_yaml = read_file("machine file", job.machine)
-        recorder = RecorderNode(machine, job.record, machine_yaml)
+    if options.record:
+        machine_yaml = read_file("machine file", options.machine)
+        recorder = RecorderNode(machine, options.record, machine_yaml)
         nodes.append(recorder)
     next_show = 0.0
 
@@ -70,7 +74,7 @@ def _run(
 
     def note_ending() -> None:
         name = signal.Signals(end.number).name
-        if not (job.stay and monitor.note_ending(name)):
+        if not (options.stay and monitor.note_ending(name)):
             failures.append(end.text("everything was stopped on its ramps"))
 
     end = EndRequest()
@@ -97,14 +101,14 @@ def stopped(end: EndRequest, nodes: list[Node], *, note: Callable[[], None]) -> 
     return end.over(STOP_TIMEOUT)
 
 
-def unit_nodes(machine: MachineParameters, job: RunOrder, **options: Any) -> list[UnitNode]:
+def unit_nodes(machine: MachineParameters, options: RunOptions, **of_nodes: Any) -> list[UnitNode]:
     nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
-            entries = read_entries(machine, program=job.program, scenario=job.scenario)
-            idle_ends = job.duration is None and not job.stay
-            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **options))
+            entries = read_entries(machine, program=options.program, scenario=options.scenario)
+            idle_ends = options.duration is None and not options.stay
+            nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **of_nodes))
         else:
-            nodes.append(UNIT_NODES[kind](machine, name, **options))
+            nodes.append(UNIT_NODES[kind](machine, name, **of_nodes))
         nodes[-1].setup()
     return nodes

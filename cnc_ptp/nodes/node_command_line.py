@@ -20,7 +20,9 @@ NAME = click.argument("name")
 RECORDERS = click.option(
     "--recorders", default=0, show_default=True, help="1: a recorder must have found the blocks first."
 )
-STATE_RATE = click.option("--state-rate", type=STATES_PER_SECOND, help="Live states a second, instead of P-MACH-00070.")
+STATE_RATE = click.option(
+    "--state-rate", type=STATES_PER_SECOND, help="Live states per second, instead of P-MACH-00070."
+)
 
 
 def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter) -> Callable[[], None]:

@@ -189,7 +189,7 @@ class RecorderNode(Node):
         self._single(lambda: self._recorded.raw(recorded_topic(topic), type_name(message_type), data, stamp_ns))
 
     def _on_observed(self, topic: str, type_name: str, data: bytes) -> None:
-        """A PLC may continue to publish when the run is over, so this does not count as a message of the run."""
+        """A PLC may continue to publish when the run has ended, so this does not count as a message of the run."""
         stamp_ns = self._tick_ns if self._free_run else time.time_ns()
         self._keep(lambda: self._recorded.raw(topic, type_name, data, stamp_ns))
 

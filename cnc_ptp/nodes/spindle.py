@@ -58,7 +58,7 @@ class SpindleNode(UnitNode):
         return self.unit
 
     def _begin(self, command: str, arguments: dict[str, Any]) -> list[Command]:
-        self._numbers[command] = self.spindle.next_order
+        self._numbers[command] = self.spindle.next_number
         return [Command(self.spindle.name, command, arguments)]
 
     def _result(self, command: str, block: CycleBlock, result: Any) -> bool | None:

@@ -45,7 +45,7 @@ MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc":
 
 
 @dataclass(frozen=True)
-class RunOrder:
+class RunOptions:
     """Machine, program, scenario and options of a run, as paths for the node processes."""
 
     machine: str
@@ -57,21 +57,26 @@ class RunOrder:
     stay: bool = False
     """Continue when everything is at a standstill, until a signal."""
     state_rate: float | None = None
-    """Live states a second, None = as the machine file says."""
+    """Live states per second, None = as the machine file says."""
 
 
 class Supervisor:
     """Starts, watches and ends the processes of one run."""
 
     def __init__(
-        self, machine: MachineParameters, job: RunOrder, *, show: Callable[[RunMonitor], None], watched: bool = False
+        self,
+        machine: MachineParameters,
+        options: RunOptions,
+        *,
+        show: Callable[[RunMonitor], None],
+        watched: bool = False,
     ) -> None:
-        """`show` is called about 20 times a second with the monitor; `watched`: units are shown."""
+        """`show` is called about 20 times per second with the monitor; `watched`: units are shown."""
         self._machine = machine
         self._moving_units = [*machine.axes, *machine.spindles]
-        self._job = job
+        self._options = options
         self._show = show
-        self._watched = watched or job.stay
+        self._watched = watched or options.stay
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
         self._stop_deadline: float | None = None
         self._settled_at = 0.0
@@ -81,8 +86,8 @@ class Supervisor:
         self.failures: list[str] = []
 
     def run(self) -> RunMonitor:
-        """Runs the job to its end; `failures` then lists what went wrong with processes."""
-        with only_run(self._job):
+        """Runs it to its end; `failures` then lists what went wrong with processes."""
+        with only_run(self._options):
             return self._run()
 
     def _run(self) -> RunMonitor:
@@ -108,7 +113,7 @@ class Supervisor:
     # processes
 
     def _start_all(self) -> None:
-        for name, arguments in command_lines(self._machine, self._job, observers_of(self._job)):
+        for name, arguments in command_lines(self._machine, self._options, observers_of(self._options)):
             self._processes[name] = subprocess.Popen(
                 [sys.executable, "-m", f"cnc_ptp.nodes.{arguments[0]}", *arguments[1:], *ros_arguments().words],
                 stdin=subprocess.DEVNULL,
@@ -180,7 +185,7 @@ class Supervisor:
         if self._signals and not self._interrupted:
             self._interrupted = True
             name = signal.Signals(self._signals[0]).name
-            if self._job.stay and self._stop_deadline is None and self._monitor.note_ending(name):
+            if self._options.stay and self._stop_deadline is None and self._monitor.note_ending(name):
                 self._stop_everything()
             else:
                 self._fail(INTERRUPTED, f"the run was interrupted ({name}); {self._what_follows()}")
@@ -207,38 +212,38 @@ class Supervisor:
         """Closes the recording of a recorder that was killed, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
         closed = recorder is None or recorder.returncode in (0, process.SIGNALLED + signal.SIGTERM)
-        if self._job.record is None or closed or not self._monitor.cycle:
+        if self._options.record is None or closed or not self._monitor.cycle:
             return
         try:
-            close_cut(self._job.record)
+            close_cut(self._options.record)
         except CncError as error:
             self.failures.append(str(error))
 
 
 def command_lines(
-    machine: MachineParameters, job: RunOrder, observers: Iterable[str]
+    machine: MachineParameters, options: RunOptions, observers: Iterable[str]
 ) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
-    units = ["--recorders", "1"] if job.record else []
-    units += ["--state-rate", str(job.state_rate)] if job.state_rate is not None else []
-    program = ["--program", job.program] if job.program else []
-    if job.record:
-        yield RECORDER, ["recorder", job.machine, job.record]
+    units = ["--recorders", "1"] if options.record else []
+    units += ["--state-rate", str(options.state_rate)] if options.state_rate is not None else []
+    program = ["--program", options.program] if options.program else []
+    if options.record:
+        yield RECORDER, ["recorder", options.machine, options.record]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if name == next(iter(machine.channels), None) else []
-            yield name, [MODULES[kind], job.machine, name, *first, *units]
-    scenario = ["--scenario", job.scenario] if job.scenario else []
-    stay = ["--stay"] if job.stay or job.duration is not None else []
-    yield PLC, ["plc_bridge", job.machine, *program, *scenario, *stay, *units]
-    duration = ["--duration", str(job.duration)] if job.duration is not None else []
+            yield name, [MODULES[kind], options.machine, name, *first, *units]
+    scenario = ["--scenario", options.scenario] if options.scenario else []
+    stay = ["--stay"] if options.stay or options.duration is not None else []
+    yield PLC, ["plc_bridge", options.machine, *program, *scenario, *stay, *units]
+    duration = ["--duration", str(options.duration)] if options.duration is not None else []
     wait_for = [word for name in observers for word in ("--wait-for", name)]
-    free_run = ["--free-run"] if job.free_run else []
-    yield CLOCK, ["clock", job.machine, *duration, *free_run, *wait_for]
+    free_run = ["--free-run"] if options.free_run else []
+    yield CLOCK, ["clock", options.machine, *duration, *free_run, *wait_for]
 
 
 @contextmanager
-def only_run(job: RunOrder) -> Iterator[None]:
+def only_run(options: RunOptions) -> Iterator[None]:
     """ROS with its domain for this run alone; only then is the recording opened.
 
     Raises CncError 26107, 26108 (process) and 26113 (recorder).
@@ -246,16 +251,16 @@ def only_run(job: RunOrder) -> Iterator[None]:
     process.initialise()
     try:
         with process.claim_domain():
-            if job.record is not None:
-                require_writable(job.record)
+            if options.record is not None:
+                require_writable(options.record)
             yield
     finally:
         rclpy.try_shutdown()
 
 
-def observers_of(job: RunOrder) -> list[str]:
+def observers_of(options: RunOptions) -> list[str]:
     """Nodes besides the units that the clock waits for."""
-    return [MONITOR, *([RECORDER] if job.record else [])]
+    return [MONITOR, *([RECORDER] if options.record else [])]
 
 
 def die_with_parent() -> None:

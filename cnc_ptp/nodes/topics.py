@@ -9,7 +9,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from cnc_ptp import msg, srv
 
 BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
-"""Numbered blocks: nothing is lost while a reader stalls for up to 1000 blocks (10 s at 100 blocks a second)."""
+"""Numbered blocks: nothing is lost while a reader stalls for up to 1000 blocks (10 s at 100 blocks per second)."""
 
 REMEMBERED_BLOCKS = QoSProfile(
     depth=1000, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL

@@ -19,7 +19,7 @@ BAD_OVERRIDE = 22113
 PathRow = tuple[float, float, float, float, bool]
 """One cycle on the path: length s (mm), velocity, acceleration, jerk, element finished."""
 
-LARGEST_FACTOR = 1000.0
+LARGEST_OVERRIDE = 1000.0
 LONGEST_DWELL = 1e9
 BRAKE_ROUNDING = 1e-12
 """Part of the element's length that counts as rounding when its braking point is looked for."""
@@ -42,7 +42,7 @@ class PathInterpolator:
 
     element           the active element, None before the first; `length` is its path length
     done              the element has finished
-    stopped           `stop` was called and the path stands
+    stopped           `stop` was called and the path is at a standstill
     remaining_time    s: when an element has just ended, the time from its end to the cycle that is still to be filled,
                       else 0
     distance_to_go    mm to the end of the element
@@ -57,7 +57,7 @@ class PathInterpolator:
         self.element: Element | None = None
         self.done = True
         self.remaining_time = 0.0
-        self.factor = 1.0
+        self.override = 1.0
         self._limits: Limits | None = None
         self._planner = JERK_LIMITED
         self._length = 0.0
@@ -77,12 +77,12 @@ class PathInterpolator:
 
     @property
     def stopped(self) -> bool:
-        """True when `stop` was called and the path stands, on the element or at its end."""
+        """True when `stop` was called and the path is at a standstill, on the element or at its end."""
         return self._stopping and (self.done or (not self._reaches_end and self._now() >= self._profile.duration))
 
     @property
     def ends_by_itself(self) -> bool:
-        """The factor no longer acts: the element has finished or brakes for its end, or `stop` was called."""
+        """The override no longer acts: the element has finished or brakes for its end, or `stop` was called."""
         return self.done or self._stopping or (self._limits is not None and self._brakes(self._limits))
 
     @property
@@ -95,8 +95,8 @@ class PathInterpolator:
     ) -> None:
         """Begin an element at rest; directly after the end of another one at that exact instant.
 
-        limits   dynamics of the path; `limits.velocity` is never exceeded, whatever the velocity factor
-        feed     path velocity at factor 1, mm/s; without it (or inf) `limits.velocity`
+        limits   dynamics of the path; `limits.velocity` is never exceeded, whatever the override
+        feed     path velocity at override 1, mm/s; without it (or inf) `limits.velocity`
         planner  makes all profiles of the element
         Raises CncError 22110 while an element is running, 22111 for a bad feed and 23001 for bad limits.
         """
@@ -106,7 +106,7 @@ class PathInterpolator:
             reason = f"path feed {feed!r} mm/s must be greater than 0"
             raise CncError(BAD_FEED, reason, "the element is not started", feed=feed)
         check_limits(limits)
-        velocity = min(feed * self.factor, limits.velocity)
+        velocity = min(feed * self.override, limits.velocity)
         if velocity < SMALLEST_LIMIT and element.length > 0.0:
             profile, reaches_end = _standing(0.0), False
         else:
@@ -128,23 +128,23 @@ class PathInterpolator:
         self._limits = None
         self._begin(s, Profile(((0.0, s, 0.0, 0.0, 0.0), (seconds, s, 0.0, 0.0, 0.0))), True)
 
-    def set_velocity_factor(self, factor: float) -> None:
-        """Path override: the velocity becomes feed·factor, at most `limits.velocity`; 0 is feed hold.
+    def set_override(self, override: float) -> None:
+        """The velocity becomes feed·override (1 is 100 %), at most `limits.velocity`; 0 is feed hold.
 
         It also holds for later elements. If the element already brakes for its end, the table is kept.
-        Raises CncError 22113 for a factor outside 0 … 1000.
+        Raises CncError 22113 for an override outside 0 … 1000.
         """
-        if not 0.0 <= factor <= LARGEST_FACTOR:
-            reason = f"path velocity factor {factor!r} must be between 0 and {LARGEST_FACTOR:g}"
-            raise CncError(BAD_OVERRIDE, reason, "it is not changed", factor=factor, limit=LARGEST_FACTOR)
-        if factor != self.factor:
-            self.factor = factor
+        if not 0.0 <= override <= LARGEST_OVERRIDE:
+            reason = f"path override {override!r} must be between 0 and {LARGEST_OVERRIDE:g}"
+            raise CncError(BAD_OVERRIDE, reason, "it is not changed", factor=override, limit=LARGEST_OVERRIDE)
+        if override != self.override:
+            self.override = override
             self._plan_anew()
 
     def stop(self) -> None:
         """Ramp to rest on the path; if the element already brakes for its end, it rests there.
 
-        The factor no longer acts.
+        The override no longer acts.
         """
         if not self._stopping:
             self._stopping = True
@@ -212,7 +212,7 @@ class PathInterpolator:
             return
         now = self._now()
         s, v, a, _ = self._profile.state_at(now)
-        velocity = 0.0 if self._stopping else min(self._feed * self.factor, limits.velocity)
+        velocity = 0.0 if self._stopping else min(self._feed * self.override, limits.velocity)
         if velocity < SMALLEST_LIMIT:
             self._profile, self._reaches_end = self._planner.to_rest(s, v, a, limits), False
         else:

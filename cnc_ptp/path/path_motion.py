@@ -20,7 +20,7 @@ PathPoint = tuple[AxisStates, float, float]
 
 
 class PathMotion:
-    """Runs the motions of canonical blocks; between them the axes stand.
+    """Runs the motions of canonical blocks; between them the axes are at rest.
 
     states           (position, velocity, acceleration, jerk) of each axis in the last cycle that was given out
     velocity         path velocity, mm/s
@@ -34,7 +34,7 @@ class PathMotion:
         self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._path_axes = path_axes(channel)
-        self._max_factor = channel.max_override_percent / 100.0
+        self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
         self._element: Line | Arc | None = None
@@ -57,8 +57,8 @@ class PathMotion:
 
     @property
     def held(self) -> bool:
-        """Feed hold or override 0 act; the path stands, or is on its ramp to standstill."""
-        return self._element is not None and self._interpolator.factor == 0.0
+        """Feed hold or override 0 act; the path is at a standstill, or is on its ramp to standstill."""
+        return self._element is not None and self._interpolator.override == 0.0
 
     @property
     def can_be_held(self) -> bool:
@@ -67,7 +67,7 @@ class PathMotion:
 
     @property
     def stopped(self) -> bool:
-        """True when `stop` was called and the path stands."""
+        """True when `stop` was called and the path is at a standstill."""
         return self._interpolator.stopped
 
     @property
@@ -94,7 +94,7 @@ class PathMotion:
         steps = (motion.slope or self._default_slope) == STEP
         if steps:
             axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
-        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_factor)
+        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
         feed = limits.velocity if rapid else motion.feed
         self._interpolator.start(element, limits, feed, planner=STEPS if steps else JERK_LIMITED)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
@@ -121,27 +121,27 @@ class PathMotion:
         """A cycle passes in which no motion is active."""
         self._interpolator.step(1, self._cycle_time)
 
-    def set_factor(self, factor: float) -> None:
-        """Path override, 0 is feed hold; acts from the last cycle given out."""
-        self._interpolator.set_velocity_factor(factor)
+    def set_override(self, override: float) -> None:
+        """Override of the path, 1 is 100 %, 0 is feed hold; acts from the last cycle given out."""
+        self._interpolator.set_override(override)
 
     def stop(self) -> None:
         """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
         self._interpolator.stop()
 
     def finish(self) -> None:
-        """The motion has finished: the axes stand exactly at its target, or at the end of its stop ramp."""
+        """The motion has finished: the axes are exactly at its target, or at the end of its stop ramp."""
         element = self._element
         self.states = standing(element.target if element and self._interpolator.done else self.position)
         self._element = None
         self.velocity = self.distance_to_go = 0.0
 
     def abandon(self) -> None:
-        """Forgets the motion of an aborted program, once the axes stand."""
+        """Forgets the motion of an aborted program, once the axes are at a standstill."""
         self.finish()
-        factor = self._interpolator.factor
+        override = self._interpolator.override
         self._interpolator = PathInterpolator()
-        self._interpolator.set_velocity_factor(factor)
+        self._interpolator.set_override(override)
 
 
 def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:

@@ -50,6 +50,6 @@ def _places(header: Sequence[str], columns: Sequence[str], fault: Fault) -> list
     names = _names(header)
     for column in columns:
         if names.count(column) != 1:
-            what = "stands twice" if column in names else "is missing"
+            what = "occurs twice" if column in names else "is missing"
             raise fault(1, f"column '{column}' {what}; the first line must name {', '.join(columns)}")
     return [names.index(column) for column in columns]

@@ -243,8 +243,8 @@ def at_rest(block: CycleBlock) -> bool:
         waits = bool(held or (bits & StatusBit.EXT_SETPOINT and not bits & StatusBit.HAS_JOB))
         return block.set_velocity[-1] == 0.0 and (waits or block.state[-1] in REST_STATES)
     if isinstance(block, SpindleBlock):
-        open_orders = block.plc_commands != block.plc_acknowledged
-        busy = block.state[-1] in SPINDLE_AT_WORK or block.gear_change_active[-1] or open_orders
+        pending = block.plc_commands != block.plc_acknowledged
+        busy = block.state[-1] in SPINDLE_AT_WORK or block.gear_change_active[-1] or pending
         return block.set_acceleration_deg_s2[-1] == 0.0 and not busy
     return True
 

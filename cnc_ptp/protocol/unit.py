@@ -37,7 +37,7 @@ class Unit(ABC):
         self.sources: Collection[str] = ()
         """Who may command a spindle; without them every name is accepted."""
         self.lost: set[str] = set()
-        """Sources that a watchdog has given up; their blocks no longer count, even if they come."""
+        """Sources that a watchdog has found lost; their blocks no longer count, even if they come."""
 
     @abstractmethod
     def step(self, tick: CycleTick, inputs: Mapping[str, CycleBlock]) -> CycleBlock:

@@ -19,7 +19,7 @@ MAIN = {
     "weight_percent": " %",
     "speed_rpm": " rpm",
 }
-"""The arguments that stand for a command in brief, and their units if these are not the axis'."""
+"""The arguments that describe a command in brief, and their units if these are not the axis'."""
 FEW = 6
 
 

@@ -63,17 +63,17 @@ def _joined(parts: list[Floats]) -> Floats:
 def path_points(coordinates: list[npt.NDArray[Any]], points: int = 6000) -> Indices:
     """Indices along a path, evenly in distance and in change of direction: long lines take few points, corners many."""
     steps = np.diff(np.stack([np.asarray(column, dtype=np.float64) for column in coordinates]), axis=1)
-    way = np.sqrt((steps**2).sum(axis=0))
-    moving = np.flatnonzero(way > 0.0)
+    lengths = np.sqrt((steps**2).sum(axis=0))
+    moving = np.flatnonzero(lengths > 0.0)
     if len(moving) == 0:
         return np.array([0], dtype=np.int64) if len(coordinates[0]) else np.empty(0, dtype=np.int64)
-    directions = steps[:, moving] / way[moving]
-    turn = np.zeros(len(way))
+    directions = steps[:, moving] / lengths[moving]
+    turn = np.zeros(len(lengths))
     cosine = np.clip((directions[:, 1:] * directions[:, :-1]).sum(axis=0), -1.0, 1.0)
     turn[moving[1:]] = np.arccos(cosine)
-    progress = np.concatenate([[0.0], np.cumsum(way / way.sum() + turn / max(float(turn.sum()), 1e-9))])
+    progress = np.concatenate([[0.0], np.cumsum(lengths / lengths.sum() + turn / max(float(turn.sum()), 1e-9))])
     targets = np.linspace(0.0, progress[-1], points)
     chosen = np.searchsorted(progress, targets, side="left")
     corners = moving[1:][turn[moving[1:]] > np.radians(10.0)]
     corners = corners[: points // 2]
-    return np.unique(np.concatenate([[0], np.minimum(chosen, len(way)), corners, [len(way)]])).astype(np.int64)
+    return np.unique(np.concatenate([[0], np.minimum(chosen, len(lengths)), corners, [len(lengths)]])).astype(np.int64)

@@ -317,7 +317,7 @@ class Recording:
         self._file.finish_chunk()
 
     def close(self) -> None:
-        """Writes the rest and the summary. A second call does nothing."""
+        """Writes the rest and the summary. A second call has no effect."""
         if self._closed:
             return
         self._closed = True

@@ -54,7 +54,7 @@ class CurvePiece(NamedTuple):
 
 
 class AccelerationCurve:
-    """a(n) for 0 <= n <= top speed; above it the acceleration stays as it is there."""
+    """a(n) for 0 <= n <= top speed; above it the acceleration is that at the top speed."""
 
     def __init__(self, parameters: CurveParameters, *, top_speed: float, most: float = inf) -> None:
         """`top_speed` in °/s; `most` in °/s²: the limit of the tool, also below the floor."""

@@ -10,7 +10,7 @@ PATIENCE = 2.0 * TURN
 
 
 class ZeroPulse:
-    """The mark that the encoder passes once a turn; its place is latched exactly, also between two cycles."""
+    """The mark that the encoder passes once per turn; its place is latched exactly, also between two cycles."""
 
     def __init__(self, mark: float) -> None:
         """`mark` in °, as the encoder counts."""

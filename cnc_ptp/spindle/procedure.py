@@ -36,7 +36,7 @@ class Procedure:
     resume: float = 0.0
     """Speed of endless rotation that the gear change has interrupted, °/s."""
     number: int = 0
-    """Number of the order that it carries out."""
+    """Number of the command that it carries out."""
 
     @property
     def homes(self) -> bool:
@@ -52,7 +52,7 @@ class Work:
     done: bool = True
     """The last job came to its end."""
     last_done: int = 0
-    """Number of the last order whose job came to its end."""
+    """Number of the last command whose job came to its end."""
 
     @property
     def gear_request(self) -> int:

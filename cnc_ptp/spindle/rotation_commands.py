@@ -71,8 +71,8 @@ class RotationCommands:
     def do_stop(self, cycle: int, *, homes: bool = True) -> None:
         """M05: down to speed 0; a spindle that turns and has exceeded the control limit homes before it stops.
 
-        Without `homes`, at an abort or reset, nothing is homed and a spindle that stands keeps its position. While the
-        PLC changes the gear the spindle stands; it stays at rest afterwards.
+        Without `homes`, at an abort or reset, nothing is homed and a spindle at a standstill keeps its position. During
+        a gear change by the PLC the spindle is at a standstill; it stays there afterwards.
         """
         spindle = self._spindle
         if spindle.work.gear_request:

@@ -12,8 +12,8 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 from cnc_ptp.spindle import transitions as T
+from cnc_ptp.spindle.command_queue import CommandQueue
 from cnc_ptp.spindle.faults import SPEED_NOT_REACHED
-from cnc_ptp.spindle.orders import Orders
 from cnc_ptp.spindle.procedures import Procedures
 from cnc_ptp.spindle.rotation_commands import RotationCommands
 from cnc_ptp.spindle.spindle import Spindle
@@ -37,10 +37,12 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
 class SpindleCycles:
     """Computes the cycles of one spindle; blocks in which nothing can happen are computed faster."""
 
-    def __init__(self, spindle: Spindle, procedures: Procedures, orders: Orders, rotation: RotationCommands) -> None:
+    def __init__(
+        self, spindle: Spindle, procedures: Procedures, queue: CommandQueue, rotation: RotationCommands
+    ) -> None:
         self._spindle = spindle
         self._procedures = procedures
-        self._orders = orders
+        self._queue = queue
         self._rotation = rotation
         self._patience = spindle.parameters.speed_time / spindle.cycle_time
         """P-MACH-00050 in cycles, 0: no monitoring."""
@@ -80,7 +82,7 @@ class SpindleCycles:
         self._procedures.hold(cycle, actual, actual_speed)
         target = position if spindle.target is None else spindle.target
         loop.command(setpoint, on=spindle.state != S.DISABLED)
-        self._orders.watch()
+        self._queue.watch()
         self._note_settled(cycle)
         block.set_speed_rpm.append(speed / DEG_S_PER_RPM)
         block.actual_speed_rpm.append(actual_speed / DEG_S_PER_RPM)
@@ -168,7 +170,7 @@ class SpindleCycles:
             bits |= TOOL_LIMITS
         if spindle.job_error:
             bits |= JOB_ERROR
-        if self._orders.waiting:
+        if self._queue.waiting:
             bits |= ORDERS_WAIT
         return bits
 
@@ -181,8 +183,8 @@ class SpindleCycles:
             and spindle.finished(cycle)
             and not self._awaits_speed
             and (spindle.exact_stop.reached or not spindle.holds_position)
-            and not self._orders.source
-            and not self._orders.waiting
+            and not self._queue.source
+            and not self._queue.waiting
             and not spindle.loop.waits_to_close(spindle.motion(cycle)[1], spindle.wanted_speed)
         )
 
@@ -193,7 +195,7 @@ class SpindleCycles:
         spindle = self._spindle
         if not spindle.unsettled:
             return True
-        if spindle.work.procedure is not None or self._orders.waiting:
+        if spindle.work.procedure is not None or self._queue.waiting:
             return False
         if spindle.state not in SETTLED and (spindle.state != S.STOPPING or spindle.finished(last_cycle)):
             return False
@@ -277,5 +279,5 @@ class SpindleCycles:
         return reached
 
     def _settle(self, last_cycle: int) -> None:
-        self._orders.watch()
+        self._queue.watch()
         self._note_settled(last_cycle)

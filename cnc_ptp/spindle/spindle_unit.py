@@ -16,9 +16,9 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Refusal, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import held_by_override
 from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST, Handler, Unit
+from cnc_ptp.spindle.command_queue import MOTION, CommandQueue, QueuedCommand
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
-from cnc_ptp.spindle.faults import GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, ORDER_WAITS, SLAVE_CANNOT
-from cnc_ptp.spindle.orders import MOTION, Order, Orders
+from cnc_ptp.spindle.faults import COMMAND_WAITS, GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, SLAVE_CANNOT
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
 from cnc_ptp.spindle.procedures import Procedures
@@ -57,7 +57,7 @@ class SpindleUnit(Unit):
             report_warning=partial(self._report, Severity.WARNING),
         )
         procedures = Procedures(self.spindle)
-        self._orders = Orders(self.spindle)
+        self._queue = CommandQueue(self.spindle)
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
         self._rotation = RotationCommands(self.spindle, procedures)
         self._power = PowerCommands(self.spindle)
@@ -69,8 +69,8 @@ class SpindleUnit(Unit):
             self._coupling,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
-        self._cycles = SpindleCycles(self.spindle, procedures, self._orders, self._rotation)
-        self.next_order = 1
+        self._cycles = SpindleCycles(self.spindle, procedures, self._queue, self._rotation)
+        self.next_number = 1
         """Number of the next motion command."""
         self._turned_down: tuple[int, CncError | None] = 0, None
         self._passed_on: list[Command] = []
@@ -96,9 +96,9 @@ class SpindleUnit(Unit):
             return ""
         if block.gear_request:
             return f"spindle {self.name} waits for the PLC to change to gear {block.gear_request}"
-        reason, open_orders = why_it_stays(block), block.plc_commands - block.plc_acknowledged
-        if reason and open_orders:
-            return f"spindle {self.name} still has {open_orders} of the PLC's commands to carry out: {reason}"
+        reason, pending = why_it_stays(block), block.plc_commands - block.plc_acknowledged
+        if reason and pending:
+            return f"spindle {self.name} still has {pending} of the PLC's commands to carry out: {reason}"
         held = reason and block.state[-1] == S.DISCRETE_MOTION
         return f"spindle {self.name} is held by override 0" if held else ""
 
@@ -113,66 +113,66 @@ class SpindleUnit(Unit):
         return record
 
     def handler(self, command: str) -> Handler:
-        """Motion commands come in the order that `Orders` gives them; all others act immediately."""
+        """Motion commands act in the order that `CommandQueue` gives them; all others act immediately."""
         handler = self._group_handler(command)
-        return partial(self._ordered, command) if command in MOTION else handler
+        return partial(self._in_turn, command) if command in MOTION else handler
 
     def _group_handler(self, command: str) -> Handler:
         group = next(group for group in self._groups if hasattr(group, f"do_{command}"))
         handler: Handler = getattr(group, f"do_{command}")
         return handler
 
-    def _ordered(
+    def _in_turn(
         self, command: str, cycle: int, *, source: str = "", own: bool = False, **arguments: Any
     ) -> str | None:
         """`own`: a stop that counts only while nobody else has commanded the spindle since."""
-        commander = self._orders.commander
+        commander = self._queue.commander
         if own and commander and commander != source:
-            self._orders.forget(source)
+            self._queue.forget(source)
             return (
                 f"spindle {self.name}: stop of '{source}' without effect, '{commander}' has commanded the spindle since"
             )
-        self._orders.check(command, source, self._coupling.master)
-        order = Order(command, arguments, source, self.next_order)
-        self.next_order += 1
-        if self._orders.must_wait(command, source):
+        self._queue.check(command, source, self._coupling.master)
+        queued = QueuedCommand(command, arguments, source, self.next_number)
+        self.next_number += 1
+        if self._queue.must_wait(command, source):
             self.spindle.require_ready(command)
-            message = self._waiting(order)
-            self._orders.add(order)
+            message = self._waiting(queued)
+            self._queue.add(queued)
         else:
-            message = self._carry_out(cycle, order)
-        self._orders.taken += source == PLC
+            message = self._carry_out(cycle, queued)
+        self._queue.taken += source == PLC
         return message
 
-    def _waiting(self, order: Order) -> str | None:
-        """The warning that tells PLC and users what their order waits for; a program waits without one."""
-        if order.source not in ("", PLC):
+    def _waiting(self, command: QueuedCommand) -> str | None:
+        """The warning that tells PLC and users what their command waits for; a program waits without one."""
+        if command.source not in ("", PLC):
             return None
-        text = f"spindle {self.name}: {order.command} waits until {self._orders.awaited()}"
-        return warning_text(ORDER_WAITS, text)
+        text = f"spindle {self.name}: {command.name} waits until {self._queue.awaited()}"
+        return warning_text(COMMAND_WAITS, text)
 
-    def _carry_out(self, cycle: int, order: Order) -> str | None:
+    def _carry_out(self, cycle: int, command: QueuedCommand) -> str | None:
         work = self.spindle.work
-        if order.command == "stop":
+        if command.name == "stop":
             self._report_lost_homings(cycle, "stop")
-            if order.source != self._orders.source:
+            if command.source != self._queue.source:
                 self._report_overtaken(cycle, "stop")
         before, turned = work.procedure, self.spindle.state == S.CONTINUOUS_MOTION
-        message = self._group_handler(order.command)(cycle, **order.arguments)
+        message = self._group_handler(command.name)(cycle, **command.arguments)
         if work.procedure is not None and work.procedure is not before:
-            work.procedure.number = order.number
-        if order.command == "stop":
-            self._orders.clear()
-        if self._has_effect(order.command, new_procedure=work.procedure is not before, turned=turned):
-            self._orders.begin(order.source)
-        if order.command in PASSED_ON:
-            source = {"source": order.source} if order.source else {}
-            self._passed_on.append(Command(self.name, order.command, {**order.arguments, **source}))
+            work.procedure.number = command.number
+        if command.name == "stop":
+            self._queue.clear()
+        if self._has_effect(command.name, new_procedure=work.procedure is not before, turned=turned):
+            self._queue.begin(command.source)
+        if command.name in PASSED_ON:
+            source = {"source": command.source} if command.source else {}
+            self._passed_on.append(Command(self.name, command.name, {**command.arguments, **source}))
         return message
 
     def _report_overtaken(self, cycle: int, by: str) -> None:
         """Notifies the source of the gear change that the rotation does not resume afterwards."""
-        source = self._orders.source
+        source = self._queue.source
         if not source or not self.spindle.work.gear_request:
             return
         text = f"spindle {self.name}: {by} while the PLC changes the gear for '{source}'; the spindle stays at rest"
@@ -183,12 +183,12 @@ class SpindleUnit(Unit):
         """Reports a homing without zero pulse so far, and waiting ones, as aborted: nobody waits for them."""
         spindle, procedure = self.spindle, self.spindle.work.procedure
         numbers = [procedure.number] if procedure is not None and procedure.homes else []
-        numbers += [order.number for order in self._orders.waiting if order.command == "home"]
+        numbers += [command.number for command in self._queue.waiting if command.name == "home"]
         reference = (
             "the previous reference point remains valid" if spindle.referenced else "there is no reference point"
         )
         for number in numbers:
-            text = f"{by} before the zero pulse, homing (order {number}) is aborted; {reference}"
+            text = f"{by} before the zero pulse, homing (command {number}) is aborted; {reference}"
             self._report(Severity.WARNING, cycle, HOMING_LOST, f"spindle {spindle.name}: {text}")
 
     @staticmethod
@@ -200,28 +200,28 @@ class SpindleUnit(Unit):
 
     def _take_turns(self, cycle: int) -> None:
         """Commands whose turn has come act at the first cycle of a block, like all others."""
-        while (order := self._orders.next()) is not None:
-            if order.master_source is not None:
-                self._act_as_slave(cycle, order)
+        while (command := self._queue.next()) is not None:
+            if command.master_source is not None:
+                self._act_as_slave(cycle, command)
                 continue
             try:
-                self._carry_out(cycle, order)
+                self._carry_out(cycle, command)
             except CncError as error:
-                self._turned_down = order.number, error
+                self._turned_down = command.number, error
                 self.event(cycle, Severity.WARNING, error.number, error.message)
-                if order.source:
-                    self._refused.append(Refusal(order.source, error.number, error.message))
+                if command.source:
+                    self._refused.append(Refusal(command.source, error.number, error.message))
 
     def outcome(self, number: int) -> bool | None:
         """Outcome of a positioning or homing: None while it waits or is active, then whether it finished."""
         procedure = self.spindle.work.procedure
         active = procedure is not None and procedure.number == number
-        if active or any(order.number == number for order in self._orders.waiting):
+        if active or any(command.number == number for command in self._queue.waiting):
             return None
         return self.spindle.work.last_done == number
 
     def refusal(self, number: int) -> CncError | None:
-        """The reason why this order was refused at its turn, if it was the last one so refused."""
+        """The reason why this command was refused at its turn, if it was the last one so refused."""
         refused, error = self._turned_down
         return error if refused == number else None
 
@@ -229,7 +229,7 @@ class SpindleUnit(Unit):
         """See PowerCommands.do_power; without power nothing waits; slaves of a spindle in a gear change stop too."""
         if not enabled:
             self._report_overtaken(cycle, "power off")
-            self._orders.clear()
+            self._queue.clear()
             if self.spindle.work.gear_request:
                 self._passed_on.append(Command(self.name, "stop", {"homes": False}))
         return self._power.do_power(cycle, enabled=enabled)
@@ -238,14 +238,14 @@ class SpindleUnit(Unit):
         """See PowerCommands.do_reset; waiting commands are dropped, and slaves stop too."""
         self._report_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
-        self._orders.clear()
+        self._queue.clear()
         self._passed_on.append(Command(self.name, "stop", {"homes": False}))
 
     def do_decouple(self, cycle: int, *, owner: str = "") -> str | None:
         """See CouplingCommands.do_decouple; waiting commands that came through the master are dropped."""
         message = self._coupling.do_decouple(cycle, owner=owner)
         if message is None:
-            self._orders.leave_master(self._coupling.owner)
+            self._queue.leave_master(self._coupling.owner)
         return message
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
@@ -276,8 +276,8 @@ class SpindleUnit(Unit):
             self.event(first_cycle + count - 1, Severity.WARNING, FEEDFORWARD_WAITS, f"spindle {self.name}: {warning}")
         block.gear_request = self.spindle.work.gear_request
         block.master, block.master_wanted = self._coupling.master, self._coupling.wanted
-        block.source = self._orders.source
-        block.plc_commands, block.plc_acknowledged = self._orders.taken, self._orders.acknowledged
+        block.source = self._queue.source
+        block.plc_commands, block.plc_acknowledged = self._queue.taken, self._queue.acknowledged
         block.refused, self._refused = self._refused, []
         block.commands, self._passed_on = self._passed_on, []
         self._last_block = block
@@ -292,7 +292,7 @@ class SpindleUnit(Unit):
             elif spindle.state == S.DISABLED and command.command != "stop":
                 self._stays_behind(cycle, command)
         if master.error_id[0] or master.state[0] == S.DISABLED:
-            self._orders.forget_master()
+            self._queue.forget_master()
             spindle.work.forget_rotation()
         if master.error_id[0] and spindle.state in (S.CONTINUOUS_MOTION, S.DISCRETE_MOTION, S.HOMING):
             reason = f"its master {self._coupling.master} is in error P-ERR-{master.error_id[0]}"
@@ -310,23 +310,23 @@ class SpindleUnit(Unit):
         """During a gear change of the slave the command waits; a stop drops what waits."""
         name, arguments = command.command, self._coupling.of_slave(command.arguments)
         source = arguments.pop("source", "")
-        order = Order(name, arguments, "", master_source=source)
-        if self._orders.must_wait(name, ""):
-            self._orders.add(order)
+        queued = QueuedCommand(name, arguments, "", master_source=source)
+        if self._queue.must_wait(name, ""):
+            self._queue.add(queued)
             return
         if name == "stop":
             self._report_lost_homings(cycle, "stop")
-            self._orders.clear()
-        self._act_as_slave(cycle, order)
+            self._queue.clear()
+        self._act_as_slave(cycle, queued)
 
-    def _act_as_slave(self, cycle: int, order: Order) -> None:
+    def _act_as_slave(self, cycle: int, command: QueuedCommand) -> None:
         """A command that the slave cannot carry out is an error."""
-        self._orders.obey(order)
+        self._queue.obey(command)
         try:
-            self._group_handler(order.command)(cycle, **order.arguments)
+            self._group_handler(command.name)(cycle, **command.arguments)
         except CncError as error:
             if can_follow(self.spindle):
-                reason = f"cannot carry out '{order.command}' of its master {self._coupling.master}: {error.reason}"
+                reason = f"cannot carry out '{command.name}' of its master {self._coupling.master}: {error.reason}"
                 self.spindle.fault(cycle, SLAVE_CANNOT, reason)
 
 

@@ -150,7 +150,7 @@ def test_it_stands_at_the_soft_limit_and_says_so(velocity: float, limit: float, 
     assert max(abs(p) for p in positions) <= abs(limit) * (1.0 + 1e-12)
     name, parameter = ("positive", "P-AXIS-00178") if velocity > 0.0 else ("negative", "P-AXIS-00177")
     assert bench.event_texts() == [
-        f"P-ERR-23070 axis x: the jog has reached the {name} soft limit {limit} mm ({parameter}); the axis stands"
+        f"P-ERR-23070 axis x: the jog has reached the {name} soft limit {limit} mm ({parameter}); the axis is at a standstill"
     ]
     assert [event.severity for event in bench.events] == [1]
     assert_axis_smooth(bench, acceleration=A, jerk=J)
@@ -217,7 +217,7 @@ def test_from_beyond_the_limit_only_the_other_direction_is_taken_in_motion_too(s
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_compensation_comes_to_rest_after_the_jog_has_come_to_the_limit(sign: float) -> None:
-    """It turns the axis round with 50 mm/s² and is let out with 300 mm/s², in closed form; only then the axis stands."""
+    """It reverses the axis with 50 mm/s² and ends with 300 mm/s², in closed form; only then the axis is at rest."""
     bench = limited(-1000.0, 1000.0)
     bench.accepted("jog", velocity=sign * 500.0)
     bench.run(500)
@@ -240,7 +240,7 @@ def test_a_compensation_comes_to_rest_after_the_jog_has_come_to_the_limit(sign: 
     (text,) = bench.event_texts()
     assert text == (
         f"P-ERR-23070 axis x: the jog has reached the {name} soft limit {sign * 1000.0} mm ({parameter}); the axis "
-        f"stands at {motion(bench)[-1][0]:g} mm"
+        f"is at a standstill at {motion(bench)[-1][0]:g} mm"
     )
     assert bench.accepted("jog", velocity=sign * 20.0) == "" and bench.accepted("stop") == ""
 

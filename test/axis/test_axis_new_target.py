@@ -74,7 +74,7 @@ def test_just_to_be_stopped_before_and_just_not(beyond: float, sign: float) -> N
 
 
 def test_reversal_of_the_manual() -> None:
-    """V 2000, start to 3000, at 2200 mm restart to 2000: the stop ends at 2700, the way back of 700 mm reaches 1640."""
+    """V 2000, start to 3000, at 2200 mm restart to 2000: the stop ends at 2700, the return of 700 mm reaches 1640."""
     bench = started(3000.0, 1350)
     assert bench.column("set_position")[-1] < 2200.0 <= bench.column("set_position")[-1] + 2.0
     bench.accepted("new_target", target=2000.0)
@@ -116,7 +116,7 @@ def test_again_and_again() -> None:
 
 @pytest.mark.parametrize("target", [-200.0, 400.0, 2900.0])
 def test_new_target_while_it_returns_from_another(target: float) -> None:
-    """During the internal stop and on the way back."""
+    """During the internal stop and the return."""
     for pause in (1, 50, 250, 420, 700):
         bench = started(3000.0, 400)
         bench.accepted("new_target", target=100.0)
@@ -262,7 +262,7 @@ def test_the_place_where_override_0_holds_it_as_a_target_ends_the_job(kind: int)
 @pytest.mark.parametrize("kind", [1, 2, 3, 4])
 @pytest.mark.parametrize("target", [6000.0, 0.0])
 def test_the_override_lives_on_through_new_targets(kind: int, target: float) -> None:
-    """50 % of 2000; on the way back over 900 mm of these, or for types 1 and 3 of what this distance can reach."""
+    """50 % of 2000; during the return over 900 mm of these, or for types 1 and 3 of what this distance can reach."""
     bench = axis_bench(count=100, override_type=kind)
     bench.accepted("set_override", percent=50.0)
     start(bench, 3000.0)

@@ -120,7 +120,7 @@ def test_case_2_at_once(direction: float, new: float, activation: float) -> None
 def test_cases_3_5_6_stop_and_return_with_the_old_velocity(
     direction: float, target: float, activation: float, new: float
 ) -> None:
-    """Where the way back is too short for the old velocity and the new one can be reached on it, with the new one."""
+    """If the return is too short for the old velocity and the new one can be reached on it, with the new one."""
     bench = under_way(direction)
     request(bench, new, target, activation, direction)
     finish(bench, direction * target)
@@ -279,7 +279,7 @@ def test_new_target_deletes_a_pending_activation() -> None:
 
 
 def test_a_request_that_acts_at_once_deletes_a_pending_activation() -> None:
-    """300 mm/s from 1500 on never comes; 1500 mm/s come at once."""
+    """300 mm/s from 1500 on never comes; 1500 mm/s come immediately."""
     bench = under_way()
     request(bench, 300.0, 3000.0, 1500.0)
     bench.run(100)

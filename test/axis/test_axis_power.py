@@ -198,7 +198,7 @@ def test_a_path_that_begins_elsewhere_is_a_fault() -> None:
     bench = axis_bench(start_position=1.0)
     follow_path(bench, begin=1.5)
     assert bench.event_texts() == [
-        "P-ERR-23009 axis x: the path of the channel begins at 1.5 mm, the axis stands at 1.0 mm; the axis "
+        "P-ERR-23009 axis x: the path of the channel starts at 1.5 mm, the axis is at 1.0 mm; the axis "
         "stops on its "
         "own ramp (ErrorStop)"
     ]

@@ -1,4 +1,4 @@
-"""Random command sequences on an axis: no step, limits kept, always a standing end."""
+"""Random command sequences on an axis: no step, limits kept, always a standstill at the end."""
 
 from __future__ import annotations
 

@@ -160,7 +160,7 @@ ACTING = {
     *((command, state) for command in REDIRECTIONS for state in ("stopping", "waiting")),
     *((command, "waiting") for command in (*STOPS, "set_override")),
 }
-"""Warnings that tell of an effect later on, or take one back."""
+"""Warnings about a later effect, or take one back."""
 
 
 def led_to(state: S, commands: tuple[str, ...], situations: tuple[str, ...]) -> dict[tuple[str, str], S]:

@@ -173,7 +173,7 @@ def test_the_ramp_of_an_emergency_stop(cycle: int, direction: float) -> None:
 
 
 def correction(name: str, value: object, used: float) -> str:
-    """What is said of a value that the ramp does not have."""
+    """The warning about a value that the ramp does not have."""
     unit = "mm/s²" if name == "deceleration" else "mm/s³"
     if value is None:
         return f"{name} is not given; {used} {unit} of the start is used"

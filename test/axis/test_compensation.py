@@ -126,7 +126,7 @@ PEAK = brentq(lambda v: area(v, 1000.0, 2000.0, SECONDS) - 300.0, 0.0, 600.0, xt
 
 
 def follow(velocity: object, derivative: object, cycles: int, *, direction: float = 1.0) -> np.ndarray:
-    """The additional (p, v, a) of `cycles` cycles over a basic motion v(t) that stands at 0."""
+    """The additional (p, v, a) of `cycles` cycles over a basic motion v(t) that is at rest at 0."""
     compensation = Compensation(cycle_time=CYCLE_TIME)
     base = lambda k: (0.0, velocity(k * CYCLE_TIME), derivative(k * CYCLE_TIME), 0.0)  # type: ignore[operator]  # noqa: E731
     compensation.start(0, base(0), direction=direction, process_velocity=VP, profile=TABLE)

@@ -1,4 +1,4 @@
-"""How a position compensation ends early: compensation stop, stop, halt, emergency stop, fault, power off."""
+"""Early ends of a position compensation: compensation stop, stop, halt, emergency stop, fault, power off."""
 
 from __future__ import annotations
 
@@ -244,7 +244,7 @@ def test_a_stop_with_motion_reversal_comes_to_rest() -> None:
 
 
 def test_a_new_target_waits_for_the_end_of_the_compensations_ramp_too() -> None:
-    """After a halt a new target acts at once, but not during a compensation."""
+    """After a halt a new target acts immediately, but not during a compensation."""
     bench = compensating_axis(1000)
     bench.accepted("halt")
     bench.run(100)

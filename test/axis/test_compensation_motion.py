@@ -179,7 +179,7 @@ def test_a_velocity_below_vp_compensates_less(velocity: float, share: float, dif
 
 
 def reference_way(clean: UnitBench, begin: int, w: Any, sign: float, vp: float) -> float:
-    """∫ w(τ)·min(1, |v|/VP) dt over the basic motion of `clean`, where τ stands while v = 0."""
+    """∫ w(τ)·min(1, |v|/VP) dt over the basic motion of `clean`, where τ stops while v = 0."""
     cycles = np.arange(begin, len(clean.column("set_velocity")) - 1)
     fine = np.linspace(0.0, CYCLE_TIME, 21)
     speed = np.abs(basic_velocity(clean)(cycles[:, None] * CYCLE_TIME + fine))
@@ -461,7 +461,7 @@ def test_without_compensation_nothing_changes() -> None:
 
 
 def test_compensation_at_a_start_with_override_0_waits() -> None:
-    """The axis has a job and stands; the compensation begins with the motion."""
+    """The axis has a job and is at a standstill; the compensation starts with the motion."""
     bench = axis_bench()
     bench.accepted("set_override", percent=0.0)
     bench.accepted("move_absolute", target=-10_000.0, velocity=2000.0)

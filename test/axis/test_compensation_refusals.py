@@ -1,4 +1,4 @@
-"""What a position compensation is refused for; the running motion stays as it is, to the bit."""
+"""Refusals of a position compensation; the active motion is unchanged, to the bit."""
 
 from __future__ import annotations
 
@@ -299,7 +299,7 @@ def test_in_the_natural_brake_phase() -> None:
 
 @pytest.mark.parametrize("after", [0, 200, 499])
 def test_in_the_stop_of_a_reversal(after: int) -> None:
-    """A new target behind the axis: it stops automatically; on the way back a compensation is possible."""
+    """A new target behind the axis: it stops automatically; during the return a compensation is possible."""
     bench, twin = twins(cycles=2000)
     for each in (bench, twin):
         each.accepted("new_target", target=1000.0)

@@ -84,7 +84,7 @@ def test_acceleration_bound_is_kept_below_it_too(motion: list[float], factors: l
 @QUICK
 @given(MOTIONS, FACTORS, st.floats(-3.0, 3.0))
 def test_slave_is_exactly_linear_once_its_factor_stays(motion: list[float], factors: list[float], last: float) -> None:
-    """2 · 3 · v/(B - 3·A) is the longest way to a new velocity; after it the offset no longer changes."""
+    """2 · 3 · v/(B - 3·A) is the longest distance to a new velocity; after it the offset no longer changes."""
     held = 130
     bound = 8.0 * A
     states = master([*motion, *[0.0] * held])

@@ -1,4 +1,4 @@
-"""What ends external setpoints, and whether the axis is where it should be then (target window)."""
+"""Ends of external setpoints, and the target window afterwards."""
 
 from __future__ import annotations
 

@@ -211,7 +211,7 @@ def test_direction_0_gates() -> None:
     ("v", "a"), [(1000.0, 0.0), (600.0, 4000.0), (600.0, -4000.0), (-1000.0, 0.0), (-600.0, -4000.0)]
 )
 def test_an_end_in_motion_comes_to_rest_on_the_ramp_of_the_axis(end: str, v: float, a: float) -> None:
-    """Its acceleration ends at once: a stop from (v, 0) with A- = 5000 and J = 50000 over v/2·(v/A + A/J)."""
+    """Its acceleration ends immediately: a stop from (v, 0) with A- = 5000 and J = 50000 over v/2·(v/A + A/J)."""
     bench = external_axis(count=1)
     t = np.arange(100) * CYCLE_TIME
     sign = 1.0 if v > 0.0 else -1.0

@@ -1,4 +1,4 @@
-"""What external setpoints are refused for, and what is a fault while they move the axis."""
+"""Refusals of external setpoints, and faults while they move the axis."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def test_a_start_waits_for_its_direction(start: str) -> None:
 
 
 def test_a_target_behind_the_axis_waits_at_the_turning_point() -> None:
-    """The stop is the same with and without the release, the way back waits."""
+    """The stop is the same with and without the release, the return waits."""
     free, held = moving_axis(cycles=1000), moving_axis(cycles=1000)
     release(held, backward=False)
     for bench in (free, held):
@@ -355,7 +355,7 @@ def brakes_for_the_end(bench: MachineBench) -> None:
 def test_an_element_that_brakes_for_its_end_leaves_the_next_one_to_its_direction(
     way_on: str, node: str, block_cycles: int
 ) -> None:
-    """Both axes have gone forward to X100 Y50; what continues backward, or stands, is not touched at all."""
+    """Both axes have gone forward to X100 Y50; what continues backward, or is at a standstill, is not affected."""
     program = f"%P\nG01 X100 Y50 F6000\n{way_on}\nM30"
     mill = replace(MILL, block_cycles=block_cycles)
     free, other = (MachineBench(program, machine=mill, end_when_idle=False).run(0.3) for _ in range(2))
@@ -409,7 +409,7 @@ def test_a_circle_whose_axis_turns_round_while_it_brakes_goes_on(late: int) -> N
 
 
 def test_a_path_that_waits_turns_where_a_new_direction_is_free() -> None:
-    """After a reset the next program goes back at once."""
+    """After a reset the next program returns immediately."""
     bench = MachineBench(PROGRAM, machine=MILL, end_when_idle=False).run(0.5)
     bench.give("x", "set_feed_release", forward=False, backward=True)
     bench.run(1.0)

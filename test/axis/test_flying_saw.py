@@ -159,7 +159,7 @@ def test_what_cannot_be_synchronised() -> None:
     assert refused(1.0, 3000.0, -1000.0, moving(2000.0)) == behind
     fast = "it would have to run at 3000 mm/s, its velocity is limited to 2000 mm/s"
     assert refused(-1.5, 3000.0, -1000.0, moving(2000.0)) == fast
-    stands = "the master stands; a flying saw needs a moving master"
+    stands = "the master is at a standstill; a flying saw needs a moving master"
     assert refused(1.0, 3000.0, 1000.0, moving(0.0)) == stands
 
 

@@ -188,7 +188,7 @@ def test_the_end_of_the_masters_path_ends_it(end: str) -> None:
     assert 50.0 < gap < 400.0 and not bench.bits("y", COMPENSATING)[-1]
     bench.send("x", "move_absolute", target=0.0)
     bench.settle()
-    assert compensated(bench, "y", "x", 1.0) == pytest.approx(gap, abs=1e-9), "it does not go on by itself"
+    assert compensated(bench, "y", "x", 1.0) == pytest.approx(gap, abs=1e-9), "it does not continue automatically"
     bench.send("x", "move_absolute", target=10_000.0, **DYNAMICS)
     bench.run(1.0)
     assert bench.do("y", "compensation_start", **{**COMPENSATION, "difference": 100.0}) == ""
@@ -210,7 +210,7 @@ def test_stop_of_a_compensation_on_a_slave(seconds: float) -> None:
 
 
 def test_the_relation_holds_again_after_it() -> None:
-    """slave = factor · master + offset, with the offset that the compensation has left; also on the way back."""
+    """slave = factor · master + offset, with the offset that the compensation has left; also during the return."""
     bench = running()
     bench.do("y", "compensation_start", **COMPENSATION)
     bench.settle()

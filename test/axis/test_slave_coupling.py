@@ -42,7 +42,7 @@ def start(target: float = 2000.0, axis: str = "x") -> tuple[str, str, dict[str, 
 
 
 def test_the_offset_is_that_of_the_coupling_positions() -> None:
-    """x stands at 100, y at -30: offset = -30 - 0.75·100 = -105; the end is 0.75·2000 - 105."""
+    """x is at 100, y at -30: offset = -30 - 0.75·100 = -105; the end is 0.75·2000 - 105."""
     bench = SlaveBench()
     bench.send_all([start(100.0), start(-30.0, "y")])
     bench.settle()

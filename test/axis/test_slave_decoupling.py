@@ -68,7 +68,7 @@ def test_at_standstill_target_and_velocity_are_not_used(arguments: dict[str, flo
     bench = SlaveBench()
     bench.do("y", "couple", master="x", factor=0.5)
     assert bench.do("y", "decouple", **arguments) == (
-        f"P-WARN-23057 axis y: decouple: the axis stands; {unused} is not used, start it"
+        f"P-WARN-23057 axis y: decouple: the axis is at a standstill; {unused} is not used, start it"
     )
     bench.run(0.1)
     assert bench.state("y") == S.STANDSTILL and set(bench.column("y", "set_position")) == {0.0}
@@ -99,7 +99,7 @@ PHASES = {
 @pytest.mark.parametrize("factor", [1.0, 0.5, -0.25, -1.0])
 @pytest.mark.parametrize("phase", PHASES)
 def test_in_every_phase_of_the_master(phase: str, factor: float) -> None:
-    """Goes on with v + a·|a|/2J, the velocity that is left when its own jerk has taken the acceleration out."""
+    """Continues with v + a·|a|/2J, the velocity that is left when its own jerk has taken the acceleration out."""
     bench = moving(factor, target=2000.0, seconds=PHASES[phase])
     cycle = bench.cycle
     bench.do("y", "decouple")
@@ -261,7 +261,7 @@ def test_override_refers_to_the_target_velocity_while_a_compensation_made_the_sl
     assert fast > 2100.0
     bench.do("y", "decouple")
     bench.run(1.0)
-    assert velocity(bench) == pytest.approx(fast, abs=1e-6), "the velocity of the compensation is kept for good"
+    assert velocity(bench) == pytest.approx(fast, abs=1e-6), "the velocity of the compensation is kept permanently"
     bench.do("y", "set_override", percent=50.0)
     bench.run(1.0)
     assert velocity(bench) == pytest.approx(1000.0)

@@ -1,4 +1,4 @@
-"""Errors in a master/slave group: at once or delayed, only who is in the group then, bits, reset, lost masters."""
+"""Errors in a master/slave group: immediate or delayed, only who is in the group then, bits, reset, lost masters."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_instantaneous_all_of_the_group_stop_on_their_ramps(block_cycles: int) -
 
 
 def test_the_faulty_axis_does_not_follow_its_master_any_more() -> None:
-    """y stops on its own ramp at once, not on the relation to x; z follows y until it is notified of the error."""
+    """y stops on its own ramp immediately, not on the relation to x; z follows y until it is notified of the error."""
     bench = group()
     failed = bench.cycle
     bench.do("y", "power", enabled=False)
@@ -236,7 +236,7 @@ def test_reset_of_a_slave_ends_its_coupling() -> None:
     bench.settle()
     offset = bench.position("y") - bench.position("x")
     assert_linear(bench, "x", "y", 1.0, offset, begin=begin)
-    assert bench.position("z") == bench.values("z")[begin], "z is no slave of y any more"
+    assert bench.position("z") == bench.values("z")[begin], "z is no longer a slave of y"
 
 
 def test_resets_in_any_order_do_not_bring_the_error_back() -> None:
@@ -296,7 +296,7 @@ def test_others_may_be_lost() -> None:
 
 
 def test_a_master_that_was_lost_before_moves_nobody() -> None:
-    """The slave heard nothing of it for good: an error at the first block without it, not a motion without a reason."""
+    """The slave received nothing from it: an error at the first block without it, not a motion without a reason."""
     bench = SlaveBench()
     bench.give("y", "upstream_lost", source="x")
     bench.run(0.05)

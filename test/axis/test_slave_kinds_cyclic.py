@@ -120,7 +120,7 @@ def test_flying_saw_is_synchronous_and_can_be_taken_off(sign: float, factor: flo
         (True, {"master_position": 1300.0}, "the run-up takes 0.75 s, the master is there in 0.2 s"),
         (True, {"slave_position": 400.0}, "the run-up takes 500 mm, the synchronous position is 400 mm away"),
         (True, {"velocity": 1500.0}, "it would have to run at 2000 mm/s, its velocity is limited to 1500 mm/s"),
-        (False, {}, "the master stands; a flying saw needs a moving master"),
+        (False, {}, "the master is at a standstill; a flying saw needs a moving master"),
     ],
 )
 def test_flying_saw_that_cannot_be_is_told_and_the_axis_stays_free(
@@ -132,7 +132,7 @@ def test_flying_saw_that_cannot_be_is_told_and_the_axis_stays_free(
         bench.run(0.69)  # 900 mm
     saw(bench, **changes)
     events = [(event.severity, event.error_id, event.text) for event in bench.events]
-    assert events == [(1, 23051, f"axis y: cannot follow x: {reason}; the axis stands and is not coupled")]
+    assert events == [(1, 23051, f"axis y: cannot follow x: {reason}; the axis is at a standstill and not coupled")]
     assert bench.state("y") == S.STANDSTILL
     assert bench.values("y").tolist() == [0.0] * bench.cycle
     bench.run(0.02)
@@ -176,7 +176,7 @@ def test_cam_with_slave_offset_is_told_when_the_slave_stands_elsewhere() -> None
     bench.do("y", "couple_cam", master="x", table=COSINE, slave_offset=7.0)
     text = (
         "axis y: cannot follow x: the cam table puts the slave at 7 with its slave_offset, the axis is at 0; "
-        "the axis stands and is not coupled"
+        "the axis is at a standstill and not coupled"
     )
     assert [(event.error_id, event.text) for event in bench.events] == [(23053, text)]
     assert bench.state("y") == S.STANDSTILL
@@ -208,7 +208,7 @@ def test_cam_refusals() -> None:
 
 FILES = {
     "": "1: column 'master' is missing; the first line must name master, slave",
-    "master,slave,slave\n": "1: column 'slave' stands twice; the first line must name master, slave",
+    "master,slave,slave\n": "1: column 'slave' occurs twice; the first line must name master, slave",
     "master,slave\n0,0\n1\n": "3: '1' has 1 values instead of 2",
     "master,slave\n0,0\n1,x\n": "3: '1, x' are not two numbers",
     "master,slave\n0,0\n1,nan\n2,2\n": "3: '1, nan' are not two finite numbers",

@@ -1,4 +1,4 @@
-"""How figures, goals and peers are shown and written."""
+"""Figures, goals and peers as text and as JSON."""
 
 import json
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from rich.console import Console
 
 from bench import __main__ as command
-from bench.figures import Effort, Figure, Say, goal_text, median_of, medians_of, number, table
+from bench.figures import Effort, Figure, ShowProgress, goal_text, median_of, medians_of, number, table
 
 
 @pytest.mark.parametrize(
@@ -74,8 +74,8 @@ def test_table_shows_every_figure() -> None:
 
 
 def test_command_prints_tables_and_writes_json(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
-    def figures(effort: Effort, say: Say) -> Iterator[Figure]:
-        say("something")
+    def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
+        show("something")
         yield Figure("blocks", 70_000.0 * effort.runs, "blocks/s", goal=60_000.0)
 
     monkeypatch.setattr(command, "import_module", lambda name: SimpleNamespace(figures=figures))

@@ -402,7 +402,7 @@ def test_a_machine_whose_axis_has_no_power_refuses_the_start_at_cycle_0() -> Non
 
 @pytest.mark.parametrize("command", ["power, on: off", "move_absolute, target: 5"])
 def test_an_axis_that_gets_a_command_in_the_very_block_of_the_start(command: str) -> None:
-    """The channel cannot know yet: axis and channel fault, everything stops where it stands."""
+    """The channel cannot know yet: axis and channel fault, everything stops where it is."""
     scenario = f"- {{at: 0.1, to: channel, do: start}}\n- {{at: 0.1, to: y, do: {command}}}"
     bench = MachineBench(LINE, scenario, start=False).run()
     errors = bench.errors()
@@ -453,7 +453,7 @@ def test_ptp_commands_while_the_program_runs_are_refused() -> None:
 
 
 def test_an_axis_fault_stops_path_and_other_axes_together() -> None:
-    """x loses its enable at 0.5 s: x stops on its own ramp, y on the path's; the spindle stops; reset and go on."""
+    """x loses its enable at 0.5 s: x stops on its own ramp, y on the path's; the spindle stops; reset and continue."""
     bench = running("%P\nM03 S600\nG01 X100 Y50 F6000\nM30", 0.6)
     bench.give("x", "power", enabled=False)
     bench.run(1.5)
@@ -494,7 +494,7 @@ def test_reset_is_refused_on_the_error_ramp() -> None:
 
 
 def test_an_axis_that_is_reset_while_the_channel_ramps_down_does_not_jump_onto_the_path() -> None:
-    """z stands, its fault is over at once: its reset brings it back onto the path while x still ramps down there."""
+    """z is at a standstill, its fault ends immediately: its reset brings it back onto the path while x still ramps down there."""
     bench = running("%P\nG01 X100 F30000\nM30", 0.5)
     bench.give("z", "power", enabled=False)
     bench.give("z", "power", enabled=True)
@@ -519,7 +519,7 @@ def test_an_axis_that_does_not_follow_stops_the_path() -> None:
 
 
 def test_a_fault_in_the_last_block_of_a_program_is_noticed() -> None:
-    """The path has ended when the channel hears of it; an axis that did not reach its target is an error."""
+    """The path has ended when the channel is notified; an axis that did not reach its target is an error."""
     program = "%P\nG01 X1 F6000\nM30"
     last = next(block.first_cycle for block in running(program, 1.0).blocks["channel"] if block.done)
     bench = running(program, last / 1000.0)

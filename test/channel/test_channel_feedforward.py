@@ -64,7 +64,7 @@ def test_program_start_resets_all_axes_and_the_rest_goes_out_with_the_next_block
 
 
 def first_motion(bench: MachineBench) -> int:
-    """The cycle at which the path stands for the last time before its first motion."""
+    """The cycle at which the path is at rest for the last time before its first motion."""
     return int(np.flatnonzero(bench.column("channel", "path_velocity"))[0]) - 1
 
 

@@ -94,7 +94,7 @@ def test_another_command_while_the_path_waits_for_standstill() -> None:
 
 @pytest.mark.parametrize("at", [2.05, 2.3])
 def test_the_plc_positions_a_spindle_that_was_to_stop(at: float) -> None:
-    """Its order waits until M5 is done, or comes after it; the path goes on when the spindle stands."""
+    """Its command waits until M5 is finished, or comes after it; the path continues when the spindle is at a standstill."""
     scenario = f"- {{at: {at}, to: s, do: orient, position_deg: 90, speed_rpm: 5, source: plc}}"
     bench = run("M3 S10000\nG04 X2\nM5\nG01 X20 F6000", mill(m5=MVS_SVS), scenario)
     assert bench.errors() == [] and bench.column("s", "state")[moves(bench)[0][0]] == S.STANDSTILL
@@ -176,7 +176,7 @@ def test_m3_behind_a_gear_change_of_somebody_else() -> None:
 
 
 def test_a_gear_change_of_somebody_else_while_the_spindle_runs_up() -> None:
-    """Afterwards the spindle goes on with the speed of the channel."""
+    """Afterwards the spindle continues at the speed of the channel."""
     scenario = MANUAL + "- {at: 0.1, to: s, do: select_gear, stage: 2}\n- {at: 3, to: s, do: gear_changed}"
     bench = run("M3 S10000\nG01 X20 F6000", mill(m3=MVS_SVS), scenario)
     assert bench.errors() == [] and moves(bench)[0][0] > 3000
@@ -315,7 +315,7 @@ def test_the_program_end_does_not_stop_what_another_channel_has_taken_over() -> 
 
 
 def test_m5_of_another_channel_counts_and_its_user_hears_of_it() -> None:
-    """The other channel hears of what has happened to its M3 when its next block begins."""
+    """The other channel is notified of what has happened to its M3 when its next block begins."""
     bench = two(TAKEN + '- {at: 1.5, to: channel, do: mdi, text: "M5"}').run(3.0)
     assert bench.column("s", "set_speed_rpm")[-1] == 0.0 and bench.errors() == []
     assert notes(bench) == [
@@ -384,7 +384,7 @@ def warned(bench: MachineBench) -> list[tuple[int, str]]:
 
 @pytest.mark.parametrize("kind", [MOS, MVS_SVS])
 def test_a_gear_change_of_the_plc_is_told_to_a_moving_path_at_once(kind: Synchronisation) -> None:
-    """For 2 s the spindle stands while the path cuts; afterwards it turns again, and nothing more is said."""
+    """For 2 s the spindle is at a standstill while the path cuts; then it turns again, without another message."""
     bench = run("M3 S1000\nG1 X80 F1500\nM5", mill(m3=kind), another_gear(0.5))
     assert [(event.cycle, event.text) for event in bench.events] == [
         (
@@ -445,7 +445,7 @@ def test_a_gear_change_of_the_channel_is_nothing_to_warn_of() -> None:
 
 
 def test_a_path_goes_on_with_a_spindle_at_override_0() -> None:
-    """Only a wait notices it: the spindle does what it was told, at 0 %."""
+    """Only a wait notices it: the spindle does what was commanded, at 0 %."""
     bench = run("M3 S1000\nG1 X20 F1500\nM5", mill(m3=MOS), "- {at: 0.3, to: s, do: set_override, percent: 0}")
     assert warned(bench) == [] and bench.position("x") == 20.0
     assert bench.column("s", "set_speed_rpm")[700] == 0.0 != bench.column("channel", "path_velocity")[700]

@@ -50,7 +50,7 @@ def last_motion(bench: MachineBench) -> int:
 
 
 def commands(bench: MachineBench, unit: str = "s") -> list[tuple[int, str, str]]:
-    """Cycle, command and arguments of what the unit was told; motion commands come from the channel.
+    """Cycle, command and arguments of what the unit was commanded; motion commands come from the channel.
 
     Without the reset of feedforward at the program start.
     """

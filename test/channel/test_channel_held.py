@@ -57,7 +57,7 @@ def test_a_spindle_without_override_is_not_held() -> None:
 
 
 def test_a_spindle_that_stops_on_its_way_up() -> None:
-    """It is told when the spindle has come to rest, not before."""
+    """It is reported when the spindle has come to rest, not before."""
     scenario = "- {at: 0.1, to: s, do: set_override, percent: 0}\n" + RELEASE_S
     bench = run("M3 S10000\nG1 X5 F3000\nM5", machine_of(channel_spindle("S", "s", 4)), scenario)
     assert told(bench) == [waits(2, "the speed of spindle s, which is held by override 0")]
@@ -90,7 +90,7 @@ def test_a_coupling_does_not_depend_on_the_override() -> None:
 
 
 def test_a_path_that_override_0_holds() -> None:
-    """Once each time; a feed hold takes its place without a word, and what it leaves behind is told anew."""
+    """Once each time; a feed hold takes its place without a word, and what it leaves behind is reported anew."""
     scenario = """
 - {at: 0.3, to: channel, do: set_override, percent: 0}
 - {at: 1, to: channel, do: feed_hold, enabled: on}

@@ -1,4 +1,4 @@
-"""Synchronous operation of spindles from a program: slaves do what their masters are told, the path waits for all."""
+"""Synchronous operation of spindles from a program: slaves do what their masters are commanded, the path waits for all."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_an_aborted_program_ends_its_couplings_and_stops_all(how: str) -> None:
 
 @pytest.mark.parametrize("source", ["", ", source: plc"])
 def test_an_aborted_program_lets_nothing_wait_for_the_gear_change_of_a_slave(source: str) -> None:
-    """The PLC changes the gear of t, which it has begun itself, when nobody drives s any more."""
+    """The PLC changes the gear of t, which it has begun itself, when s is no longer driven."""
     scenario = f"""
 - {{at: 0.0, to: plc, do: auto_acknowledge, enabled: off}}
 - {{at: 0.01, to: t, do: select_gear, stage: 2{source}}}

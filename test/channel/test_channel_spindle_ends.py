@@ -102,7 +102,7 @@ def test_a_reset_before_the_positioning_has_gone_out() -> None:
     ],
 )
 def test_a_reset_ends_what_override_0_holds(program: str, units: dict[str, object]) -> None:
-    """The override comes back when no program lives any more."""
+    """The override comes back when no program is active any longer."""
     spindle = channel_spindle("S", "s", 4, MVS_SVS, ranges=GEAR_RANGES)
     machine = machine_of(spindle, units=units, gear_change=bool(units))
     scenario = (
@@ -125,7 +125,7 @@ def test_what_has_come_to_its_end_is_not_told_to_stop() -> None:
 
 
 def test_the_plc_hears_of_the_end_of_a_positioning_that_it_has_not_acknowledged() -> None:
-    """P-CHAN-00069: only the PLC knows whether the spindle stands."""
+    """P-CHAN-00069: only the PLC knows whether the spindle is at a standstill."""
     spindle = channel_spindle("S", "", 99, MVS_SVS)
     scenario = MANUAL + "- {at: 0.1, to: plc, do: acknowledge, id: 1}\n- {at: 1, to: channel, do: reset}"
     bench = run("M3 S1000\nM19 S.POS90", machine_of(spindle), scenario)
@@ -138,7 +138,7 @@ def test_the_plc_hears_of_the_end_of_a_positioning_that_it_has_not_acknowledged(
 
 @pytest.mark.parametrize("override", ["", "- {at: 1, to: s, do: set_override, percent: 0}\n"])
 def test_a_reset_homes_nothing(override: str) -> None:
-    """M05 above the control limit homes; a reset only stops, and a spindle that stands stays where it is."""
+    """M05 above the control limit homes; a reset only stops, and a spindle at a standstill stays where it is."""
     unit = replace(two_gears(), gears={1: replace(two_gears().gears[1], control_limit=60.0 * RPM)})
     machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": unit})
     bench = run("M3 S500\nG04 20", machine, override + "- {at: 3, to: channel, do: reset}")
@@ -149,7 +149,7 @@ def test_a_reset_homes_nothing(override: str) -> None:
 @pytest.mark.parametrize("end", ["reset", "M5", "M30"])
 @pytest.mark.parametrize("at", [1.05, 1.9], ids=["on the way", "at the change position"])
 def test_a_gear_change_of_the_plc_does_not_take_the_rotation_from_the_channel(end: str, at: float) -> None:
-    """The interrupted rotation would go on after it; but its owner has stopped it meanwhile."""
+    """The interrupted rotation would continue after it; but its owner has stopped it meanwhile."""
     machine = machine_of(channel_spindle("S", "s", 4, MOS), units={"s": two_gears(change_position=90.0)})
     words = {"reset": "G04 10", "M5": f"G04 {at}\nM5\nG04 10", "M30": f"G04 {at}"}[end]
     scenario = (
@@ -329,7 +329,7 @@ def test_a_coupling_of_people_is_none_of_the_program(again: str, at: float, end:
 
 @pytest.mark.parametrize("own", [False, True])
 def test_stop_at_program_end_stops_the_slaves_too(own: bool) -> None:
-    """The couplings have ended before; a coupling that the program has ended itself is none any more."""
+    """The couplings have ended before; a coupling that the program has ended itself no longer counts."""
     scenario = "- {at: 0, to: s, do: stop_at_program_end, enabled: on}"
     end = "#DISABLE AX LINK[1]\nG04 0.1" if own else ""
     bench = MachineBench(

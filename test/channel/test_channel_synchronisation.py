@@ -55,7 +55,7 @@ def test_the_path_moves_in_the_block_after_the_acknowledgement(
     kind: Synchronisation, first_held: int, acknowledged_at: float
 ) -> None:
     """Of four motions of 10 mm, two in rapid traverse, one machining and one after #EXPL SYN, which is the first that
-    waits for a PLC that acknowledges late; the ones before are over, and no setpoint moves until then.
+    waits for a PLC that acknowledges late; the ones before are finished, and no setpoint moves until then.
     """
     bench = MachineBench(
         "%P\nG00 X10 M03 S600\nX20\nG01 X30 F9000\n#EXPL SYN\nG00 X40\nM30",
@@ -144,7 +144,7 @@ def test_manual_blocks_wait_for_late_functions_too() -> None:
 
 
 def test_a_newer_function_of_the_spindle_takes_the_place_of_a_late_one() -> None:
-    """M05 follows at once: nobody waits for the speed of M03 any more, only for its acknowledgement."""
+    """M05 follows immediately: the speed of M03 is no longer awaited, only for its acknowledgement."""
     bench = run(
         "M03 S6000\nM05\n#EXPL SYN\nG01 X1 F3000",
         mill(m3=MVS_SLP | PLC_INFO, m5=MOS),

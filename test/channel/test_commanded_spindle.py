@@ -1,4 +1,4 @@
-"""What a channel notices of its spindle when commands of others come in the very block of its own."""
+"""A channel's view of its spindle when others command it in the same block."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_m3_in_the_block_of_a_gear_change() -> None:
 
 
 def test_commands_that_wait_from_the_block_of_m3_on() -> None:
-    """M3 is in work while they wait; the first of them begins when its speed is reached."""
+    """M3 is active while they wait; the first of them begins when its speed is reached."""
     watched = Watched()
     watched.speed(1000.0)
     for position in (90.0, 180.0):
@@ -108,7 +108,7 @@ def test_a_path_that_waits_notices_nothing() -> None:
 
 
 def test_a_program_notices_what_has_happened_before_it() -> None:
-    """Between two manual blocks; only the second one is told."""
+    """Between two manual blocks; only the second one is reported."""
     watched = Watched()
     watched.speed(1000.0)
     assert list(watched.notices(30, watched=False)) == []

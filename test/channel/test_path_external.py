@@ -1,4 +1,4 @@
-"""External setpoints on top of the path of a channel: both move the axis, each ends by itself (TX1250 2.6)."""
+"""External setpoints on top of the path of a channel: both move the axis, each ends separately (TX1250 2.6)."""
 
 from __future__ import annotations
 
@@ -192,7 +192,7 @@ def test_blocks_go_on_beside_the_offset_without_a_jump() -> None:
 
 @pytest.mark.parametrize("milliseconds", [600, 2300, 3900])
 def test_a_reset_of_the_channel_leaves_the_external_setpoints(milliseconds: int) -> None:
-    """They go on as they do without a path, to their own end."""
+    """They continue as they do without a path, to their own end."""
     bench = on_path(way=90.0)
     bench.run(milliseconds / 1000.0)
     assert bench.give("channel", "reset").accepted

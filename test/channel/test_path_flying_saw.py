@@ -105,7 +105,7 @@ def test_the_path_ends_while_the_saw_still_waits() -> None:
 
 @pytest.mark.parametrize("milliseconds", [300, 450, 1000, 2500])
 def test_decoupling_brakes_the_contribution_alone(milliseconds: int) -> None:
-    """Before, in and after the run-up; the path goes on beside its place."""
+    """Before, in and after the run-up; the path continues next to its place."""
     bench = conveyor()
     saw(bench)
     bench.run(milliseconds / 1000.0)
@@ -193,7 +193,7 @@ PATH_STOPS = "; the path stops on its ramp and the program is aborted"
 
 
 def test_a_saw_that_comes_too_late_is_a_fault() -> None:
-    """The path counts on the moving workpiece, so it does not go on without it."""
+    """The path counts on the moving workpiece, so it does not continue without it."""
     bench = conveyor()
     saw(bench, ahead=0.1)
     bench.run(0.5)

@@ -22,7 +22,7 @@ ROW = re.compile(
 
 
 def rows(result):
-    """(variant, direction) -> G, F least, F most, four peaks, G(b) where it stands; µm."""
+    """(variant, direction) -> G, F least, F most, four peaks, G(b) if given; µm."""
     table, variant = {}, ""
     for line in result.stdout.splitlines():
         if match := ROW.match(line):
@@ -65,7 +65,7 @@ def test_friction_compensation_makes_quadrant_peaks_5_times_smaller(comparison, 
 
 @pytest.mark.parametrize("way", ["ccw", "cw"])
 def test_feedforward_makes_a_circle_with_friction_compensation_10_times_rounder(comparison, way):
-    """Not by itself: without feedforward the compensation comes too early and makes peaks of its own …"""
+    """Not alone: without feedforward the compensation comes too early and makes peaks of its own …"""
     table = rows(comparison[0])
     assert table[FRICTION, way][0] > 10.0 * table[ALL, way][0]
 

@@ -1,4 +1,4 @@
-"""What the shells complete, by click's own completion; the machine is given by --machine."""
+"""Completion in the shells, by click's own completion; the machine is given by --machine."""
 
 import os
 import subprocess

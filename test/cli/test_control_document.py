@@ -1,4 +1,4 @@
-"""docs/control.md: each error number of its table is one of the code, with the meaning that stands beside it."""
+"""docs/control.md: each error number of its table is one of the code, with its meaning."""
 
 import inspect
 import re

@@ -81,7 +81,7 @@ def test_the_manual_s_hyperbola_and_what_four_points_make_of_it():
 
 @pytest.mark.parametrize("kind", ["polynomial", "hyperbola"])
 def test_a_machine_takes_the_lines_and_the_time_is_that_of_its_spindle(kind, tmp_path):
-    """The coefficients come to the kernel to the last bit; speed reached after the time that was told."""
+    """The coefficients come to the kernel to the last bit; speed reached after the time that was printed."""
     points = POINTS if kind == "polynomial" else POINTS[:3]
     result = fit(kind, points, "--a-min", 2000, "--top-speed", 36_000)
     assert result.exit_code == 0, result.output

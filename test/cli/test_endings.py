@@ -1,4 +1,4 @@
-"""How a run ends that is not left alone: interrupted, disk full; and what a terminal sees of it."""
+"""Early ends of a run: interrupt, full disk; and the terminal's view of them."""
 
 import os
 import pty

@@ -1,4 +1,4 @@
-"""What deserves a look in a machine file is told by every command that uses the file, and stays in recordings."""
+"""Notices about a machine file: printed by every command that uses the file, and kept in recordings."""
 
 import pytest
 from commands_support import MILL, call

@@ -17,7 +17,7 @@ def closed(radius, deviation=0.0, centre=(0.0, 0.0), angles=TURN):
 
 
 def rough(seed, size=1e-3, radius=25.0):
-    """A circle with random waves of up to 40 a turn, on random angles, off centre."""
+    """A circle with random waves of up to 40 per turn, on random angles, off centre."""
     draw = np.random.default_rng(seed)
     angles = np.sort(draw.uniform(0.0, 2 * np.pi, 700))
     deviation = sum(

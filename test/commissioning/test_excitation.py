@@ -14,10 +14,10 @@ from cnc_ptp.commissioning.excitation import (
     check_speeds,
     forth_and_back,
     highest_velocity,
+    motion_distance,
     motion_time,
     ramp_time,
     speed_ladder,
-    way,
 )
 from cnc_ptp.commissioning.timing import always
 from cnc_ptp.errors import CncError
@@ -38,12 +38,12 @@ def random_room(draw):
 
 @pytest.mark.parametrize("seed", range(30))
 def test_way_and_time_are_those_of_the_planner(seed):
-    """The planner drives the way in that time, with the steady seconds at full velocity."""
+    """The planner covers the distance in that time, with the steady seconds at full velocity."""
     draw = random.Random(seed)
     room = random_room(draw)
     velocity, steady = room.max_velocity * draw.uniform(0.01, 1.0), draw.uniform(0.01, 2.0)
     limits = Limits(velocity, room.acceleration, room.deceleration, room.jerk)
-    profile = plan_rest_to_rest(0.0, way(room, velocity, steady), limits)
+    profile = plan_rest_to_rest(0.0, motion_distance(room, velocity, steady), limits)
     assert profile.duration == pytest.approx(motion_time(room, velocity, steady), rel=1e-6)
     at_velocity = [
         later[0] - row[0] for row, later in itertools.pairwise(profile.rows) if row[3] == row[4] == 0.0 and row[2] > 0.0
@@ -86,7 +86,7 @@ def test_speeds_of_the_mill():
 def test_the_highest_velocity_is_what_the_travel_allows():
     short = Room("z", "mm", 0.0, -10.0, 10.0, 500.0, 2000.0, 2400.0, 50000.0)
     velocity = highest_velocity(short, always(0.5))
-    assert way(short, velocity, 0.5) == pytest.approx(0.98 * 20.0)
+    assert motion_distance(short, velocity, 0.5) == pytest.approx(0.98 * 20.0)
     assert highest_velocity(MILL, always(0.5)) == 500.0
 
 

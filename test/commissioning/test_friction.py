@@ -184,7 +184,7 @@ def test_repeated_and_unordered_cycles_count_once():
                 actual_position=np.zeros(len(phases([5.0]))),
                 actual_torque=phases([5.0]),
             ),
-            "P-ERR-27006 axis x: stands still at every constant velocity (-5, 5), the torque comes up to 5 and not above "
+            "P-ERR-27006 axis x: does not move at any constant velocity (-5, 5), the torque comes up to 5 and not above "
             "the friction: is the torque limit of the drive too low, or the axis blocked? no table was made",
         ),
     ],

@@ -14,7 +14,7 @@ def curve(points, scatter=0.0):
 
 
 def values(table, digits):
-    """What the table stands for, by the manual: velocity in mm/s, torque in N."""
+    """The meaning of the table by the manual: velocity in mm/s, torque in N."""
     speeds = [entry.velocity / 1000 for entry in table.entries]
     return speeds, [entry.current * table.scaling_factor / 1000 / digits for entry in table.entries]
 

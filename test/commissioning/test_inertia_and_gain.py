@@ -35,7 +35,7 @@ def torque_run(
     """Smooth motions with M = k·a + friction(v) + load; the torque of a row is the mean of the cycle before it, or the
     one of its beginning, whole digits of it.
 
-    The velocity is the momentary one, or that of a telegram without it: the way of the cycle before it; the set one is
+    The velocity is the momentary one, or that of a telegram without it: the distance of the cycle before it; the set one is
     `lag` cycles ahead.
     """
     fine = 20

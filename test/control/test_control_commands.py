@@ -26,7 +26,7 @@ def bench(
 
 
 def share(loop: ControlLoop) -> float:
-    """What part of the velocity the feedforward puts out once it has been coupled in or out at standstill."""
+    """The part of the velocity that the feedforward gives once it has been coupled in or out at standstill."""
     loop.step((0.0, 0.0, 0.0, 0.0), True)
     return run(loop, [(0.0, 10.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)])[0].feedforward_velocity / 10.0
 

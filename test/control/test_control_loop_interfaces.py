@@ -124,7 +124,7 @@ def test_velocity_controller_is_pi() -> None:
 
 
 def test_a_virtual_axis_is_where_it_is_told_to_be() -> None:
-    """No lag to monitor, nothing put out, open or closed."""
+    """No lag to monitor, no output, open or closed."""
     parameters = for_interface(
         "none",
         of_feedforward=feedforward(VEL | ACC, always_active=True),

@@ -55,7 +55,7 @@ class Record:
         self.velocity = np.array(velocity[1:])
         self.command_change = np.diff(command) / T
         self.share = np.array(share)
-        """What the feedforward puts out, all as velocity."""
+        """Output of the feedforward, all as velocity."""
         self.lag = np.array(lag)
 
 
@@ -83,7 +83,7 @@ def at_velocity(v: float, cycles: int = 1500) -> list[MotionState]:
 
 
 def settled_at(share: NDArray[np.float64], value: float) -> int:
-    """The first cycle from which on the feedforward puts out `value`."""
+    """The first cycle from which on the output of the feedforward is `value`."""
     off = np.flatnonzero(np.abs(share - value) > 1e-9 * max(1.0, abs(value)))
     return int(off[-1]) + 1 if len(off) else 0
 
@@ -247,7 +247,7 @@ def test_an_open_loop_takes_the_selection_over_at_once() -> None:
 
 
 def waited(v: float, cycles: int = 1500, at_cycle: int = 460) -> tuple[ControlLoop, list[tuple[int, float]]]:
-    """Selected at the constant velocity `v`; where and with what the wait was told."""
+    """Selected at the constant velocity `v`; where and with what the wait was reported."""
     loop, told = made_loop(VEL), []
     for cycle, state in enumerate(at_velocity(v, cycles)):
         if cycle == at_cycle:

@@ -1,4 +1,4 @@
-"""What the feedforward puts out: weights, delays, lead and prefilter against an integrated continuous profile."""
+"""Output of the feedforward: weights, delays, lead and prefilter against an integrated continuous profile."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def test_lead_and_delay_change_the_lag_in_constant_acceleration(lead: int, delay
 @pytest.mark.parametrize("cycles", [2, 5, 16])
 def test_the_prefilter_is_the_mean_of_the_last_cycles(cycles: int) -> None:
     m = means()
-    before = np.zeros(cycles - 1)  # at rest before the begin
+    before = np.zeros(cycles - 1)  # at rest before the start
 
     def filtered(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.convolve(np.concatenate([before, values]), np.full(cycles, 1.0 / cycles), mode="valid")

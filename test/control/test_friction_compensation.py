@@ -173,7 +173,7 @@ def test_slowing_down_and_going_on_is_no_reversal(rest: int) -> None:
 
 @pytest.mark.parametrize("rest", [0, 1, 2, 3])
 def test_a_short_rest_in_a_reversal_belongs_to_it(rest: int) -> None:
-    """The way back that is in sight makes the weight fall towards the rest, as far as it has been in sight."""
+    """The return that is in sight makes the weight fall towards the rest, as far as it has been in sight."""
     states = motion(through_zero(rest, -1.0))
     of = friction(reversal_lookahead=4, position_delay=0.0)
     v = np.array([state[1] for state in states])
@@ -256,7 +256,7 @@ def test_an_open_loop_forgets_the_direction_and_the_values_on_the_way() -> None:
 
 @pytest.mark.parametrize("scale", [0.25, 500.0])
 def test_the_current_goes_to_the_drive_as_torque(scale: float) -> None:
-    """P-AXIS-00325, 00326, 00392: digits a Nm; with no scaling (110465) nothing is put out."""
+    """P-AXIS-00325, 00326, 00392: digits per Nm; with no scaling (110465) there is no output."""
     states = motion(through_zero(0, -1.0))
     cycles = run(make_loop(control(friction=FRICTION, torque_scale=scale)), states)
     assert np.abs(column(cycles, "additive_torque") * scale - column(cycles, "friction_current")).max() < 1e-9

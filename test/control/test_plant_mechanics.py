@@ -44,7 +44,7 @@ def test_a_current_loop_delays_the_torque() -> None:
 
 @pytest.mark.parametrize("encoder_at_load", [True, False])
 def test_the_load_follows_behind_the_play(encoder_at_load: bool) -> None:
-    """Forward it is half the play behind the motor, backward half of it ahead, in between it stands."""
+    """Forward it is half the play behind the motor, backward half of it ahead, in between it is at rest."""
     play = 0.05
     of = plant(backlash=play, encoder_at_load=encoder_at_load)
     drive, motor = CascadedDrive(of, cycle_time=T), CascadedDrive(plant(), cycle_time=T)

@@ -13,7 +13,7 @@ from cnc_ptp.parameters.view.control_view import PlantParameters
 
 Inputs = list[tuple[float, float, float]]
 THERE_AND_BACK: Inputs = [(20.0 * math.sin(2.0 * math.pi * 2.0 * cycle * T), 0.0, 0.0) for cycle in range(600)]
-"""Two turns of a circle: stops, stands and reverses."""
+"""Two turns of a circle: stops, rests and reverses."""
 
 
 def largest_deviations(of: PlantParameters, inputs: Inputs) -> Point:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,9 @@ ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 FOLDERS = (ROOT, ROOT / "cnc_ptp", ROOT / "cnc_ptp" / "control")
 """What the paths of a document may be relative to."""
+FILES = Counter(file.name for part in ("cnc_ptp", "test", "bench", "figures") for file in (ROOT / part).rglob("*.py"))
 NAMED = re.compile(r"`((?:[\w.-]+/)+[\w-]+\.(?:py|yaml|xml|nc|csv))(?: ([\w.]+))?`")
+BARE = re.compile(r"`(\w+\.py)\b")
 MADE_BY_READER = "runs/"
 
 
@@ -30,6 +33,11 @@ def missing(text: str) -> list[str]:
     return wrong
 
 
+def ambiguous(text: str) -> list[str]:
+    """File names without a folder that the project does not have exactly once."""
+    return [name for name in BARE.findall(text) if FILES[name] != 1]
+
+
 def defines(source: str, name: str) -> bool:
     """Whether a module has a class, function, method or constant of this name."""
     return bool(re.search(rf"^\s*(?:class|def|async def) {name}\b|^{name}\b *[:=]", source, re.MULTILINE))
@@ -43,3 +51,12 @@ def test_what_a_page_names_exists(page: Path) -> None:
 def test_a_wrong_name_is_found() -> None:
     text = "`axis/axis.py Axis`, `axis/none.py`, `axis/axis.py Axis.no_such_method`, `config/mill.yaml`, `runs/x.yaml`"
     assert missing(text) == ["axis/none.py", "axis/axis.py no_such_method"]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_file_name_without_folder_is_unique(page: Path) -> None:
+    assert ambiguous(page.read_text(encoding="utf-8")) == []
+
+
+def test_an_ambiguous_file_name_is_found() -> None:
+    assert ambiguous("`wiring.py`, `axis.py Axis`, `none.py`, `axis/axis.py`") == ["axis.py", "none.py"]

@@ -1,4 +1,4 @@
-"""What the head of a figure may choose: panels, units, an NC program, another kind of picture."""
+"""Choices in the head of a figure: panels, units, an NC program, another kind of picture."""
 
 import numpy as np
 import pytest

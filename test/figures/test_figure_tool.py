@@ -65,7 +65,7 @@ def test_head_with_an_unknown_key(tmp_path):
 
 def test_head_with_a_key_twice(tmp_path):
     file = written(tmp_path, HEAD, "# title: Another\n" + MOVE)
-    assert fault_of(file) == "figure move.yaml: 'title' stands twice in the head; no picture was drawn"
+    assert fault_of(file) == "figure move.yaml: 'title' occurs twice in the head; no picture was drawn"
 
 
 # runs

@@ -131,7 +131,7 @@ def test_new_target_in_the_stop_phase_goes_on_to_5000() -> None:
     position, velocity, acceleration = (x(name, f"set_{field}") for field in ("position", "velocity", "acceleration"))
     start, change = cycle_of(name, 0), cycle_of(name, 1)
     brake_begin = start + cycles(3000.0 / 2000.0)
-    assert (brake_begin, change) == (1550, 1800)  # 0.25 s after the begin of the first positioning's brake phase
+    assert (brake_begin, change) == (1550, 1800)  # 0.25 s after the start of the first positioning's brake phase
     way, v, a = through([(0.1, -50000.0), (0.15, 0.0)], 2000.0, 0.0)
     state = (position[change], velocity[change], acceleration[change])
     assert state == pytest.approx((2500.0 + way, v, a), abs=1e-8)
@@ -195,7 +195,7 @@ def test_compensation_is_a_trapezoid_over_the_whole_length(
     base = 2000.0 * ((np.arange(begin, begin + len(t)) - start) * CYCLE_TIME - 0.5 * RAMP)
     way = x(name, "set_position")[during] - base
     assert way[-1] == pytest.approx(reached, abs=1e-6)
-    assert way[-1] - way[-10] != 0.0  # it goes on to the very end of L
+    assert way[-1] - way[-10] != 0.0  # it continues to the very end of L
     assert base[-1] - base[0] == pytest.approx(length)
     assert x(name, "set_position")[-1] == pytest.approx(10000.0 + reached, abs=1e-6)
     bit = x(name, "status_bits").astype(int) & (1 << 13)

@@ -79,7 +79,7 @@ def test_change_of_the_factor_keeps_the_position_and_steps_the_velocity():
 
 @pytest.mark.parametrize(("name", "factor"), [("decoupling_1_0", 1.0), ("decoupling_0_5", 0.5)])
 def test_decoupled_slave_goes_on_and_stops_alone(name, factor):
-    """Its stop takes the way v²/2A + v·A/2J, the master goes on and stops in its own."""
+    """Its stopping distance is v²/2A + v·A/2J; the master continues and stops in its own."""
     decoupled, stop, last = (cycle_of(name, text) for text in ("y: decouple", "y: stop", "x: stop"))
     assert error_of(name, factor, slice(0, stop)) <= 1e-9
     assert decoupled < stop < last

@@ -133,7 +133,7 @@ def test_path_does_not_wait():
 
 
 def test_path_waits_for_the_speed():
-    """40·√2 mm at 25 mm/s a block; the path stands from the command to the block after the speed, and never before."""
+    """40·√2 mm at 25 mm/s per block; the path is at rest from the command to the block after the speed, and never before."""
     run = run_of("spindle_synchronised")
     path, reached = path_of(run), run.column("s1", "speed_reached")
     given = [round(marker.time / CYCLE_TIME) for marker in run.markers if marker.text.startswith("set speed")]

@@ -1,4 +1,4 @@
-"""The commissioning walk-through of docs/control.md: its short commands, one after the other, print what stands there."""
+"""The commissioning walk-through of docs/control.md: its short commands, one after the other, print what the document shows."""
 
 import os
 import subprocess

@@ -291,7 +291,7 @@ def test_the_death_of_a_client_stops_nothing(client, machine):
     other.destroy_node()
     other.executor_of_test.shutdown()
     client.wait_last("x", lambda block: stands(block) and block.set_position[-1] == 0.0, "the end of the move")
-    client.wait_blocks("channel", 3)  # the channel hears of it a block later
+    client.wait_blocks("channel", 3)  # the channel is notified a block later
 
 
 def test_run_program_action(client, program):
@@ -453,7 +453,7 @@ def test_stop_all_ends_the_run_and_the_recording_verifies(client, graph, recordi
 
 
 def test_a_clock_that_is_told_to_end_says_so(ros_domain, machine):
-    """A clock ends by itself with status 0 in every good run; the supervisor must be able to tell the two apart."""
+    """A clock ends with status 0 in every good run; the supervisor must be able to tell the two apart."""
     clock = subprocess.Popen([sys.executable, "-m", "cnc_ptp.nodes.clock", str(machine)], stderr=subprocess.PIPE)
     try:
         wait_for_handler(clock.pid, signal.SIGTERM)

@@ -99,10 +99,10 @@ def test_the_run_ends():
     bridge = Bridge()
     bridge.call("y/couple", COUPLE, "a call")
     bridge.couplings.end()
-    assert bridge.told() == [("a call", (False, 26115, "axis y: couple without an answer: the run is over", 0))]
+    assert bridge.told() == [("a call", (False, 26115, "axis y: couple without an answer: the run has ended", 0))]
     bridge.is_over = True
     bridge.call("y/couple", COUPLE, "a later one")
-    text = "axis y: couple refused: the run is over; nothing was changed"
+    text = "axis y: couple refused: the run has ended; nothing was changed"
     assert bridge.told() == [("a later one", (False, 26115, text, 0))]
 
 

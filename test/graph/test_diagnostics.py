@@ -1,4 +1,4 @@
-"""What /diagnostics says of a unit, without a graph: the worst finding first, numbers with their units."""
+"""The message on /diagnostics about a unit, without a graph: the worst finding first, numbers with their units."""
 
 import re
 from pathlib import Path
@@ -137,7 +137,7 @@ def test_a_spindle_and_a_channel_say_what_they_do():
     ("fields", "result"),
     [
         ({}, (DiagnosticStatus.OK, "running")),
-        ({"run_done": True}, (DiagnosticStatus.OK, "the run is over")),
+        ({"run_done": True}, (DiagnosticStatus.OK, "the run has ended")),
         ({"run_failed": True}, (DiagnosticStatus.ERROR, "the run has failed")),
     ],
 )

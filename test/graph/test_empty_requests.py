@@ -48,7 +48,7 @@ REFUSED = {
     ("channel", "start"): "no program is loaded",
     ("channel", "measuring_event"): "no function of the running block waits for one",
 }
-"""Reasons, in a unit that stands."""
+"""Reasons, in a unit at a standstill."""
 WHOLE_TEXT = {
     ("channel", "mdi"): "mdi line 1 column 1 '': no main program",
     ("plc", "acknowledge"): "plc plc: acknowledge refused: no request 0 waits; nothing was changed. Waiting: none",

@@ -11,7 +11,7 @@ from cnc_ptp.nodes import convert, process, supervisor
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode, require_writable
-from cnc_ptp.nodes.supervisor import RunOrder, Supervisor
+from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
@@ -135,7 +135,7 @@ def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):
     """Sooner than any process can be there."""
     monkeypatch.setattr(supervisor, "START_TIMEOUT", 0.1)
     machine = str(one_axis_machine(tmp_path))
-    run_of = Supervisor(read_machine(machine), RunOrder(machine), show=lambda monitor: None)
+    run_of = Supervisor(read_machine(machine), RunOptions(machine), show=lambda monitor: None)
     run_of.run()
     assert run_of.failures == [
         "P-ERR-26105 the nodes did not find each other within 0.1 s (not there: x, plc, clock); the run ends"

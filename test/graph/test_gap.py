@@ -1,4 +1,4 @@
-"""A clock that leaves out a tick, and other faults of what arrives: the axis stops by itself, no cycle is left out."""
+"""A clock that leaves out a tick, and other faults of what arrives: the axis stops automatically, no cycle is left out."""
 
 import time
 
@@ -210,7 +210,7 @@ def test_the_last_tick_ends_the_run_after_the_blocks_before_it(bench):
     bench.spin_until(lambda: len(bench.outside.blocks) == 4)
     record = bench.axis.command(Command("x", "move_absolute", MOVE))
     assert (record.accepted, record.error_id) == (False, 26115)
-    assert record.message == "axis x: move_absolute refused: the run is over; nothing was changed"
+    assert record.message == "axis x: move_absolute refused: the run has ended; nothing was changed"
     bench.spin_until(lambda: bench.outside.records[-1].error_id == 26115)
 
 

@@ -1,4 +1,4 @@
-"""What the PLC makes of jog messages: a command for each change, an end for each silence."""
+"""Jog messages at the PLC: a command for each change, an end for each silence."""
 
 import math
 from itertools import count
@@ -78,7 +78,7 @@ def test_a_second_client_is_ignored_while_the_first_one_jogs(jogs):
 
 
 def test_each_client_numbers_its_own_messages(jogs):
-    """After a client that has sent 1200 the other one goes on with 31."""
+    """After a client that has sent 1200 the other one continues with 31."""
     assert jogs.heard("x", 5.0, 0.0, sequence=30) == 5.0 and jogs.heard("x", 0.0, 0.1, sequence=31) == 0.0
     assert jogs.heard("x", 5.0, 0.2, client="b", sequence=1199) == 5.0
     assert jogs.heard("x", 0.0, 0.3, client="b", sequence=1200) == 0.0

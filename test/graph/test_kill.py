@@ -66,7 +66,7 @@ def check_every_reader_opens(recording):
 
 
 def check_ramps(recorded, *, skip, ended):
-    """No axis goes beyond its acceleration and jerk, and each that lives stands at the end."""
+    """No axis goes beyond its acceleration and jerk, and each that is alive is at a standstill at the end."""
     machine = read_machine(str(MILL))
     for name in ("x", "y"):
         axis, rows = machine.axes[name], recorded.states[f"/{name}/state"]

@@ -1,4 +1,4 @@
-"""What rqt, PlotJuggler and `ros2 topic delay` see of a run in real time: stamps, live states, joint states, /rosout."""
+"""A run in real time as rqt, PlotJuggler and `ros2 topic delay` see it: stamps, live states, joint states, /rosout."""
 
 import math
 import statistics

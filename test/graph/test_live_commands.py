@@ -166,7 +166,7 @@ def test_a_second_jog_is_told_that_it_is_ignored(machine):
 
 
 def is_ignored_beside_a_jog() -> bool:
-    """Whether a second jog is ignored; False if the first one has ended by itself meanwhile."""
+    """Whether a second jog is ignored; False if the first one has ended automatically meanwhile."""
     first = subprocess.Popen(command("jog", "y", "+", "--speed", "0.5"), stdout=subprocess.PIPE, text=True)
     second = None
     while first.poll() is None and second is None:
@@ -199,7 +199,7 @@ def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, fold
         falling = velocity[next(n for n, v in enumerate(velocity) if v < 20.0 - 1e-9) :]
         assert falling == sorted(falling, reverse=True) and falling[-1] == 0.0
         assert len([v for v in falling if v > 0.0]) > 5, "it has stopped without a ramp"
-        assert len(velocity) - len(falling) < 1500, "it went on for more than a second"
+        assert len(velocity) - len(falling) < 1500, "it continued for more than a second"
         told = "plc: no message on /y/jog for 200 ms; the jog of y ends"
         client.spin_until(lambda: any(event.text == told and event.error_id == 26134 for event in client.events), told)
         if number == signal.SIGSTOP:
@@ -207,7 +207,7 @@ def test_an_axis_halts_on_its_ramp_when_the_client_is_gone(machine, number, fold
             jog.send_signal(signal.SIGCONT)
             assert jog.wait(timeout=30.0) == 1
             moved = [v for n in range(seen, len(client.blocks["y"])) for v in client.blocks["y"][n].set_velocity]
-            assert not any(moved), "it has begun again by itself"
+            assert not any(moved), "it has started again on its own"
     finally:
         jog.kill()
         jog.wait()

@@ -1,4 +1,4 @@
-"""What commands say when a machine, or a part of it, does not answer."""
+"""Messages of commands when a machine, or a part of it, does not answer."""
 
 from contextlib import nullcontext
 

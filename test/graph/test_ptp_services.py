@@ -151,7 +151,7 @@ def test_external_setpoints_by_topic(client):
 
 
 def test_a_target_of_0_is_a_target(client):
-    """NaN leaves a target out, 0 does not: 70082 comes when the axis stands elsewhere."""
+    """NaN leaves a target out, 0 does not: 70082 comes when the axis is elsewhere."""
     client.done("z", "external_enable", mode="absolute", target=0.0)
     packet(client, "z", 3.0, 1, velocity=0.001)
     packet(client, "z", 3.0, 0)
@@ -170,6 +170,6 @@ def test_feed_releases_by_service_and_topic(client):
     client.write("/z/feed_release", msg.FeedRelease, valid=True, forward=True, backward=False)
     stands_at(client, "z", begin + 20.0)
     client.done("z", "move_relative", distance=-20.0, **FROM_THE_AXIS)
-    client.wait_last("z", lambda block: block.status_bits[-1] & withheld, "z waits for the way back")
+    client.wait_last("z", lambda block: block.status_bits[-1] & withheld, "z waits for the return")
     client.write("/z/feed_release", msg.FeedRelease, valid=False)
     stands_at(client, "z", begin)

@@ -1,4 +1,4 @@
-"""What besides the blocks is recorded in the graph, and published again with its quality of service."""
+"""Topics besides the blocks: recorded in the graph, and published again with their quality of service."""
 
 import re
 import subprocess

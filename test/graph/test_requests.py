@@ -1,4 +1,4 @@
-"""What `ros2 service call` does: a YAML mapping set on the fields of a request; and what an empty request means."""
+"""Requests as `ros2 service call` makes them: a YAML mapping set on the fields; the meaning of an empty request."""
 
 import pytest
 import yaml

@@ -1,4 +1,4 @@
-"""A second node for a unit: it is refused and told who has the unit; the first one goes on undisturbed."""
+"""A second node for a unit: it is refused and told who has the unit; the first one continues undisturbed."""
 
 import os
 import signal

@@ -135,7 +135,7 @@ def test_a_factor_by_topic_that_falls_silent_freezes(client):
     assert texts == ["plc: no message on /c/coupling_factor for 1000 ms; the factor is unchanged"]
     client.done("x", "move_absolute", target=0.0, velocity=200.0)
     client.shows("x", "set_position", 0.0)
-    client.wait_last("c", lambda block: abs(block.set_position[-1]) < 1e-6, "the way back with the same factor")
+    client.wait_last("c", lambda block: abs(block.set_position[-1]) < 1e-6, "the return with the same factor")
     client.done("c", "decouple", target=float("nan"), velocity=float("nan"))
 
 

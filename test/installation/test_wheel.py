@@ -1,4 +1,4 @@
-"""What a wheel puts where: `ros2 run` and launch look for executables in lib/cnc_ptp of the prefix."""
+"""Files of a wheel and their places: `ros2 run` and launch look for executables in lib/cnc_ptp of the prefix."""
 
 import os
 import shutil

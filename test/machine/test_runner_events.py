@@ -1,4 +1,4 @@
-"""State changes are told as events, with the cycle and the program line."""
+"""State changes are reported as events, with the cycle and the program line."""
 
 from machine_support import MILL
 

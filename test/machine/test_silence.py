@@ -1,4 +1,4 @@
-"""Who has fallen silent: each source once, in seconds or in cycles."""
+"""Silent sources: each is reported once, in seconds or in cycles."""
 
 from cnc_ptp.machine.silence import Silence
 

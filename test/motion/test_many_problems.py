@@ -58,7 +58,7 @@ def planned_again(problems: list[Problem], profiles: list[Profile], seed: int) -
 def assert_lands_at_the_same_end(problems: list[Problem], profiles: list[Profile], seed: int) -> None:
     """Exactly at the same end, within the limits, and not later; not earlier either where nothing can be gained.
 
-    Near the target the time is the cube root of the way, so one unit in its last place moves it by 1e-5 of the whole.
+    Near the target the time is the cube root of the distance, so one unit in its last place moves it by 1e-5 of the whole.
     Only a return from a stop (seven phases at reduced velocity, TX1250 2.1) can be planned faster once it moves.
     """
     again = planned_again(problems, profiles, seed)

@@ -66,7 +66,7 @@ def test_reduced_velocity_comes_from_the_smaller_ramp_and_the_ramps_use_their_ow
 
 
 def way_of_ramps(v: float, limits: Limits) -> float:
-    """The way of both ramps, each V/2·(V/A + A/J), or V·√(V/J) where A is not reached."""
+    """The distance of both ramps, each V/2·(V/A + A/J), or V·√(V/J) where A is not reached."""
     _, up, down, jerk = limits
     return sum(0.5 * v * (v / a + a / jerk) if v * jerk >= a * a else v * math.sqrt(v / jerk) for a in (up, down))
 

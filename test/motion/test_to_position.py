@@ -53,7 +53,7 @@ def test_direct_reversal_does_not_stand_still_and_is_faster(check_table):
 
 
 def test_override_down_and_up_again(check_table):
-    """TX1250 2.2: override 100 % -> 75 % -> 100 % on the way from 0 to 5000 mm."""
+    """TX1250 2.2: override 100 % -> 75 % -> 100 % from 0 to 5000 mm."""
     profile = plan_rest_to_rest(0.0, 5000.0, LIMITS)
     for moment, velocity in ((0.7, 1500.0), (0.75, 2000.0)):
         p, v, a, _ = profile.state_at(moment)

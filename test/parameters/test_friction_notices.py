@@ -18,7 +18,7 @@ def warnings(text: str) -> list[str]:
 
 
 def line_of(text: str, part: str) -> str:
-    """m.yaml:line:column where the value behind `part` stands in the section of x."""
+    """m.yaml:line:column of the value behind `part` in the section of x."""
     at = text.index(part, text.index("\n/x:")) + len(part)
     return f"m.yaml:{text.count(chr(10), 0, at) + 1}:{at - text.rindex(chr(10), 0, at)}"
 

@@ -147,9 +147,9 @@ def test_override_changes_at_random_blocks_keep_limits_and_continuity_and_the_ta
 
         def command(block, interpolator=interpolator, steps=steps):
             if block % steps == 0:
-                interpolator.set_velocity_factor(draw.choice([0.0, 0.1, 0.5, 1.0, 1.2, 1.5, draw.random()]))
+                interpolator.set_override(draw.choice([0.0, 0.1, 0.5, 1.0, 1.2, 1.5, draw.random()]))
             if block == 1000:
-                interpolator.set_velocity_factor(1.0)
+                interpolator.set_override(1.0)
 
         rows = run_alone(interpolator, command)
         assert interpolator.done
@@ -163,14 +163,14 @@ def test_override_changes_the_velocity_and_limits_cap_it():
     interpolator.start(line_of(100.0), LIMITS, 50.0)
     fastest = {}
     for factor in (1.0, 0.4, 1.4, 3.0):
-        interpolator.set_velocity_factor(factor)
+        interpolator.set_override(factor)
         fastest[factor] = interpolator.step(200, T)[-1][1]
     assert fastest == pytest.approx({1.0: 50.0, 0.4: 20.0, 1.4: 70.0, 3.0: 100.0}, rel=1e-12)
 
 
 def test_the_factor_holds_for_later_elements_and_infinite_feed_is_the_limit():
     interpolator = PathInterpolator()
-    interpolator.set_velocity_factor(0.5)
+    interpolator.set_override(0.5)
     interpolator.start(line_of(100.0), LIMITS, math.inf)
     assert interpolator.step(200, T)[-1][1] == 50.0
 
@@ -179,14 +179,14 @@ def test_feed_hold_and_resume():
     interpolator = PathInterpolator()
     interpolator.start(line_of(20.0), LIMITS)
     rows = interpolator.step(100, T)
-    interpolator.set_velocity_factor(0.0)
+    interpolator.set_override(0.0)
     rows += interpolator.step(200, T)
     assert rows[-1][1:] == (0.0, 0.0, 0.0, False)
     assert not interpolator.stopped
     held = rows[-1][0]
     assert interpolator.distance_to_go == 20.0 - held
     assert interpolator.step(50, T) == [(held, 0.0, 0.0, 0.0, False)] * 50
-    interpolator.set_velocity_factor(1.0)
+    interpolator.set_override(1.0)
     rows += run_alone(interpolator)
     assert_smooth(rows, LIMITS)
     assert interpolator.step(1, T)[0] == (20.0, 0.0, 0.0, 0.0, True)
@@ -194,17 +194,17 @@ def test_feed_hold_and_resume():
 
 def test_start_under_feed_hold_waits():
     interpolator = PathInterpolator()
-    interpolator.set_velocity_factor(0.0)
+    interpolator.set_override(0.0)
     interpolator.start(line_of(5.0), LIMITS)
     assert interpolator.step(20, T) == [(0.0, 0.0, 0.0, 0.0, False)] * 20
-    interpolator.set_velocity_factor(1.0)
+    interpolator.set_override(1.0)
     rows = interpolator.step(5, T)
     assert [row[:4] for row in rows] == [plan_rest_to_rest(0.0, 5.0, LIMITS).state_at(n * T) for n in range(1, 6)]
 
 
 def test_element_without_length_ends_also_under_feed_hold():
     interpolator = PathInterpolator()
-    interpolator.set_velocity_factor(0.0)
+    interpolator.set_override(0.0)
     interpolator.start(line_of(0.0), LIMITS)
     assert interpolator.step(1, T) == []
     assert interpolator.done
@@ -219,7 +219,7 @@ def test_in_the_brake_phase_the_table_is_kept_to_the_bit():
         interpolator.step(braking, T)
     assert commanded.state[2] < 0.0
     for factor in (2.0, 0.5, 0.0, 1.0):
-        commanded.set_velocity_factor(factor)
+        commanded.set_override(factor)
         assert commanded.step(3, T) == plain.step(3, T)
 
 
@@ -230,7 +230,7 @@ def test_a_factor_before_the_first_cycle_of_an_element_keeps_its_instant():
         interpolator.step(10, T)
     surplus = interpolator.remaining_time
     interpolator.start(line_of(2.0), LIMITS)
-    interpolator.set_velocity_factor(0.5)
+    interpolator.set_override(0.5)
     expected = plan_rest_to_rest(0.0, 2.0, LIMITS._replace(velocity=50.0, acceleration=2000.0)).state_at(surplus)
     assert interpolator.step(1, T)[0][:4] == pytest.approx(expected, rel=1e-9, abs=1e-15)
 
@@ -245,7 +245,7 @@ def test_stop_leaves_the_path_on_the_geometry(draw_arc, draw_axes):
         rows = interpolator.step(draw.randrange(1, 400), T)
         interpolator.stop()
         interpolator.stop()
-        interpolator.set_velocity_factor(0.9)
+        interpolator.set_override(0.9)
         rows += run_alone(interpolator)
         assert interpolator.stopped
         assert_smooth(rows, limits)
@@ -287,7 +287,7 @@ def test_override_does_not_touch_a_dwell():
     interpolator = PathInterpolator()
     interpolator.dwell(0.0105)
     interpolator.step(4, T)
-    interpolator.set_velocity_factor(0.0)
+    interpolator.set_override(0.0)
     assert len(interpolator.step(100, T)) == 6
     assert interpolator.remaining_time == pytest.approx(0.0005, abs=1e-15)
 
@@ -316,10 +316,10 @@ def test_refusals():
     interpolator = PathInterpolator()
 
     def refused(call):
-        before = interpolator.state, interpolator.factor
+        before = interpolator.state, interpolator.override
         with pytest.raises(CncError) as fault:
             call()
-        assert (interpolator.state, interpolator.factor) == before
+        assert (interpolator.state, interpolator.override) == before
         return str(fault.value)
 
     assert refused(lambda: interpolator.start(line_of(1.0), LIMITS, 0.0)) == (
@@ -335,8 +335,8 @@ def test_refusals():
         "P-ERR-22112 dwell of -1.0 s must be between 0 and 1e+09 s; it is not started"
     )
     for factor, text in ((-0.1, "-0.1"), (math.nan, "nan"), (1e4, "10000.0")):
-        assert refused(lambda factor=factor: interpolator.set_velocity_factor(factor)) == (
-            f"P-ERR-22113 path velocity factor {text} must be between 0 and 1000; it is not changed"
+        assert refused(lambda factor=factor: interpolator.set_override(factor)) == (
+            f"P-ERR-22113 path override {text} must be between 0 and 1000; it is not changed"
         )
     interpolator.start(line_of(10.0), LIMITS)
     interpolator.step(1, T)
@@ -375,9 +375,9 @@ def test_steps_under_random_overrides_holds_and_stops(seed):
         if block == stop_at:
             interpolator.stop()
         elif draw.random() < 0.3 and block < 60:
-            interpolator.set_velocity_factor(draw.choice([0.0, 0.3, 1.0, 1.7]))
+            interpolator.set_override(draw.choice([0.0, 0.3, 1.0, 1.7]))
         elif block >= 60 and stop_at is None:
-            interpolator.set_velocity_factor(1.0)
+            interpolator.set_override(1.0)
 
     rows = run_alone(interpolator, at_block)
     s = v = 0.0

@@ -1,4 +1,4 @@
-"""The PLC: end of a run, stop of everything, life sign, watchdog, abort of runs that cannot go on."""
+"""The PLC: end of a run, stop of everything, life sign, watchdog, abort of runs that cannot continue."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def test_a_program_that_nobody_will_help_is_aborted(program: str, scenario: str,
 
 
 @pytest.mark.parametrize(
-    ("override", "orders", "reason"),
+    ("override", "command", "reason"),
     [
         (0, "start, direction: cw, speed_rpm: 500", "1 of the PLC's commands to carry out: it is held by override 0"),
         (0, "orient, position_deg: 90", "1 of the PLC's commands to carry out: it is held by override 0"),
@@ -128,11 +128,11 @@ def test_a_program_that_nobody_will_help_is_aborted(program: str, scenario: str,
         ),
     ],
 )
-def test_a_run_with_open_commands_of_the_plc_is_no_success(override: int, orders: str, reason: str) -> None:
+def test_a_run_with_open_commands_of_the_plc_is_no_success(override: int, command: str, reason: str) -> None:
     spindle = replace(MILL.spindles["s"], speed_reached_band=0.0, speed_time=0.0, feedback="SPEED", open_loop=True)
     machine = replace(MILL, spindles={"s": spindle if override else MILL.spindles["s"]})
     percent = f"- {{at: 0, to: s, do: set_override, percent: {override}}}"
-    scenario = f"{percent}\n- {{at: 0.1, to: s, do: {orders}, source: plc}}"
+    scenario = f"{percent}\n- {{at: 0.1, to: s, do: {command}, source: plc}}"
     bench = MachineBench(None, scenario, machine=machine).run()
     text = (
         f"plc plc: spindle s still has {reason}, but the scenario is finished; everything is stopped and the run ends"

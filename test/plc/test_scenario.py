@@ -337,7 +337,7 @@ def test_the_example_scenario_runs_on_the_example_program() -> None:
 
 @pytest.mark.parametrize("word", ["on", "off"])
 def test_the_former_name_of_enabled_is_still_read(word: str) -> None:
-    """Scenarios and recordings from before the field was called `enabled` go on to work."""
+    """Scenarios and recordings from before the field was called `enabled` still work."""
     (entry,) = parse(f"- {{at: 0, to: x, do: power, on: {word}}}")
     assert entry.command.arguments == {"enabled": word == "on"}
 

@@ -86,7 +86,7 @@ def test_numbers_survive_to_the_bit(cycles: list[int], values: tuple[float, ...]
             "cycle;position;velocity;acceleration;direction\n",
             f"1 column 'cycle' is missing; the first line must name {COLUMNS}",
         ),
-        (HEADER.replace("velocity", "cycle"), f"1 column 'cycle' stands twice; the first line must name {COLUMNS}"),
+        (HEADER.replace("velocity", "cycle"), f"1 column 'cycle' occurs twice; the first line must name {COLUMNS}"),
         (HEADER, "1 no setpoint follows the first line"),
         (HEADER + "\n \n,,,,\n", "1 no setpoint follows the first line"),
         (HEADER + "0,0,0,0\n", "2 '0,0,0,0' has 4 values instead of 5"),
@@ -274,7 +274,7 @@ def test_stop_all_drops_the_rows() -> None:
 
 
 def test_a_run_waits_for_the_rows_and_ends_with_external_setpoints_enabled(tmp_path: Path) -> None:
-    """Rows wait for 3 s in which everything stands; the run ends 0.2 s after the last motion, still enabled."""
+    """Rows wait for 3 s in which nothing moves; the run ends 0.2 s after the last motion, still enabled."""
     rows = generator(300.0, first_cycle=3000)
     entries = read_entries(PTP, program=None, scenario=write(tmp_path, MOVE, a=csv(rows)))
     units = build_units(PTP, scenario=entries)

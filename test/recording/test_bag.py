@@ -1,4 +1,4 @@
-"""What rosbag2 finds of a recording: metadata in the file and beside it, quality of service, hashes of the types."""
+"""A recording as rosbag2 reads it: metadata in the file and next to it, quality of service, hashes of the types."""
 
 import random
 import shutil

@@ -1,4 +1,4 @@
-"""What of a recording has a plot, columns as texts, commands in words."""
+"""Plots of a recording: which units and columns, columns as texts, commands in words."""
 
 import base64
 import zlib

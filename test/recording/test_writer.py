@@ -1,4 +1,4 @@
-"""What the writer puts into the file, read back by the readers of mcap and rosbags, and what it refuses."""
+"""The writer's file, read back by the readers of mcap and rosbags, and its refusals."""
 
 import os
 import signal

@@ -108,7 +108,7 @@ def test_plc_spindle_gets_its_commands_and_acknowledges_by_itself(machine: str, 
 
 
 def test_nc_waits_for_the_plc_alone_with_a_plc_spindle() -> None:
-    """The reports of the spindle do not count: the PLC acknowledges M05 before it stands."""
+    """The reports of the spindle do not count: the PLC acknowledges M05 before it is at a standstill."""
     bench = clean(example("plc_spindle.yaml", "din.nc"))
     stop = told_at(bench, "stop", "s1")
     assert bench.column("s1", "speed_zero").index(True, stop + 1) > told_at(bench, "orient", "s1")
@@ -430,7 +430,7 @@ def test_tool_without_spindle_leaves_the_limits_until_they_are_reset() -> None:
 
 
 def test_stop_takes_the_way_of_its_deceleration() -> None:
-    """The way from 1000 rpm to standstill is n²/(2a): 1000 °."""
+    """The stopping distance from 1000 rpm is n²/(2a): 1000 °."""
     bench = example("nc_spindle.yaml", "din.nc")
     stop = told_at(bench, "stop", "s1")
     position, speed = bench.column("s1", "set_position_deg"), bench.column("s1", "set_speed_rpm")

@@ -1,4 +1,4 @@
-"""The zero pulse: latched exactly at its place, once a turn, in both directions."""
+"""The zero pulse: latched exactly at its place, once per turn, in both directions."""
 
 from __future__ import annotations
 

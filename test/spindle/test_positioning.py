@@ -1,4 +1,4 @@
-"""Positioning: which turn, which direction, and the way there, re-integrated from the samples."""
+"""Positioning: which turn, which direction, and the motion, re-integrated from the samples."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def limits(speed: float = 1200.0) -> PositioningLimits:
 
 
 def check_table(table: SpeedTable, position: float, speed: float, target: float, top: float) -> None:
-    """Starts at the state, ends at rest at the target, no faster than `top`; way and speed are integrals of the rest."""
+    """Starts at the state, ends at rest at the target, no faster than `top`; position and speed are integrals of the rest."""
     assert table.state_at(0.0)[:2] == pytest.approx((position, speed), abs=1e-9)
     assert table.end == (target, 0.0, 0.0)
     n, t = 4000, table.duration
@@ -77,7 +77,7 @@ def test_a_spindle_that_is_there_makes_no_turn(position: float, direction: float
 
 
 def test_a_fast_spindle_comes_down_along_its_curve_first() -> None:
-    """The way of 40000 °/s down to 1200 °/s is that of the curve, then the constant deceleration counts."""
+    """The distance from 40000 °/s down to 1200 °/s is that of the curve, then the constant deceleration counts."""
     curve = AccelerationCurve(POLYNOMIAL, top_speed=TOP)
     bound = PositioningLimits(1200.0, UP, DOWN, curve)
     target = next_target(0.0, 40_000.0, 90.0, 360.0, 1.0, bound)
@@ -88,7 +88,7 @@ def test_a_fast_spindle_comes_down_along_its_curve_first() -> None:
 
 
 def test_too_late_for_a_target() -> None:
-    assert plan_positioning(0.0, 1000.0, 100.0, 1.0, limits()) is None  # 125 deg of way
+    assert plan_positioning(0.0, 1000.0, 100.0, 1.0, limits()) is None  # needs 125 deg
 
 
 def test_override_0_stops_before_the_target_or_brakes_for_it() -> None:

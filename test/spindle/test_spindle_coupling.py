@@ -64,7 +64,7 @@ def test_a_ratio_scales_speeds_and_positions_and_turns_the_direction() -> None:
 
 
 def test_a_stop_of_the_master_counts_in_the_gear_change_of_a_slave_too() -> None:
-    """What the slave was told before its master stopped is forgotten with that."""
+    """What the slave was commanded before its master stopped is forgotten with that."""
     each = machine()
     two = {**each.spindles, "t": replace(two_gears(), name="t", number=11)}
     scenario = """
@@ -252,7 +252,7 @@ def test_a_slave_does_not_start_after_its_master_was_switched_off(
 
 @pytest.mark.parametrize("resume", ["", RESUME])
 def test_a_slave_does_not_start_after_its_master_was_reset_from_an_error(resume: str) -> None:
-    """Held by override 0 the master stands: enable, error and reset come between two blocks."""
+    """Held by override 0 the master is at a standstill: enable, error and reset come between two blocks."""
     scenario = f"""
 - {{at: 0.0, to: s, do: set_override, percent: 0}}
 {START}

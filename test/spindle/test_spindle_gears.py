@@ -119,7 +119,7 @@ def test_commands_wait_for_the_gear_in_their_order() -> None:
     told = each.accepted("start", direction="cw", speed_rpm=600.0)
     assert told == waits.format("start", "the gear change is finished")
     told = each.accepted("set_speed", speed_rpm=900.0)
-    assert told == waits.format("set_speed", "the orders before it are carried out")
+    assert told == waits.format("set_speed", "the commands before it are carried out")
     each.run(500)
     assert each.column("set_speed_rpm")[-1] == 0.0
     each.accepted("gear_changed")

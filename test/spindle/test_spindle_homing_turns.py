@@ -1,4 +1,4 @@
-"""Homing is finished before what comes after it, and told where it is given up; the states are those of the graphs."""
+"""Homing is finished before later commands, and reported when it is aborted; the states are those of the graphs."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
 WAITS = "P-WARN-24030 spindle s: {} waits until {}"
-HOMED, IN_TURN = "the homing is finished", "the orders before it are carried out"
+HOMED, IN_TURN = "the homing is finished", "the commands before it are carried out"
 NO_REFERENCE, OLD_REFERENCE = "there is no reference point", "the previous reference point remains valid"
 
 
 def given_up(by: str, number: int, reference: str = NO_REFERENCE, spindle: str = "s") -> str:
-    return f"P-ERR-24028 spindle {spindle}: {by} before the zero pulse, homing (order {number}) is aborted; {reference}"
+    return (
+        f"P-ERR-24028 spindle {spindle}: {by} before the zero pulse, homing (command {number}) is aborted; {reference}"
+    )
 
 
 def unreferenced(**changes: Any) -> UnitBench:
@@ -245,7 +247,7 @@ def test_a_refusal_with_an_error_frees_the_spindle_at_once() -> None:
     bench.accepted("start", direction="cw", speed_rpm=1000.0, source="one")
     assert bench.refused("start", direction="ccw", speed_rpm=5.0, source="one").startswith("P-ERR-60254 ")
     assert bench.refused("start", direction="cw", speed_rpm=5.0, source="two").startswith("P-ERR-24003 ")
-    assert bench.unit.step.__self__._orders.source == ""
+    assert bench.unit.step.__self__._queue.source == ""
 
 
 def test_a_fault_in_a_cycle_frees_the_spindle_in_it() -> None:

@@ -61,7 +61,7 @@ def test_a_spindle_that_does_not_come_to_rest_in_time(zero_rpm: float) -> None:
 
 
 def test_a_speed_that_is_lost_and_does_not_come_back() -> None:
-    """The drive gets stuck in steady rotation; for 20 ms only at first, then for good."""
+    """The drive gets stuck in steady rotation; for 20 ms only at first, then permanently."""
     drive = StuckDrive(stuck=False)
     bench = bench_of(spindle_parameters(speed_time=0.25), drive=drive)
     bench.accepted("start", direction="cw", speed_rpm=600.0)
@@ -109,7 +109,7 @@ def test_an_override_that_does_not_change_gives_no_more_time() -> None:
         ([("start", {"direction": "ccw", "speed_rpm": 300.0})], True),
         ([("orient", {"position_deg": 10.0}), ("power", {"enabled": False})], True),
     ],
-    ids=["speed not reached", "no job in work", "refused with an error", "positioning"],
+    ids=["speed not reached", "no active job", "refused with an error", "positioning"],
 )
 def test_hli_job_error(commands: list[tuple[str, dict[str, object]]], failed: bool) -> None:
     """What was active, or was refused, has failed; a reset takes the bit back (2.9)."""
@@ -208,7 +208,7 @@ def test_a_speed_reached_of_before_does_not_hold_for_the_next_speed() -> None:
 
 
 def test_settled_blocks_give_the_same_numbers_as_others() -> None:
-    """One bench is kept from taking the short way."""
+    """One bench cannot take the shorter direction."""
     benches = [spindle_bench(), spindle_bench()]
     for bench in benches:
         for command, arguments in (

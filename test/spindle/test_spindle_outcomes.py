@@ -1,4 +1,4 @@
-"""What became of a positioning or a homing, as its action tells: while it waits, active, at its end, overtaken."""
+"""Outcome of a positioning or a homing, as its action reports it: waiting, active, finished, replaced."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ both = pytest.mark.parametrize(("command", "arguments"), [ORIENT, HOME])
 
 def given(bench: UnitBench, command: str, arguments: dict[str, Any]) -> int:
     """Gives the command; its number."""
-    number: int = bench.unit.next_order
+    number: int = bench.unit.next_number
     bench.accepted(command, **arguments)
     return number
 

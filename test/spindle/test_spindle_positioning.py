@@ -39,7 +39,7 @@ def ended(bench: UnitBench) -> float:
     ],
 )
 def test_from_rest(start: float, position: float, direction: dict[str, str], end: float) -> None:
-    """2.3.2: the given direction; none given, the shortest way."""
+    """2.3.2: the given direction; none given, the shortest distance."""
     bench = spindle_bench(start_position=start)
     bench.accepted("orient", position_deg=position, speed_rpm=200.0, **direction)
     bench.run(700)

@@ -131,7 +131,7 @@ def test_the_plc_is_served_in_order_of_arrival() -> None:
     told = bench.accepted("orient", position_deg=90.0, source="plc")
     assert told == waits.format("orient", "the speed is reached")
     told = bench.accepted("start", direction="ccw", speed_rpm=500.0, source="plc")
-    assert told == waits.format("start", "the orders before it are carried out")
+    assert told == waits.format("start", "the commands before it are carried out")
     bench.run(1200)
     assert acknowledged(bench) == [(3, 0), (3, 1), (3, 2), (3, 3)]
     states = bench.column("state")

@@ -85,7 +85,7 @@ def test_homing_from_standstill(make: Any, reference: float) -> None:
 
 
 def test_the_pulse_is_latched_at_its_place() -> None:
-    """Wherever in a cycle it comes, M19 afterwards stands exactly there (ideal encoder)."""
+    """Wherever in a cycle it comes, M19 afterwards is exactly there (ideal encoder)."""
     for pulse in (0.0, 33.2501, 77.123, 359.9):
         bench = spindle_bench(referenced_at_start=False, zero_pulse=pulse, encoder_increment=0.0)
         bench.accepted("orient", position_deg=0.0, speed_rpm=100.0)
@@ -219,7 +219,7 @@ def test_a_drive_with_its_own_time_and_encoder_passes_the_control_limit_without_
 @pytest.mark.parametrize("limit", [400.0, 401.7, 433.3, 1234.567, 1799.999])
 @pytest.mark.parametrize("direction", ["cw", "ccw"])
 def test_a_positioning_stays_below_the_control_limit(limit: float, direction: str) -> None:
-    """Above it the measuring system fails: the spindle would not stop where it was told."""
+    """Above it the measuring system fails: the spindle would not stop where commanded."""
     bench = spindle_bench(control_limit=limit, homing_speed=100.0)
     shown = f"{limit / RPM:g} rpm"
     assert bench.accepted("orient", position_deg=90.0, speed_rpm=300.0, direction=direction) == (

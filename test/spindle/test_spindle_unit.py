@@ -182,7 +182,7 @@ def test_override_never_lifts_the_speed_above_the_maximum() -> None:
 
 
 def test_override_0_holds_and_is_not_the_speed_reached() -> None:
-    """The path must not start on a spindle that stands because of its override."""
+    """The path must not start on a spindle that is held because of its override."""
     bench = spindle_bench()
     bench.accepted("set_override", percent=0.0)
     bench.accepted("start", direction="cw", speed_rpm=1000.0)

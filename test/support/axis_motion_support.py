@@ -122,7 +122,7 @@ def expected(legs: Sequence[Trajectory], cycles: int) -> list[MotionState]:
 
 
 def legs_to(state: MotionState, target: float, v: float = V, a: float = A, j: float = J) -> list[Trajectory]:
-    """The way to a new target: straight, or by a stop and from there back (TX1250 2.3)."""
+    """The motion to a new target: direct, or by a stop and from there back (TX1250 2.3)."""
     stop = to_rest(state, a, j)
     rest = at(stop, stop.duration)[0]
     direction = math.copysign(1.0, rest - state[0])

@@ -65,7 +65,7 @@ def held(bench: UnitBench) -> None:
 
 
 def returning(bench: UnitBench) -> None:
-    """Stops by itself to come back to a new target that it has passed."""
+    """Stops automatically to return to a new target that it has passed."""
     moving(bench)
     bench.accepted("new_target", target=100.0)
     bench.run(50)

@@ -15,7 +15,7 @@ NO_SYNCH = Synchronisation.NO_SYNCH
 MOS, MVS_SVS, MVS_SNS, MNS_SNS, MNE_SNS, MVS_SLM, MVS_SLP, PLC_INFO = Synchronisation
 CHANNEL = MILL.channels["channel"]
 MANUAL = "- {at: 0, to: plc, do: auto_acknowledge, enabled: off}\n"
-"""The PLC acknowledges nothing by itself."""
+"""The PLC acknowledges nothing automatically."""
 
 
 def channel_spindle(

@@ -1,4 +1,4 @@
-"""What the tests of the commissioning commands share: machines, calls, synthetic recordings."""
+"""Helpers of the tests of the commissioning commands: machines, calls, synthetic recordings."""
 
 from pathlib import Path
 

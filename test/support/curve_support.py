@@ -59,7 +59,7 @@ def kinks(curve: CurveParameters, most: float = np.inf) -> list[float]:
 def integrated(
     curve: CurveParameters, speed: float, target: float, times: NDArray[np.float64], most: float = np.inf
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Speeds and ways at `times` of dn/dt = ±a(n) from `speed` to `target`, and the time that it takes.
+    """Speeds and distances at `times` of dn/dt = ±a(n) from `speed` to `target`, and the time that it takes.
 
     Time is integrated over the speed from kink to kink, so that no step crosses one; then n(t) by a second integration.
     """

@@ -77,7 +77,7 @@ def seven_phases(distance: float, velocity: float, up: float, down: float, j: fl
 
 
 def through(phases: list[tuple[float, float]], velocity: float, acceleration: float) -> tuple[float, float, float]:
-    """Way, velocity and acceleration after phases of (duration, jerk)."""
+    """Distance, velocity and acceleration after phases of (duration, jerk)."""
     way = 0.0
     for t, j in phases:
         way += velocity * t + acceleration * t**2 / 2.0 + j * t**3 / 6.0
@@ -92,7 +92,7 @@ def largest_step(values: Column) -> float:
 
 
 def integrated(name: str) -> Column:
-    """Set position as the integral of set velocity and acceleration, exact for constant jerk (error J·T³/12 a cycle)."""
+    """Set position as the integral of set velocity and acceleration, exact for constant jerk (error J·T³/12 per cycle)."""
     v, a = x(name, "set_velocity"), x(name, "set_acceleration")
     steps = CYCLE_TIME * 0.5 * (v[1:] + v[:-1]) + CYCLE_TIME**2 / 12.0 * (a[:-1] - a[1:])
     return np.concatenate([[0.0], np.cumsum(steps)])

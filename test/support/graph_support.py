@@ -177,7 +177,7 @@ def wait_until_gone(pids):
 
 
 def wait_for_handler(pid, number):
-    """Waits until a process handles a signal by itself."""
+    """Waits until a process handles a signal on its own."""
     deadline = time.monotonic() + TIMEOUT
     while time.monotonic() < deadline:
         caught = re.search(r"SigCgt:\s*(\w+)", Path(f"/proc/{pid}/status").read_text())[1]

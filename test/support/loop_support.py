@@ -140,14 +140,14 @@ def make_loop(
 
 
 def loop_with(mode: int, *, on: bool = True, time_constant: float = TA, **changes: Any) -> ControlLoop:
-    """A loop around a first-order drive with a feedforward that is in full effect from the begin on."""
+    """A loop around a first-order drive with a feedforward that is in full effect from the start."""
     of_loop = {name: changes.pop(name) for name in ("kv", "interface", "friction") if name in changes}
     parameters = control(of_feedforward=feedforward(mode, always_active=on, **changes), **of_loop)
     return make_loop(parameters, first_order(time_constant))
 
 
 def motion(phases: Iterable[Phase], start: float = 0.0) -> list[MotionState]:
-    """Setpoints of phases of constant jerk, each state in closed form from the begin of its phase."""
+    """Setpoints of phases of constant jerk, each state in closed form from the start of its phase."""
     states: list[MotionState] = []
     x, v, a = start, 0.0, 0.0
     for cycles, j in phases:

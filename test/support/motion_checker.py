@@ -1,7 +1,7 @@
 """An independent checker of thousands of runtime tables at once: integrated again with long doubles, piece by piece.
 
 Arrays are (n, m): n motions of at most m rows, shorter ones filled with their last row. Tolerances are 1e-9 of the
-largest value of the motion, for positions of the way it covers, plus what the rounding of the numbers themselves
+largest value of the motion, for positions of the distance it covers, plus what the rounding of the numbers themselves
 moves: eight units in the last place of the position, two of the time (a by J·ulp, v by a·ulp, p by v·ulp).
 """
 

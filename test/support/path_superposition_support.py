@@ -30,7 +30,7 @@ def mill(**units: Any) -> MachineParameters:
 
 
 class PathBench(MachineBench):
-    """Runs until it is told to end; commands go through the PLC, as for a user."""
+    """Runs until it is stopped; commands go through the PLC, as for a user."""
 
     def __init__(self, program: str = CIRCLE, scenario: str = "", **units: Any) -> None:
         super().__init__(program, scenario, machine=mill(**units), end_when_idle=False)
@@ -60,7 +60,7 @@ class PathBench(MachineBench):
         return self.array(unit, "set_position") - np.concatenate(path)
 
     def contribution_stands(self, unit: str = "x") -> bool:
-        """In the last two cycles nothing more was added to the path, or there is none and the axis stands."""
+        """In the last two cycles nothing more was added to the path, or there is none and the axis is at rest."""
         if not self.last("channel").path_active:
             return self.last(unit).set_velocity[-1] == 0.0
         before, last = self.added(unit)[-2:]

@@ -31,7 +31,7 @@ class RuckigPeer:
         self.second = self.millimetre = 1.0
 
     def scale(self, duration: float, way: float) -> None:
-        """Choose the units for a motion of about this duration (s) and way (mm)."""
+        """Choose the units for a motion of about this duration (s) and distance (mm)."""
         self.second = math.ldexp(LONG, -math.frexp(duration)[1])
         self.millimetre = math.ldexp(LONG, -math.frexp(way)[1])
 

@@ -31,7 +31,7 @@ COMPENSATING, ERROR = 1 << 13, 1 << 31
 
 
 class SlaveBench(MachineBench):
-    """A machine without channel that runs until it is told to end; commands go the way of the PLC, as for a user."""
+    """A machine without channel that runs until it is stopped; commands go through the PLC, as for a user."""
 
     def __init__(self, scenario: str = "", *, machine: MachineParameters = PTP, end_when_idle: bool = False) -> None:
         super().__init__(None, scenario, machine=machine, end_when_idle=end_when_idle)
@@ -91,7 +91,7 @@ class SlaveBench(MachineBench):
         return sum(block.count for block in self.blocks["plc"])
 
     def settle(self, seconds: float = 20.0) -> SlaveBench:
-        """Until all axes stand for 0.1 s."""
+        """Until all axes are at a standstill for 0.1 s."""
         for _ in range(round(seconds * 10)):
             self.run(0.1)
             if all(not any(self.last(axis).set_velocity) for axis in self.machine.axes):

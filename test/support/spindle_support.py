@@ -65,7 +65,7 @@ def assert_reached_in_windows(bench: UnitBench, *, window: float, zero_rpm: floa
 
 
 class StuckDrive(FirstOrderDrive):
-    """A drive that shows where it is but does not turn any more once it is `stuck`."""
+    """A drive that shows where it is but no longer turns once it is `stuck`."""
 
     __slots__ = ("limit", "stuck")
 

@@ -36,7 +36,7 @@ def moving_axis(
 
 
 def settle(bench: UnitBench, cycles: int = 12_000) -> UnitBench:
-    """Runs until the axis stands and has no job (at most `cycles` more), and 100 cycles on."""
+    """Runs until the axis is at a standstill and has no job (at most `cycles` more), and 100 cycles on."""
     for _ in range(cycles // 500):
         bench.run(500)
         if bench.column("set_velocity")[-1] == 0.0 and bench.state in (0, 1, 7):

@@ -30,7 +30,7 @@ DELAY = 0.03
 STEADY = 1.001
 """A speed that grows by less from block to block has reached its final value."""
 START = 1.0
-"""Seconds after which an axis that does not move is given up."""
+"""Seconds after which the jog of an axis that does not move ends."""
 STOP = 30.0
 """Seconds for the ramp at the end."""
 
@@ -66,7 +66,7 @@ class Jogger:
         client.create_subscription(msg.Event, EVENT, self._on_event, PLC_INPUT)
 
     def ready(self) -> bool:
-        """The PLC listens, and the axis shows where it is."""
+        """The PLC is subscribed, and the axis publishes its position."""
 
         def is_ready() -> bool:
             return bool(self._publisher.get_subscription_count()) and self._blocks.view(self._axis) is not None
@@ -75,10 +75,10 @@ class Jogger:
 
     def run(self, ended: Callable[[], bool], distance: float | None, seconds: float | None) -> None:
         """Sends the velocity until it is enough, the axis has stopped, or it refuses."""
-        begun, start = time.monotonic(), self._place().position or 0.0
-        way = Way(distance)
-        moved, sent = False, begun
-        deadline = math.inf if seconds is None else begun + seconds
+        started_at, start = time.monotonic(), self._place().position or 0.0
+        end = JogEnd(distance)
+        moved, sent = False, started_at
+        deadline = math.inf if seconds is None else started_at + seconds
         while not ended() and not self._refused and not self._blocks.gone and time.monotonic() < deadline:
             self._stalled = time.monotonic() - sent > SILENCE
             if self._stalled:  # the machine has ended the jog; that this process continues is no reason to move again
@@ -89,9 +89,9 @@ class Jogger:
             self._client.spin_until(ended, PERIOD if distance is None else PERIOD / 5.0)
             view = self._place()
             moved = moved or view.state == JOGS
-            stopped = view.state != JOGS and (moved or time.monotonic() - begun > START)
+            stopped = view.state != JOGS and (moved or time.monotonic() - started_at > START)
             gone = abs((view.position or 0.0) - start)
-            if stopped or way.is_enough(gone, abs(view.speed or 0.0), view.cycle):
+            if stopped or end.is_due(gone, abs(view.speed or 0.0), view.cycle):
                 return
 
     def end(self) -> int:
@@ -141,8 +141,8 @@ class Jogger:
             self._errors.print(f"P-ERR-{message.error_id} {message.text}", style="yellow", markup=False)
 
 
-class Way:
-    """Distance of a jog: the ramp at the end is as long as the one at the start was."""
+class JogEnd:
+    """When a jog over a distance must end: its last ramp is as long as the one at the start was."""
 
     def __init__(self, distance: float | None) -> None:
         """`distance` in mm (deg), None = any."""
@@ -150,7 +150,7 @@ class Way:
         self._ramp: float | None = None
         self._seen = (0, 0.0, 0.0)
 
-    def is_enough(self, gone: float, speed: float, cycle: int) -> bool:
+    def is_due(self, gone: float, speed: float, cycle: int) -> bool:
         """`gone` mm (deg) from the start, at `speed` in `cycle`: an end now leads to the distance, roughly."""
         if self._distance is None:
             return False

@@ -31,8 +31,8 @@ DRAWN = 400
 
 def title(fit: CurveFit) -> str:
     count = len(fit.points) - fit.limit_index
-    way = f"through {count} points" if fit.exact else f"least squares over {count} points"
-    return f"Acceleration curve: {fit.parameters.kind} {way}"
+    method = f"through {count} points" if fit.exact else f"least squares over {count} points"
+    return f"Acceleration curve: {fit.parameters.kind} {method}"
 
 
 def curve_lines(fit: CurveFit, *, usable: bool) -> Iterator[str]:

@@ -30,7 +30,7 @@ def found_lines(data: AxisData, fit: DriveFit, gain: GainProposal, inertia: Iner
         "gain": f"{fit.gain:.4f} (actual velocity over command velocity)",
         "misfit": f"{100.0 * fit.misfit:.2f} % of what the velocity varies, {fit.cycles} cycles in motion",
         "inertia": "not found: no torque in the recording, too little acceleration, or friction hides it",
-        "Kv limit": f"about {gain.limit:.0f} 1/s, where the loop begins to oscillate",
+        "Kv limit": f"about {gain.limit:.0f} 1/s, where the loop starts to oscillate",
         "Kv proposed": f"{gain.proposed:.1f} 1/s (damping 1)",
         "Kv at most": f"{gain.fastest:.1f} 1/s (damping 0.7, 4 % overshoot)",
         "Kv now": f"{data.kv:g} 1/s (P-AXIS-00099)",

@@ -23,9 +23,9 @@ def scaling_of(data: AxisData) -> Scaling:
 
 def curve_lines(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
     """The points as a table of text."""
-    way, effort = data.unit, data.effort
+    effort = data.effort
     efforts = (f"M(+v) {effort}", f"M(-v) {effort}", f"friction {effort}", "scatter", f"load {effort}")
-    heads = (f"v {way}/s", *efforts, "time s")
+    heads = (f"v {data.unit}/s", *efforts, "time s")
     yield "".join(f"{head:>13}" for head in heads)
     for point in curve.points:
         torques = "".join(f"{value:13.4f}" for value in (point.positive, point.negative, point.friction))
@@ -41,7 +41,7 @@ def _remarks(data: AxisData, curve: FrictionCurve) -> Iterator[str]:
         yield f"left out, uneven motion (stick-slip, or not settled): {speeds_shown(curve.uneven)} {data.unit}/s"
     if curve.standing:
         reason = "the torque does not come above the friction (torque limit?)"
-        yield f"left out, the axis stands still: {speeds_shown(curve.standing)} {data.unit}/s; {reason}"
+        yield f"left out, the axis does not move: {speeds_shown(curve.standing)} {data.unit}/s; {reason}"
     doubt = doubtful(data, curve)
     if doubt is not None:
         yield WarningLine(doubt)
@@ -60,7 +60,7 @@ def doubtful(data: AxisData, curve: FrictionCurve) -> str | None:
         return f"{where} {data.unit}/s; measure longer, or without disturbances"
     return (
         f"{where} {data.unit}/s; half a digit of the torque, which counts as scatter, is {data.half_digit:.3g} "
-        f"{data.effort} there: more digits a {data.effort} in drive and P-AXIS-00325, 00326, 00392"
+        f"{data.effort} there: more digits per {data.effort} in drive and P-AXIS-00325, 00326, 00392"
     )
 
 
@@ -72,13 +72,13 @@ def friction_yaml(data: AxisData, curve: FrictionCurve, table: FrictionTable, so
     """The lines to paste into the machine file; all else is unchanged."""
     raw, effort = data.raw, data.effort
     scaling = scaling_of(data)
-    way = "0.001 deg/s" if data.axis.rotary else "µm/s"
+    unit = "0.001 deg/s" if data.axis.rotary else "µm/s"
     digits = f"{scaling.numerator:g}/{scaling.denominator:g} digits are {scaling.reference:g} {effort}"
     doubt = doubtful(data, curve)
     lines = [
         f"# Friction of axis {data.axis.name}, {source}.",
         "# Replaces lr_param.frict_comp and frict_comp. Behind each entry: velocity, mean of both directions, scatter.",
-        f"# in: {way}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
+        f"# in: {unit}, out: {digits} (P-AXIS-00325, 00326, 00392), times scaling_factor / 1000.",
         *([f"# warning: {doubt}"] if doubt is not None else []),
         f"/{data.axis.name}:",
         "  ros__parameters:",

@@ -30,7 +30,7 @@ Columns = Mapping[str, npt.NDArray[np.float64]]
 
 @dataclass
 class Trial:
-    """A run: its columns by unit and field (one value a cycle), and its notes."""
+    """A run: its columns by unit and field (one value per cycle), and its notes."""
 
     columns: dict[str, Columns] = field(default_factory=dict)
     result: Result = field(default_factory=Result)
@@ -126,7 +126,7 @@ class TrialProgress:
             self._progress.stop()
 
     def show(self, outputs: Outputs) -> None:
-        """Progress of the run. (The bar draws itself ten times a second, however often it is updated.)"""
+        """Progress of the run. (The bar draws itself ten times per second, however often it is updated.)"""
         plc = outputs[PLC].block
         if self._on and isinstance(plc, PlcBlock):
             self._progress.update(self._task, completed=plc.first_cycle + plc.count)

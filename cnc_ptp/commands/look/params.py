@@ -15,7 +15,7 @@ HINT = "cnc_ptp params WORD: part of a name or id (frict, P-AXIS), number (99), 
 
 
 def params(wanted: str) -> int:
-    """Prints the parameters found: one in full, several in a line each; without a word all groups.
+    """Prints the parameters found: one in full, several in one line each; without a word all groups.
 
     Raises CncError 25018 when nothing is found.
     """
@@ -50,7 +50,7 @@ def group_lines(declarations: Iterable[Declaration], width: int) -> Iterator[str
 
 
 def table_lines(headings: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[str]:
-    """A line a row, at most `width` characters long: the last column is cut to the rest."""
+    """One line per row, at most `width` characters long: the last column is cut to the rest."""
     lines = [headings, *rows]
     widths = [max(len(line[column]) for line in lines) for column in range(len(headings) - 1)]
     for line in lines:

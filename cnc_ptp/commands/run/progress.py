@@ -26,7 +26,7 @@ KINDS: dict[type, str] = {AxisBlock: "axis", SpindleBlock: "spindle", ChannelBlo
 
 
 class RunProgress:
-    """Shows the progress of a run, at most ten times a second."""
+    """Shows the progress of a run, at most ten times per second."""
 
     def __init__(self) -> None:
         console = Console(stderr=True)

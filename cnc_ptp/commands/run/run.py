@@ -1,4 +1,4 @@
-"""`cnc_ptp run`: the ROS graph, until the job is finished."""
+"""`cnc_ptp run`: the ROS graph, until the run has ended."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
-from cnc_ptp.nodes.supervisor import RunOrder, Supervisor
+from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.recording.node_figures import BLOCKS, CAME_TWICE, LOST_BLOCKS, following_error
 
@@ -36,7 +36,7 @@ def run(
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
     read_entries(parameters, program=program, scenario=scenario)
-    job = RunOrder(machine, program, scenario, duration, record, free_run, stay, state_rate)
+    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate)
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:
@@ -45,9 +45,9 @@ def run(
                 progress.show(monitor.views())
 
         if composed:
-            monitor, failures = run_composed(parameters, job, show=show, watched=progress.visible)
+            monitor, failures = run_composed(parameters, options, show=show, watched=progress.visible)
         else:
-            supervisor = Supervisor(parameters, job, show=show, watched=progress.visible)
+            supervisor = Supervisor(parameters, options, show=show, watched=progress.visible)
             monitor, failures = supervisor.run(), supervisor.failures
     print_summary(parameters, monitor, failures, duration)
     given = (program, scenario, duration, stay or None)

@@ -12,7 +12,7 @@ FINEST = 6
 UNEVEN = 0.02
 """A step may remove at most this part of the Stribeck friction; a longer one is halved."""
 BEND = 0.1
-"""Stribeck velocities by which the velocity may leave the tangent of its beginning in a step near zero."""
+"""Stribeck velocities by which the velocity may leave the tangent of its start in a step near zero."""
 FAR = 5.5
 """Stribeck velocities above which the Stribeck part is 0 (e^-30) and zero is not near."""
 NEGLIGIBLE = 1e-12
@@ -234,7 +234,7 @@ class CascadedDrive:
         return 0.5 * direction * change
 
     def _pass_zero(self, v: float, new_v: float, duration: float) -> None:
-        """The velocity has changed its sign in one of the shortest steps: the axis stands, or reverses immediately."""
+        """The velocity has changed its sign in one of the shortest steps: the axis stops, or reverses immediately."""
         share = v / (v - new_v)
         self._motor_position += 0.5 * v * share * duration
         self._take_load()

@@ -16,7 +16,7 @@ class Drive(Protocol):
     velocity: float
     """Actual velocity, mm/s or deg/s."""
     torque: float
-    """Actual torque, Nm or N; 0.0 where the drive does not report one."""
+    """Actual torque, Nm or N; 0.0 if the drive does not report one."""
     has_torque: bool
     """True if the drive reports its torque."""
 

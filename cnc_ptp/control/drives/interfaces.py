@@ -8,7 +8,7 @@ from cnc_ptp.control.drives.drive import Drive
 
 
 class PositionCommandedDrive:
-    """The drive closes the position loop: v = Kv (x_set - x) once a cycle, x as its encoder shows it."""
+    """The drive closes the position loop: v = Kv (x_set - x) once per cycle, x as its encoder shows it."""
 
     __slots__ = ("_drive", "_kv", "has_torque", "position", "torque", "velocity")
 

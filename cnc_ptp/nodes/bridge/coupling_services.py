@@ -66,7 +66,8 @@ class CouplingServices:
         except CncError as error:
             return answered(response, error.number, error.message)
         if self._node.is_over:
-            return answered(response, RUN_OVER, f"axis {axis}: {command} refused: the run is over; nothing was changed")
+            text = f"axis {axis}: {command} refused: the run has ended; nothing was changed"
+            return answered(response, RUN_OVER, text)
         if self._plc.is_lost(axis):
             text = f"axis {axis}: {command} refused: its node is lost; nothing was changed"
             return answered(response, UPSTREAM_LOST, text)
@@ -114,10 +115,10 @@ class CouplingServices:
         return "the command has gone out and may still be carried out"
 
     def end(self) -> None:
-        """The run is over: all pending calls are answered."""
+        """The run has ended: all pending calls are answered."""
         for call in [*self._open]:
             what = f"axis {call.command.target}: {call.command.command}"
-            self._answer(call, RUN_OVER, f"{what} without an answer: the run is over")
+            self._answer(call, RUN_OVER, f"{what} without an answer: the run has ended")
 
     def _answer(self, call: Call, error_id: int, message: str) -> None:
         self._open.remove(call)

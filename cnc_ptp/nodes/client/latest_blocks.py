@@ -21,7 +21,7 @@ REMEMBERED = ("axis", "spindle")
 
 
 class LatestBlocks:
-    """Keeps the newest block of units; only those that are shown are deserialised: some hundred come a second."""
+    """Keeps the newest block of units; only those that are shown are deserialised: some hundred come per second."""
 
     def __init__(self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str]) -> None:
         """`kinds`: unit -> kind; the plc is left out. `rotary`: axes in degrees."""

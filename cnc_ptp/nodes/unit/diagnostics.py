@@ -93,7 +93,7 @@ class UnitDiagnostics:
         if block is None:
             return "no block yet"
         if isinstance(block, PlcBlock):
-            return "the run is over" if block.run_done else "running"
+            return "the run has ended" if block.run_done else "running"
         if isinstance(block, ChannelBlock):
             name = state_name(ChannelStateCode(block.state[-1]))
             return f"{name}, line {block.line[-1]}" if block.line[-1] else name

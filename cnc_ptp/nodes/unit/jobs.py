@@ -83,7 +83,7 @@ class JobServer:
         return CancelResponse.ACCEPT
 
     def end(self) -> None:
-        """The run is over: an open job is answered as not finished."""
+        """The run has ended: an open job is answered as not finished."""
         if self._goal is not None:
             self._finish(self._type.Result(message="the run has ended"))
 

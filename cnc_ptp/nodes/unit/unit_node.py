@@ -63,8 +63,8 @@ class UnitNode(Node):
 
     Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
     and of the master of a coupled axis.
-    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once a second /diagnostics and
-    /lateness; while somebody subscribes /<name>/state.
+    Publishers: /<name>/block, /events and /rosout, /commands, /clock/report, /heartbeat; once per second /diagnostics
+    and /lateness; while somebody subscribes /<name>/state.
     Services: /<name>/<command> for the commands of its kind (topics.SERVICES).
     Parameters: all of its list, read-only, with range, unit and P number as descriptor.
     """
@@ -75,7 +75,7 @@ class UnitNode(Node):
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
-        states a second, None = as the machine file says.
+        states per second, None = as the machine file says.
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
@@ -250,7 +250,7 @@ class UnitNode(Node):
     def command(self, command: Command) -> CommandRecord:
         """Carries out a command between two blocks: from a service, an action or the watchdog."""
         if self._gate.closed:
-            return self.refuse(command, RUN_OVER, "the run is over")
+            return self.refuse(command, RUN_OVER, "the run has ended")
         with self._working():
             record = self._runner.command(command)
         self._publish_records()
@@ -351,7 +351,7 @@ class UnitNode(Node):
     # watchdog
 
     def _watch(self) -> None:
-        """Reports that this node is alive while it waits, and gives up sources silent for the watchdog time."""
+        """Reports that this node is alive while it waits, and drops sources silent for the watchdog time."""
         now = time.monotonic()
         stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
         if stalled or self._gate.closed or not self._running:

@@ -200,6 +200,6 @@ def _objects(parameters: ParameterSet, names: str, array: str, elements: tuple[s
 
 
 def _object(parameters: ParameterSet, elements: tuple[str, str], index: int) -> str:
-    """Name of a configured object by its name or number; empty where the element names none."""
+    """Name of a configured object by its name or number; empty if the element names none."""
     name, number = parameters.text(elements[0], index), parameters.number(elements[1], index)
     return name.replace("_", "-") or (f"S-0-{number:04d}" if number else "")

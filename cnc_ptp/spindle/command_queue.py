@@ -25,16 +25,16 @@ AWAITED = {
 }
 
 
-class Order(NamedTuple):
+class QueuedCommand(NamedTuple):
     """A command that waits for its turn."""
 
-    command: str
+    name: str
     arguments: Mapping[str, Any]
     source: str
     number: int = 0
-    """Identifies the order when its outcome is queried."""
+    """Identifies the command when its outcome is queried."""
     master_source: str | None = None
-    """Of a slave's order: who has commanded its master, empty for users. None for the spindle's own orders."""
+    """Of a slave: who has commanded its master, empty for users. None for a command to the spindle itself."""
 
     @property
     def commander(self) -> str:
@@ -42,13 +42,13 @@ class Order(NamedTuple):
         return self.source if self.master_source is None else self.master_source
 
 
-class Orders:
+class CommandQueue:
     """Commands that wait, and the source for which the spindle works."""
 
     def __init__(self, spindle: Spindle) -> None:
         self._spindle = spindle
         spindle.when_faulted = self.clear
-        self.waiting: deque[Order] = deque()
+        self.waiting: deque[QueuedCommand] = deque()
         self.source = ""
         """The source for which the spindle works, until its speed, position, reference or gear is reached."""
         self.commander = ""
@@ -61,8 +61,8 @@ class Orders:
     @property
     def acknowledged(self) -> int:
         """Number of commands of the PLC that are finished, or aborted by a stop, a reset or an error."""
-        open_orders = sum(order.source == PLC for order in self.waiting)
-        return self.taken - open_orders - (self.source == PLC)
+        pending = sum(command.source == PLC for command in self.waiting)
+        return self.taken - pending - (self.source == PLC)
 
     def check(self, command: str, source: str, master: str) -> None:
         """Raises 24012 while the spindle works for another source, 24022 for a slave.
@@ -87,12 +87,12 @@ class Orders:
         return source == PLC and bool(self.waiting or self.source)
 
     def awaited(self) -> str:
-        """What an order that is added now waits for."""
+        """What a command that is added now waits for."""
         if self.waiting:
-            return "the orders before it are carried out"
+            return "the commands before it are carried out"
         if self._spindle.work.changes_gear:
             return "the gear change is finished"
-        return AWAITED.get(self._spindle.state, "the spindle stands")
+        return AWAITED.get(self._spindle.state, "the spindle is at a standstill")
 
     def _finished_before(self, command: str) -> bool:
         """A gear change precedes all commands, a homing all that move the spindle, a positioning a homing."""
@@ -101,8 +101,8 @@ class Orders:
             return True
         return (state == S.HOMING and command != "set_speed") or (state == S.DISCRETE_MOTION and command == "home")
 
-    def add(self, order: Order) -> None:
-        self.waiting.append(order)
+    def add(self, command: QueuedCommand) -> None:
+        self.waiting.append(command)
         self._spindle.unsettled = True
 
     def begin(self, source: str) -> None:
@@ -113,9 +113,9 @@ class Orders:
             self.commander, self.obeys_master = source, False
         self._spindle.unsettled = True
 
-    def next(self) -> Order | None:
-        """The order whose turn it is."""
-        if not self.waiting or self._finished_before(self.waiting[0].command):
+    def next(self) -> QueuedCommand | None:
+        """The command whose turn it is."""
+        if not self.waiting or self._finished_before(self.waiting[0].name):
             return None
         source = self.waiting[0].source
         if self.source and source and (source == PLC or source != self.source):
@@ -124,15 +124,15 @@ class Orders:
 
     def forget(self, source: str) -> None:
         """Drops waiting commands of `source`, given directly or through the master."""
-        self.waiting = deque(order for order in self.waiting if order.commander != source)
+        self.waiting = deque(command for command in self.waiting if command.commander != source)
 
-    def obey(self, order: Order) -> None:
+    def obey(self, command: QueuedCommand) -> None:
         """True while the spindle carries out a command of its master."""
-        self.commander, self.obeys_master = order.commander, True
+        self.commander, self.obeys_master = command.commander, True
 
     def forget_master(self) -> None:
         """Drops waiting commands that came through the master."""
-        self.waiting = deque(order for order in self.waiting if order.master_source is None)
+        self.waiting = deque(command for command in self.waiting if command.master_source is None)
 
     def leave_master(self, owner: str) -> None:
         """The coupling has ended: whoever has coupled is responsible for a motion that came through the master."""
