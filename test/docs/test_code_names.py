@@ -53,6 +53,13 @@ def test_a_wrong_name_is_found() -> None:
     assert missing(text) == ["axis/none.py", "axis/axis.py no_such_method"]
 
 
+@pytest.mark.parametrize("room", ["axis", "channel", "control", "path", "spindle"])
+def test_architecture_names_every_file_of_a_room(room: str) -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    files = [path.relative_to(ROOT / "cnc_ptp") for path in (ROOT / "cnc_ptp" / room).rglob("*.py")]
+    assert [str(path) for path in files if path.name != "__init__.py" and str(path) not in text] == []
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_file_name_without_folder_is_unique(page: Path) -> None:
     assert ambiguous(page.read_text(encoding="utf-8")) == []
