@@ -18,14 +18,14 @@ def strict(take):
     """`take` of an axis or a spindle, only from the states that its table of transitions names."""
 
     def checked(self, transition):
-        assert self.state in transition.sources, f"{self.name}: no way '{transition.cause}' from {self.state.name}"
+        assert self.state in transition.sources, f"{self.name}: no transition '{transition.cause}' from {self.state.name}"
         take(self, transition)
 
     return checked
 
 
 @pytest.fixture(autouse=True, scope="session")
-def only_ways_of_the_table() -> Iterator[None]:
+def only_transitions_of_the_table() -> Iterator[None]:
     """No test of this process takes an axis or a spindle from a state to another by a transition that is not in the tables."""
     from cnc_ptp.axis.axis import Axis
     from cnc_ptp.spindle.spindle import Spindle
