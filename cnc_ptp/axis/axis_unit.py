@@ -11,10 +11,12 @@ from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.axis_sources import MasterSource, PathSource
 from cnc_ptp.axis.compensation_commands import CompensationCommands
 from cnc_ptp.axis.coupling_commands import CouplingCommands
+from cnc_ptp.axis.decoupling_commands import DecouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.feed_release_commands import FeedReleaseCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
+from cnc_ptp.axis.override_commands import OverrideCommands
 from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
@@ -76,11 +78,13 @@ class AxisUnit(Unit):
             PowerCommands(self._axis, actual_position=lambda: self._loop.position),
             FeedReleaseCommands(self._axis),
             PtpCommands(self._axis),
+            OverrideCommands(self._axis),
             StopCommands(self._axis),
             JogCommands(self._axis),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
+            DecouplingCommands(self._axis),
             ControlCommands(self._loop, f"axis {parameters.name}"),
         )
         self._last_block: AxisBlock | None = None

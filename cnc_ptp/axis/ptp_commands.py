@@ -1,12 +1,10 @@
-"""PTP functions of an axis: start, override, stop, new target, new velocity. Source: TX1250 2.1 to 2.4."""
+"""PTP functions of an axis: start, new target, new velocity. Source: TX1250 2.1, 2.3, 2.4."""
 
 from __future__ import annotations
 
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import (
-    BAD_OVERRIDE,
-    BAD_OVERRIDE_TYPE,
     BELOW_INCREMENT,
     COMPENSATION_RUNS,
     NO_MODULO_AXIS,
@@ -22,9 +20,6 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import state_name
 
 REDIRECTABLE = (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION, S.STOPPING)
-OVERRIDE_DECIMALS = 4
-"""Of the percentage: 100 % are 1,000,000 steps."""
-OVERRIDE_TYPES = (1, 2, 3, 4)
 
 
 def refuse_other_source(axis: Axis, command: str) -> None:
@@ -87,28 +82,6 @@ class PtpCommands:
         axis.has_been_stopped = False
         axis.take(T.START)
         return warning
-
-    # override (2.2)
-
-    def do_set_override(self, cycle: int, *, percent: float) -> str | None:
-        """Override of PTP motion, 0 … 100 % rounded to 0.0001 %, through the filter if there is one."""
-        axis = self._axis
-        highest = min(100.0, axis.parameters.max_override_percent)
-        if not 0.0 <= percent <= highest:
-            reason = f"percent = {percent} is not within 0 ... {highest:g} (P-AXIS-00109, at most 100)"
-            axis.refuse("set_override", BAD_OVERRIDE, reason, percent=percent, limit=highest)
-        used = axis.override_filter.take(cycle, round(percent, OVERRIDE_DECIMALS))
-        if used is None or axis.set_override(cycle, used) or axis.state not in (S.DISCRETE_MOTION, S.STOPPING):
-            return None
-        reason = "the axis stops" if axis.ptp.job is None else "brake phase or level out of reach"
-        return f"axis {axis.name}: override {percent} % does not change the active motion ({reason})"
-
-    def do_set_override_type(self, cycle: int, *, type: int) -> None:
-        """1 reduced, 2 original, 3 and 4 the same iterated; counts from the next override or start on."""
-        if type not in OVERRIDE_TYPES:
-            reason = f"type = {type} is not one of 1, 2, 3, 4"
-            self._axis.refuse("set_override_type", BAD_OVERRIDE_TYPE, reason, type=type)
-        self._axis.ptp.override_type = type
 
     # new target (2.3), new velocity and new target (2.4)
 

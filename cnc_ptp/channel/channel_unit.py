@@ -173,9 +173,9 @@ class ChannelUnit(Unit):
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
         """The PLC's answer to a handshake request."""
-        open_requests = self._sequence.open_requests
-        if id not in open_requests:
-            waiting = ", ".join(map(str, sorted(open_requests))) or "none"
+        handshake = self._sequence.handshake
+        if id not in handshake:
+            waiting = ", ".join(map(str, handshake.open_ids)) or "none"
             self._refuse("acknowledge", NOTHING_TO_ACKNOWLEDGE, f"no request {id} waits (waiting: {waiting})", id=id)
         self._sequence.acknowledge(id)
 
@@ -418,7 +418,7 @@ class ChannelUnit(Unit):
     def _watch_handshake(self, first_cycle: int) -> None:
         """The PLC must acknowledge within P-MACH-00060."""
         limit = self._handshake_cycles
-        request = self._sequence.overdue(first_cycle, limit) if limit else None
+        request = self._sequence.handshake.overdue(first_cycle, limit) if limit else None
         if request is not None:
             function = f"{request.kind}{request.number:02d}" if request.kind == "M" else request.kind
             what = f"{function}{f' of spindle {request.spindle}' if request.spindle else ''} in line {request.line}"

@@ -13,6 +13,7 @@ from typing import Any
 
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
 from cnc_ptp.channel.control_functions import control_commands, reset_commands
+from cnc_ptp.channel.handshake import UNSENT
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
 from cnc_ptp.channel.spindle_reports import NOTHING, Expectation
 from cnc_ptp.channel.waits import OUTPUT, WAITING, Moment, Outgoing, Wait, goes_out
@@ -35,8 +36,6 @@ from cnc_ptp.protocol.blocks import Command, HandshakeRequest
 
 SPEED_WITHOUT_EFFECT = 22023
 NO_TOOL_RECORD = 22027
-UNSENT = -1
-"""Cycle of a request that has not gone out."""
 
 
 class FunctionOutput:

@@ -17,12 +17,13 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
-from cnc_ptp.channel.function_output import UNSENT, FunctionOutput
+from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 from cnc_ptp.path.path_motion import PathMotion
-from cnc_ptp.protocol.blocks import CycleBlock, HandshakeRequest
+from cnc_ptp.protocol.blocks import CycleBlock
 
 ENDS = ("stop", "decouple")
 """Commands that are sent although the program was aborted."""
@@ -77,8 +78,7 @@ class ProgramSequence:
         """The moments that have come: the path waits for the functions of these moments."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
-        self.open_requests: dict[int, HandshakeRequest] = {}
-        """Handshake requests by number that the PLC has not acknowledged."""
+        self.handshake = Handshake()
         self._feedback: Mapping[str, CycleBlock] = {}
         self.notes: list[tuple[int, str]] = []
         """Warnings for the channel to publish: number and text."""
@@ -147,15 +147,10 @@ class ProgramSequence:
         self._queue(self._functions.of_block(self._block, Moment.EVENT))
         return True
 
-    def overdue(self, cycle: int, limit: int) -> HandshakeRequest | None:
-        """The oldest request that the PLC has left unacknowledged for `limit` cycles."""
-        sent = (request for request in self.open_requests.values() if request.cycle != UNSENT)
-        return next((request for request in sent if cycle - request.cycle >= limit), None)
-
     def acknowledge(self, request_id: int) -> None:
         """The PLC has acknowledged a request."""
-        request = self.open_requests.pop(request_id)
-        if request.cycle != UNSENT:
+        request = self.handshake.acknowledge(request_id)
+        if request is not None:
             self._functions.acknowledged(request)
 
     def take_outgoing(self, first_cycle: int) -> Outgoing:
@@ -196,7 +191,7 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
-        waits = [wait.text(self.open_requests) for wait in self._waited_for()]
+        waits = [wait.text(self.handshake) for wait in self._waited_for()]
         return " and ".join(text for text in waits if text)
 
     def held_by_override(self, cycle: int) -> list[str]:
@@ -215,7 +210,7 @@ class ProgramSequence:
             return True
         if self.phase not in WAITING:
             return False
-        done = [w for w in self._waited_for() if w.fulfilled(first_cycle, self._feedback, self.open_requests)]
+        done = [w for w in self._waited_for() if w.fulfilled(first_cycle, self._feedback, self.handshake)]
         self._waits = [wait for wait in self._waits if wait not in done]
         if self._waited_for():
             return False
@@ -308,7 +303,7 @@ class ProgramSequence:
         self._block = None
         self._waits = []
         self._awaits_event = False
-        self.open_requests.clear()
+        self.handshake.clear()
         self.phase = Phase.IDLE
 
     def _queue(self, outgoing: Outgoing) -> None:
@@ -326,7 +321,7 @@ class ProgramSequence:
             for wait in later:
                 wait.renew(newer, waits_too=waits_too)
         self._add_waits(outgoing.waits)
-        self.open_requests |= {request.id: request for request in outgoing.requests if request.acknowledge_needed}
+        self.handshake.add(outgoing.requests)
 
     def _add_waits(self, waits: Sequence[Wait]) -> None:
         """The list is in the order of the moments."""

@@ -15,6 +15,7 @@ from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
+from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.unit import PLC
@@ -58,11 +59,10 @@ class ClockNode(Node):
         self._count = machine.block_cycles
         self._cycle_ns = machine.cycle_time_us * 1000
         self._block_time = machine.block_cycles * machine.cycle_time_us * 1e-6
-        self._watchdog = machine.watchdog_ms / 1000.0
         self._first_cycle = 0
         self._ready: set[str] = set()
         self._open: set[str] = set()
-        self._heard: dict[str, float] = {}
+        self._watchdog = Watchdog(self._reporting, seconds=machine.watchdog_ms / 1000.0)
         self._started_at: float | None = None
         self._start_ns = 0
         self._ended_at: float | None = None
@@ -95,7 +95,7 @@ class ClockNode(Node):
             self._drop_silent_nodes()
             if not self._open:
                 self._tick(0)
-            elif time.monotonic() - self._heartbeat_at > self._watchdog / 4.0:
+            elif time.monotonic() - self._heartbeat_at > self._watchdog.seconds / 4.0:
                 self._publish_heartbeat()
         else:
             while self._ended_at is None and time.monotonic() >= self._due_at():
@@ -134,7 +134,7 @@ class ClockNode(Node):
         self._first_cycle += self._count
         if self._free_run:
             self._open = set(self._reporting)
-            self._heard = dict.fromkeys(self._expected - {MONITOR}, time.monotonic())
+            self._watchdog.restart()
 
     def _publish_tick(self, count: int, scheduled_ns: int) -> None:
         tick = msg.CycleTick(first_cycle=self._first_cycle, count=count, scheduled_monotonic_ns=scheduled_ns)
@@ -149,26 +149,23 @@ class ClockNode(Node):
     def _on_report(self, message: msg.BlockReport) -> None:
         if message.first_cycle < 0:
             self._ready.add(message.source)
-        elif message.source in self._heard:
-            self._heard[message.source] = time.monotonic()
+        elif self._watchdog.heard(message.source):
             self._reporting.add(message.source)
             if message.first_cycle == self._first_cycle - self._count:
                 self._open.discard(message.source)
                 self.advance()
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
-        if message.source in self._heard:
-            self._heard[message.source] = time.monotonic()
+        self._watchdog.heard(message.source)
 
     def _drop_silent_nodes(self) -> None:
-        now = time.monotonic()
-        silent = {name for name in self._open if now - self._heard[name] > self._patience(name)}
+        units = self._open & self._units
+        silent = {
+            *self._watchdog.silent(units, begun=self._first_cycle > self._count),
+            *self._watchdog.silent(self._open - units, begun=False),
+        }
         self._reporting -= silent
         self._open -= silent
-
-    def _patience(self, name: str) -> float:
-        begun = self._first_cycle > self._count and name in self._units
-        return self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
 
     def _on_plc(self, message: msg.PlcBlock) -> None:
         if message.run_done:

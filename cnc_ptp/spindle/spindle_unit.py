@@ -19,6 +19,7 @@ from cnc_ptp.protocol.unit import PLC, UPSTREAM_LOST, Handler, Unit
 from cnc_ptp.spindle.command_queue import MOTION, CommandQueue, QueuedCommand
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import COMMAND_WAITS, GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, SLAVE_CANNOT
+from cnc_ptp.spindle.gear_commands import GearCommands
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
 from cnc_ptp.spindle.procedures import Procedures
@@ -65,6 +66,7 @@ class SpindleUnit(Unit):
             self,
             self._rotation,
             PositionCommands(self.spindle, procedures),
+            GearCommands(self.spindle, procedures),
             self._power,
             self._coupling,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),

@@ -43,6 +43,7 @@ from cnc_ptp.nodes.unit.diagnostics import UnitDiagnostics
 from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.nodes.unit.parameters import declare_parameters, refused_change
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments, objection
+from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
@@ -79,7 +80,6 @@ class UnitNode(Node):
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
-        self._watchdog = machine.watchdog_ms / 1000.0
         self._runner = UnitRunner(unit, watchdog_cycles=machine.watchdog_ms * 1000 // machine.cycle_time_us)
         wires = wiring(machine)
         self._inputs: Inputs = wires[unit.name]
@@ -104,9 +104,8 @@ class UnitNode(Node):
         self._busy = False
         self.failure: CncError | None = None
         """Why the node cannot continue."""
-        now = time.monotonic()
-        self._heard = dict.fromkeys((CLOCK, *self._gate.sources), now)
-        self._heartbeat_at = self._checked = now
+        self._watchdog = Watchdog((CLOCK, *self._gate.sources), seconds=machine.watchdog_ms / 1000.0)
+        self._heartbeat_at = time.monotonic()
         self._claim: socket.socket | None = None
         self._machine = machine
         self._own_name = MACHINE if unit.kind == PLC else unit.name
@@ -126,7 +125,7 @@ class UnitNode(Node):
         self._make_subscriptions()
         self._make_services()
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
-        self.create_timer(self._watchdog / 4.0, self._watch)
+        self.create_timer(self._watchdog.seconds / 4.0, self._watch)
         self.create_timer(DIAGNOSTICS_PERIOD, self._publish_diagnostics)
         threading.Thread(target=self._heartbeat_while_busy, daemon=True).start()
 
@@ -191,7 +190,7 @@ class UnitNode(Node):
         if not self._running and message.scheduled_monotonic_ns:
             process.take_priority()
         self._running, self.paced = True, bool(message.scheduled_monotonic_ns)
-        self._heard[CLOCK] = time.monotonic()
+        self._watchdog.heard(CLOCK)
         self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
         if self.paced:
             self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
@@ -203,7 +202,7 @@ class UnitNode(Node):
         self._end_if_over()
 
     def _on_block(self, source: str, message: Any) -> None:
-        self._heard[source] = time.monotonic()
+        self._watchdog.heard(source)
         block = convert.message_to_block(message)
         if isinstance(block, PlcBlock):
             self.complete_commands(block)
@@ -225,8 +224,7 @@ class UnitNode(Node):
         self._event_publisher.publish(convert.event_to_message(event, self.stamp(event.cycle)))
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
-        if message.source in self._heard:
-            self._heard[message.source] = time.monotonic()
+        self._watchdog.heard(message.source)
 
     def _on_service(self, command: str, request: Any, response: Any) -> Any:
         asked = Command(self.unit.name, command, self.arguments(command, request))
@@ -289,14 +287,14 @@ class UnitNode(Node):
         master = self._runner.master
         self._gate.follow(master)
         if master is not None and master not in self._masters:
-            self._heard[master] = time.monotonic()
+            self._watchdog.watch(master)
             received = partial(self._on_master_block, master)
             self._masters[master] = self.create_subscription(
                 BLOCK_TYPES[self._kinds[master]], block_topic(master), received, REMEMBERED_BLOCKS
             )
 
     def _on_master_block(self, master: str, message: Any) -> None:
-        self._heard[master] = time.monotonic()
+        self._watchdog.heard(master)
         self._gate.add_master_block(master, convert.message_to_block(message))
         self._compute_ready_blocks()
 
@@ -352,21 +350,16 @@ class UnitNode(Node):
 
     def _watch(self) -> None:
         """Reports that this node is alive while it waits, and drops sources silent for the watchdog time."""
-        now = time.monotonic()
-        stalled, self._checked = now - self._checked > self._watchdog / 2.0, now
-        if stalled or self._gate.closed or not self._running:
-            self._heard = dict.fromkeys(self._heard, now)
+        if self._watchdog.was_suspended() or self._gate.closed or not self._running:
+            self._watchdog.restart()
             return
         if self._alone:
             self._tick_alone()
             return
-        if now - self._heartbeat_at > self._watchdog / 4.0:
+        if time.monotonic() - self._heartbeat_at > self._watchdog.seconds / 4.0:
             self._publish_heartbeat()
-        begun = self._gate.next_cycle > self._count
-        patience = self._watchdog if begun else max(self._watchdog, process.START_PATIENCE)
-        for source in self._gate.missing():
-            if now - self._heard[source] > patience:
-                self._lose(source, None)
+        for source in self._watchdog.silent(self._gate.missing(), begun=self._gate.next_cycle > self._count):
+            self._lose(source, None)
         self._compute_ready_blocks()
 
     def _lose(self, source: str, reason: str | None) -> None:
@@ -383,7 +376,7 @@ class UnitNode(Node):
 
     def _tick_alone(self) -> None:
         """Without a clock the unit ticks on its own, so that it finishes its ramp."""
-        blocks = max(1, round(self._watchdog / 4.0 * 1e9 / (self._cycle_ns * self._count)))
+        blocks = max(1, round(self._watchdog.seconds / 4.0 * 1e9 / (self._cycle_ns * self._count)))
         for _ in range(blocks):
             self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
             self._compute_ready_blocks()
@@ -407,7 +400,7 @@ class UnitNode(Node):
 
     def _heartbeat_while_busy(self) -> None:
         """A long command (a big program is interpreted) must not look like a dead node, but an endless one must."""
-        period = self._watchdog / 4.0
+        period = self._watchdog.seconds / 4.0
         busy_for = 0.0
         while self.context.ok():
             if self._busy and 0.0 < busy_for < LONGEST_COMMAND:

@@ -1,0 +1,45 @@
+"""Watchdog of a node: which of the other nodes have fallen silent."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+from cnc_ptp.nodes.process import START_PATIENCE
+
+
+class Watchdog:
+    """When other nodes were last heard; one that is waited for is silent after the watchdog time."""
+
+    def __init__(self, names: Iterable[str], *, seconds: float) -> None:
+        """`seconds`: the watchdog time."""
+        self.seconds = seconds
+        self._looked = time.monotonic()
+        self._heard = dict.fromkeys(names, self._looked)
+
+    def watch(self, name: str) -> None:
+        """One more node, which is heard now."""
+        self._heard[name] = time.monotonic()
+
+    def heard(self, name: str) -> bool:
+        """A message of `name` has come. False for a node that is not watched."""
+        if name not in self._heard:
+            return False
+        self._heard[name] = time.monotonic()
+        return True
+
+    def restart(self) -> None:
+        """All count as heard now."""
+        self._heard = dict.fromkeys(self._heard, time.monotonic())
+
+    def was_suspended(self) -> bool:
+        """To be asked regularly: this process itself was suspended since the last time, and heard nobody."""
+        now = time.monotonic()
+        suspended, self._looked = now - self._looked > self.seconds / 2.0, now
+        return suspended
+
+    def silent(self, names: Iterable[str], *, begun: bool) -> list[str]:
+        """Those of the watched `names` that are silent; until the run has `begun` they have longer."""
+        patience = self.seconds if begun else max(self.seconds, START_PATIENCE)
+        now = time.monotonic()
+        return [name for name in names if now - self._heard[name] > patience]
