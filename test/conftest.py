@@ -18,7 +18,9 @@ def strict(take):
     """`take` of an axis or a spindle, only from the states that its table of transitions names."""
 
     def checked(self, transition):
-        assert self.state in transition.sources, f"{self.name}: no transition '{transition.cause}' from {self.state.name}"
+        assert self.state in transition.sources, (
+            f"{self.name}: no transition '{transition.cause}' from {self.state.name}"
+        )
         take(self, transition)
 
     return checked

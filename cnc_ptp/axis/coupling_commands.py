@@ -263,7 +263,7 @@ class CouplingCommands:
 
     def _refuse_free(self, command: str) -> NoReturn:
         state = state_name(self._axis.state)
-        self._axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state})", state=state)
+        self._axis.refuse(command, NOT_COUPLED, f"the axis is not coupled (it is in {state})", state=state)
 
     # decouple
 
