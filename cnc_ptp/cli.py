@@ -18,7 +18,7 @@ from cnc_ptp.commands.completion import (
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
-from cnc_ptp.ros_arguments import namespace_option, ros_arguments
+from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
@@ -33,7 +33,9 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
-        click.option("--duration", type=DURATION, help="Seconds; without it the run ends automatically."),
+        click.option(
+            "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
+        ),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
         click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
         MACHINE,
@@ -91,7 +93,7 @@ def simulate_command(**options: Any) -> None:
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second on /<unit>/state, 0 = none (P-MACH-00070)."
 )
 def run_command(**options: Any) -> None:
-    """Run a machine as a ROS graph, one process per node, until the job is finished."""
+    """Run a machine as a ROS graph, one process per node."""
     from cnc_ptp.commands.run.run import run
 
     if options["stay"] and options["duration"] is not None:
@@ -111,9 +113,12 @@ UNIT = click.argument("unit", shell_complete=complete_unit)
 
 
 @main.command("status")
-@namespace_option
+@client_namespace_option
 def status_command(**options: Any) -> None:
-    """Show all units of the running machine: state, position, speed, override, error."""
+    """Show all units of the running machine.
+
+    State, position, speed, override, error.
+    """
     from cnc_ptp.commands.client.status import status
 
     sys.exit(status(**options))
@@ -124,15 +129,18 @@ def status_command(**options: Any) -> None:
 @click.argument("command", shell_complete=complete_command)
 @click.argument("words", nargs=-1, metavar="[NAME=VALUE]...", shell_complete=complete_word)
 @click.option(
-    "--wait", is_flag=True, help="Until the unit is at a standstill, turns at its speed, or its program has ended."
+    "--wait",
+    is_flag=True,
+    help="Wait until the axis is at a standstill (in its target window, or its actual velocity is 0), the spindle is "
+    "at a standstill or has reached its commanded speed (within the tolerance P-AXIS-00217), or the program has ended.",
 )
 @COMPLETE_FROM
-@namespace_option
+@client_namespace_option
 def do_command(machine: str | None, **options: Any) -> None:
-    """Give one COMMAND to a UNIT of the running machine: `do x move_absolute target=100 velocity=50`.
+    """Give one COMMAND to a UNIT of the running machine.
 
-    Arguments are name=value; where a command must have just one, its value is enough: `do channel mdi "G1 X10 F500"`.
-    Status 1 when the machine refuses.
+    Arguments are name=value: `do x move_absolute target=100 velocity=50`. Where a command must have just one, its
+    value is enough: `do channel mdi "G1 X10 F500"`. Status 1 when the machine refuses.
     """
     from cnc_ptp.commands.client.do import do
 
@@ -142,13 +150,16 @@ def do_command(machine: str | None, **options: Any) -> None:
 @main.command("jog")
 @click.argument("axis", shell_complete=complete_axis)
 @click.argument("direction", type=click.Choice(["+", "-"]))
-@click.option("--speed", type=POSITIVE, required=True, help="mm/s, deg/s.")
-@click.option("--distance", type=POSITIVE, help="mm, deg: ends after about this distance.")
-@click.option("--time", "seconds", type=POSITIVE, help="Seconds.")
+@click.option("--speed", type=POSITIVE, required=True, help="Speed of the axis in mm/s or deg/s.")
+@click.option("--distance", type=POSITIVE, help="End the jog after about this distance in mm or deg.")
+@click.option("--time", "seconds", type=POSITIVE, help="End the jog after this many seconds.")
 @COMPLETE_FROM
-@namespace_option
+@client_namespace_option
 def jog_command(machine: str | None, **options: Any) -> None:
-    """Move an AXIS of the running machine while this command runs; Ctrl-C halts it."""
+    """Move an AXIS of the running machine while this command runs.
+
+    Ctrl-C halts it.
+    """
     from cnc_ptp.commands.client.jog import jog
 
     sys.exit(jog(**options))
@@ -156,12 +167,15 @@ def jog_command(machine: str | None, **options: Any) -> None:
 
 @main.command("watch")
 @click.argument("units", nargs=-1, metavar="[UNIT]...", shell_complete=complete_shown_unit)
-@click.option("--rate", type=RATE, default=5.0, show_default=True, help="Times per second.")
-@click.option("--time", "seconds", type=POSITIVE, help="Seconds; without it until Ctrl-C.")
+@click.option("--rate", type=RATE, default=5.0, show_default=True, help="Updates per second.")
+@click.option("--time", "seconds", type=POSITIVE, help="End after this many seconds; default: at Ctrl-C.")
 @COMPLETE_FROM
-@namespace_option
+@client_namespace_option
 def watch_command(machine: str | None, **options: Any) -> None:
-    """Show units of the running machine, all without a name, as a table that is kept up to date."""
+    """Show units of the running machine in a table, kept up to date.
+
+    All units if none is named.
+    """
     from cnc_ptp.commands.client.status import watch
 
     sys.exit(watch(**options))
@@ -171,7 +185,10 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @click.argument("program", type=click.Path(dir_okay=False))
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
 def check_command(**options: Any) -> None:
-    """Check an NC program: syntax and modal states, errors with line and column."""
+    """Check an NC program: syntax and modal states.
+
+    Errors are shown with line and column.
+    """
     from cnc_ptp.commands.look.check import check
 
     sys.exit(check(**options))
@@ -179,15 +196,15 @@ def check_command(**options: Any) -> None:
 
 @main.command("replay")
 @RECORDING
-@click.option("--verify", is_flag=True, help="Re-run the kernel and compare every setpoint to the bit (the default).")
-@click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
-@click.option("--rate", type=RATE, default=1.0, show_default=True, help="Speed of --publish.")
 @click.option(
-    "--inputs", is_flag=True, help="PLC inputs too with --publish: a machine on this ROS domain acts on them."
+    "--verify", is_flag=True, help="Compute the run again and compare every setpoint to the bit (the default)."
 )
+@click.option("--publish", is_flag=True, help="Publish the recorded topics again.")
+@click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor for --publish, 1 = real time.")
+@click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
 @namespace_option
 def replay_command(**options: Any) -> None:
-    """Re-run the kernel from a recording, or publish the recording again."""
+    """Compute a recorded run again, or publish the recording."""
     from cnc_ptp.commands.run.replay import replay
 
     if not options["publish"]:
@@ -223,7 +240,10 @@ def part_options(function: Callable[..., Any]) -> Callable[..., Any]:
 @part_options
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="HTML file to write.")
 def report_command(**options: Any) -> None:
-    """Make one self-contained HTML page of a recording: plots, events, errors, statistics."""
+    """Make one self-contained HTML page of a recording.
+
+    It shows plots, events, errors and statistics.
+    """
     from cnc_ptp.commands.look.report import report
 
     sys.exit(report(**options))
@@ -236,7 +256,7 @@ def report_command(**options: Any) -> None:
 @part_options
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help=".svg, .png or .html; RECORDING.svg without it.")
 def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **options: Any) -> None:
-    """Draw a recording over time, as the figures of the documentation are drawn.
+    """Draw a recording over time, in the style of the documentation.
 
     A TOPIC is a unit and a field of its state, x/set_velocity, or a field of all units that move, following_error.
     Without one each axis that moves is drawn with position, velocity, acceleration and following error, each spindle
@@ -250,7 +270,10 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
 @main.command("params")
 @click.argument("words", nargs=-1, metavar="[WORD]...")
 def params_command(words: tuple[str, ...]) -> None:
-    """Show the parameter reference: what matches the WORDs (id, number, parts of names, text), or all groups."""
+    """Show the parameter reference.
+
+    Shows what matches the WORDs (id, number, parts of names, text), or all groups.
+    """
     from cnc_ptp.commands.look.params import params
 
     sys.exit(params(" ".join(words)))
@@ -281,7 +304,10 @@ def require_source(options: dict[str, Any]) -> None:
 
 @main.group("identify")
 def identify_group() -> None:
-    """Identify an axis: friction table, drive time constant, position controller gain."""
+    """Identify the friction or the drive of an axis.
+
+    Gives friction table, drive time constant and position controller gain.
+    """
 
 
 @identify_group.command("friction")
@@ -331,7 +357,10 @@ def identify_dynamics_command(**options: Any) -> None:
     help="Keep the run in this MCAP file; those of --compare in FILE_1, FILE_2, … in their order.",
 )
 def circle_command(**options: Any) -> None:
-    """Circle test of a machine, run offline: circular deviation (ISO 230-4), quadrant peaks, polar plot."""
+    """Circle test of a machine, run offline.
+
+    Shows circular deviation (ISO 230-4), quadrant peaks and a polar plot.
+    """
     from cnc_ptp.commands.commissioning.circle import circle
 
     compared = options["compare"]

@@ -12,9 +12,9 @@ INTERRUPTED = 26106
 
 
 def end_command(number: int, frame: FrameType | None) -> None:
-    """Handler of a signal while no run is under way: reports it, and ends the process with 128 + `number`."""
+    """Handler of a signal while no run is active: reports it, and ends the process with 128 + `number`."""
     name = signal.Signals(number).name
-    text = f"the command was interrupted ({name}) while no run was under way; it ends here"
+    text = f"the command was interrupted ({name}); no run was active"
     print(f"P-ERR-{INTERRUPTED} {text}", file=sys.stderr)
     sys.exit(128 + number)
 

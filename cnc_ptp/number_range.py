@@ -13,6 +13,8 @@ from cnc_ptp.protocol.run_time import LONGEST_RUN
 class NumberRange(click.FloatRange):
     """A FloatRange that refuses what is not finite: no comparison with `nan` is true, so click lets it through."""
 
+    name = "number"
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         number = super().convert(value, param, ctx)
         if not math.isfinite(number):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -164,12 +164,12 @@ def _add_namespace(context: click.Context, parameter: click.Parameter, value: st
     context.obj = given.with_namespace(f"/{levels}" if levels else "")
 
 
-def namespace_option(function: Any) -> Any:
+def _namespace_option(text: str) -> Callable[[Any], Any]:
     """--namespace: the same as `--ros-args -r __ns:=/NAME`."""
-    return click.option(
-        "--namespace",
-        metavar="NAME",
-        expose_value=False,
-        callback=_add_namespace,
-        help="ROS namespace of all nodes: machines in different ones run side by side.",
-    )(function)
+    return click.option("--namespace", metavar="NAME", expose_value=False, callback=_add_namespace, help=text)
+
+
+namespace_option = _namespace_option(
+    "ROS namespace of all nodes: machines in different namespaces run at the same time."
+)
+client_namespace_option = _namespace_option("ROS namespace of the machine to talk to.")

@@ -2,7 +2,7 @@
 ; Zero point: front left corner, top of the blank. All contours are paths of the tool's centre.
 
 %L HOLE
-( one hole 12 mm deep at the present place, from and back to 5 mm above the part )
+( drill one hole 12 mm deep at the current position: starts and ends 5 mm above the part )
 N10 G91 G01 Z-11 F1500
 N20 G01 Z-6 F1200
 N30 G04 0.25                       ; let the drill clear the bottom

@@ -13,7 +13,7 @@ from launch import LaunchDescription
 OPTIONS = {
     "program": "NC program for the first channel",
     "scenario": "timed PLC commands (YAML)",
-    "duration": "seconds; without it the run ends automatically",
+    "duration": "seconds until the run ends; default: when everything is finished",
     "record": "MCAP recording to write",
     "state_rate": "live states a second, 0 = none",
     "namespace": "ROS namespace of all nodes",

@@ -18,7 +18,7 @@ from cnc_ptp.protocol.axis_states import state_name
 def refuse_free(axis: Axis, command: str) -> NoReturn:
     """Raises 23047: the command needs a slave."""
     state = state_name(axis.state)
-    axis.refuse(command, NOT_COUPLED, f"the axis is no slave (it is in {state})", state=state)
+    axis.refuse(command, NOT_COUPLED, f"the axis is not coupled (it is in {state})", state=state)
 
 
 class DecouplingCommands:

@@ -48,7 +48,7 @@ def check_page(output: str, **inputs: str | None) -> None:
     """Raises CncError 27030 for a report that is no .html file or would overwrite an input: recording="…"."""
     check_output(output, **inputs)
     if Path(output).suffix.lower() != ".html":
-        raise CncError(BAD_OUTPUT, f"{output}: a report is an .html page by its ending", "nothing was started")
+        raise CncError(BAD_OUTPUT, f"{output}: the file name of a report must end in .html", "nothing was started")
 
 
 def write_output(output: str, content: str | bytes, *, remains: str = "the result above is all") -> None:

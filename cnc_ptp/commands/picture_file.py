@@ -28,8 +28,8 @@ def picture_kind(output: str) -> str:
 def check_picture(output: str, **inputs: str | None) -> None:
     """Raises CncError 27030 for a picture that cannot be made or would overwrite an input: machine_file="…"."""
     if picture_kind(output) not in KINDS:
-        known = ", ".join(f".{kind}" for kind in KINDS)
-        raise CncError(BAD_OUTPUT, f"{output}: a picture is one of {known} by its ending", "nothing was started")
+        wrong = f"{output}: the file name of a picture must end in .svg, .png or .html"
+        raise CncError(BAD_OUTPUT, wrong, "nothing was started")
     check_output(output, **inputs)
 
 

@@ -183,7 +183,7 @@ def cycles_of(machine: MachineParameters, duration: float | None) -> int | None:
 
 @click.command()
 @node_command_line.MACHINE
-@click.option("--duration", type=DURATION, help="Seconds; without it the run ends automatically.")
+@click.option("--duration", type=DURATION, help="End after this many seconds; default: when everything is finished.")
 @click.option("--wait-for", multiple=True, help="Node besides the units that must be ready first, e.g. recorder.")
 @click.option("--free-run", is_flag=True, help="As fast as all nodes report their blocks.")
 def command(machine: str, duration: float | None, wait_for: tuple[str, ...], free_run: bool) -> None:

@@ -212,8 +212,8 @@ def publish_recording(path: str, *, rate: float, inputs: bool = False) -> int:
 
 @click.command()
 @click.argument("recording", type=click.Path(dir_okay=False))
-@click.option("--rate", type=RATE, default=1.0, show_default=True, help="2 = twice as fast.")
-@click.option("--inputs", is_flag=True, help="PLC inputs too: a machine on this ROS domain obeys them.")
+@click.option("--rate", type=RATE, default=1.0, show_default=True, help="Factor, 1 = real time.")
+@click.option("--inputs", is_flag=True, help="Publish PLC inputs too: a machine on this ROS domain acts on them.")
 def command(recording: str, rate: float, inputs: bool) -> None:
     """Publishes RECORDING again."""
     sys.exit(publish_recording(recording, rate=rate, inputs=inputs))

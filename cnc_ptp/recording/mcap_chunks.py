@@ -166,9 +166,10 @@ class McapRecords:
     def _require_magic(self) -> None:
         begin = bytes(self._data[: len(MCAP0_MAGIC)])
         if begin != MCAP0_MAGIC:
+            text, magic = (content.decode(errors="replace") for content in (begin, MCAP0_MAGIC))
             raise CncError(
                 NOT_MCAP,
-                f"recording {self.path}: not an MCAP file: it begins with {begin!r} instead of {MCAP0_MAGIC!r}",
+                f"recording {self.path}: not an MCAP file: it begins with {text!r} instead of {magic!r}",
                 "nothing was read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written",
             )
 

@@ -267,7 +267,7 @@ class Spindle:
             reason = f"the spindle is in ErrorStop (P-ERR-{self.error_id}); reset it first"
             self.refuse(command, NOT_READY, reason, state="ErrorStop", error=self.error_id)
         if self.state == S.DISABLED:
-            self.refuse(command, NOT_READY, "the spindle is in Disabled; give it power first", state="Disabled")
+            self.refuse(command, NOT_READY, "the spindle is in Disabled; power it on", state="Disabled")
 
     def fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: down to speed 0 on the spindle's ramp, state ErrorStop."""

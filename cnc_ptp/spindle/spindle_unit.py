@@ -303,7 +303,7 @@ class SpindleUnit(Unit):
     def _stays_behind(self, cycle: int, command: Command) -> None:
         """A slave without power: whoever has commanded its master is notified."""
         reason = f"cannot carry out '{command.command}' of its master {self._coupling.master}"
-        text = f"spindle {self.name}: {reason}: the spindle is in Disabled; give it power first; nothing was changed"
+        text = f"spindle {self.name}: {reason}: the spindle is in Disabled; power it on; nothing was changed"
         self._report(Severity.ERROR, cycle, SLAVE_CANNOT, text)
         if "source" in command.arguments:
             self._refused.append(Refusal(command.arguments["source"], SLAVE_CANNOT, text))

@@ -190,10 +190,10 @@ REFUSALS: Texts = {
         23047,
         ("set_coupling_factor", "set_cyclic_factor"),
         (*IN_ERROR, *FREE),
-        "the axis is no slave (it is in {state})",
+        "the axis is not coupled (it is in {state})",
     ),
     **refused(23050, ("set_cyclic_factor",), SLAVES, "the axis is not coupled cyclically"),
-    **refused(23047, DECOUPLES, FREE, "the axis is no slave (it is in {state})"),
+    **refused(23047, DECOUPLES, FREE, "the axis is not coupled (it is in {state})"),
 }
 
 

@@ -154,8 +154,8 @@ def test_a_slave_without_power() -> None:
     scenario = "- {at: 0.1, to: t, do: power, enabled: off}"
     bench = run(LINK + "G04 X0.3\nM3 S1000\nG01 X20 F6000", machine_of(*three()), scenario)
     text = (
-        "P-ERR-24025 spindle t: cannot carry out 'start' of its master s: the spindle is in Disabled; give it power "
-        "first; nothing was changed"
+        "P-ERR-24025 spindle t: cannot carry out 'start' of its master s: the spindle is in Disabled; power it on; "
+        "nothing was changed"
     )
     assert bench.errors() == [
         text,

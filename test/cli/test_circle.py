@@ -229,7 +229,7 @@ def test_a_feed_that_the_axes_cannot_hold_is_warned_about():
         ),
         (
             ["--radius", 25, "--feed", 2000, "-o", "circle.pdf"],
-            "P-ERR-27030 circle.pdf: a picture is one of .svg, .png, .html by its ending; nothing was started",
+            "P-ERR-27030 circle.pdf: the file name of a picture must end in .svg, .png or .html; nothing was started",
         ),
     ],
 )

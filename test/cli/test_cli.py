@@ -46,6 +46,15 @@ def test_help_everywhere(command):
         assert "Usage:" in result.output
 
 
+def test_no_summary_of_a_command_is_cut_off():
+    assert "..." not in call("--help").output.split("Commands:")[1]
+
+
+def test_a_word_is_no_number():
+    result = call("run", MILL, "--state-rate", "abc")
+    assert result.exit_code == 2 and "'--state-rate': 'abc' is not a valid number.\n" in result.stderr
+
+
 @pytest.mark.parametrize("node", ["nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player"])
 def test_nodes_have_help(node):
     done = subprocess.run(
@@ -394,7 +403,7 @@ def test_a_report_overwrites_neither_its_recording_nor_other_files(tmp_path):
     (tmp_path / "link.html").symlink_to(recording)
     before = recording.read_bytes(), MILL.read_bytes()
     own = f"P-ERR-27030 {{}} would overwrite the recording {recording}; nothing was started\n"
-    page = "P-ERR-27030 {}: a report is an .html page by its ending; nothing was started\n"
+    page = "P-ERR-27030 {}: the file name of a report must end in .html; nothing was started\n"
     for output, text in ((tmp_path / "link.html", own), (recording, own), (MILL, page), (tmp_path / "a.htm", page)):
         result = call("report", recording, "-o", output)
         assert (result.exit_code, result.stderr, result.stdout) == (2, text.format(output), "")
@@ -429,7 +438,7 @@ def test_help_needs_no_numerics():
     assert done.stdout == "set()\n"
 
 
-INTERRUPTED = "P-ERR-26106 the command was interrupted (SIGINT) while no run was under way; it ends here\n"
+INTERRUPTED = "P-ERR-26106 the command was interrupted (SIGINT); no run was active\n"
 
 
 @pytest.mark.usefixtures("handlers")

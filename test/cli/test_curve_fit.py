@@ -8,7 +8,7 @@ import pytest
 import yaml
 from commands_support import MILL, call, changed_mill, paste
 
-from cnc_ptp.commands.commissioning.curve_report import curve_yaml
+from cnc_ptp.commands.commissioning.curve_report import curve_yaml, rounded
 from cnc_ptp.commissioning.curve_fit import curve_fault, fit_curve
 from cnc_ptp.commissioning.curve_points import CurvePoint
 from cnc_ptp.commissioning.faults import CURVE_RISES
@@ -58,9 +58,9 @@ def test_the_manual_s_polynomial_is_told_to_its_digits():
         "a = a_konst + b1·Δn + b2·Δn² + b3·Δn³ with Δn = n - n_grenz",
         "n_grenz  12000 °/s (2000 rpm)",
         "a_konst  16000 °/s²",
-        "b1       -0.888888889 1/s",
-        "b2       2.08333333e-05 1/°",
-        "b3       -1.92901235e-10 s/°²",
+        "b1       -0.888888888889 1/s",
+        "b2       2.08333333333e-05 1/°",
+        "b3       -1.92901234568e-10 s/°²",
     ]
     assert rows(result.stdout) == [[n, n / 6.0, a, a, 0.0, 0.0] for n, a in POINTS]
     assert "warning" not in result.stdout
@@ -70,9 +70,9 @@ def test_the_manual_s_hyperbola_and_what_four_points_make_of_it():
     """Page 46: three points are its curve, the fourth lies 6 % beside; in the table when all are asked for."""
     three, four = fit("hyperbola", POINTS[:3]), fit("hyperbola", POINTS)
     assert three.stdout.splitlines()[4:7] == [
-        "b1       22857.1429 °/s²",
-        "b2       0.416666667",
-        "b3       0.0285714286",
+        "b1       22857.1428571 °/s²",
+        "b2       0.416666666667",
+        "b3       0.0285714285714",
     ]
     assert [row[4] for row in rows(three.stdout)] == [0.0, 0.0, 0.0]
     assert four.stdout.startswith("Acceleration curve: hyperbola least squares over 4 points\n")
@@ -81,7 +81,7 @@ def test_the_manual_s_hyperbola_and_what_four_points_make_of_it():
 
 @pytest.mark.parametrize("kind", ["polynomial", "hyperbola"])
 def test_a_machine_takes_the_lines_and_the_time_is_that_of_its_spindle(kind, tmp_path):
-    """The coefficients come to the kernel to the last bit; speed reached after the time that was printed."""
+    """The coefficients come to the kernel as they are printed; speed reached after the time that was printed."""
     points = POINTS if kind == "polynomial" else POINTS[:3]
     result = fit(kind, points, "--a-min", 2000, "--top-speed", 36_000)
     assert result.exit_code == 0, result.output
@@ -147,7 +147,7 @@ def test_pictures(tmp_path):
     assert set(re.findall(r"#[0-9a-f]{6}", body)) <= set(DARK)
     assert png.startswith(b"\x89PNG\r\n")
     assert page.startswith(b"<!DOCTYPE html>")
-    assert "b3       -1.92901235e-10 s/°²" in page.decode()
+    assert "b3       -1.92901234568e-10 s/°²" in page.decode()
     fit("polynomial", POINTS, "--a-min", 2000, "-o", tmp_path / "again.svg")
     assert (tmp_path / "again.svg").read_bytes() == svg
 
@@ -162,6 +162,11 @@ def test_a_curve_that_no_spindle_can_run_on_is_shown_but_not_written(tmp_path):
     assert len(rows(result.stdout)) == 3
     assert "from 0 to" not in result.stdout
     assert picture.exists() and not lines.exists()
+
+
+def as_written(curve):
+    """With the digits of the lines for the machine file."""
+    return curve._replace(b1=rounded(curve.b1), b2=rounded(curve.b2), b3=rounded(curve.b3))
 
 
 def test_what_the_command_accepts_the_machine_accepts(tmp_path):
@@ -180,7 +185,7 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
         fault = curve_fault(found)
         pasted = paste(machine, curve_yaml(found, "s", 0), tmp_path / "pasted.yaml")
         if fault is None or fault.number == CURVE_RISES:
-            assert read_machine(str(pasted)).spindles["s"].gears[1].curve == found.parameters
+            assert read_machine(str(pasted)).spindles["s"].gears[1].curve == as_written(found.parameters)
         else:
             with pytest.raises(ParameterError, match=f"the {kind} gives .* °/s² at"):
                 read_machine(str(pasted))
@@ -194,7 +199,7 @@ def test_what_the_command_accepts_the_machine_accepts(tmp_path):
         (["--point", "12000"], "P-ERR-27041 point '12000': it is not SPEED:ACCELERATION, two numbers; nothing was fitted\n"),
         (options(POINTS[:3]), "P-ERR-27044 the polynomial needs a point at the limit speed and 3 above it, 2 above it given; nothing was fitted\n"),
         (["--csv", "/nowhere.csv"], "P-ERR-26110 point file /nowhere.csv cannot be read: No such file or directory; nothing was started\n"),
-        ([*options(POINTS), "-o", "curve.pdf"], "P-ERR-27030 curve.pdf: an output is a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml) by its ending; nothing was started\n"),
+        ([*options(POINTS), "-o", "curve.pdf"], "P-ERR-27030 curve.pdf: its name must end in .svg, .png or .html (picture), .yaml or .yml (lines for the machine file); nothing was started\n"),
         ([*options(POINTS), "--spindle", "s 1"], "P-ERR-27051 spindle name 's 1' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
         ([*options(POINTS), "--spindle", ""], "P-ERR-27051 spindle name '' must be lower-case letters, digits and _, beginning with a letter; nothing was fitted\n"),
         ([*options(POINTS), "--spindle", "plc"], "P-ERR-27051 spindle name 'plc' is taken by another node; nothing was fitted\n"),

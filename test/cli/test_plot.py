@@ -180,7 +180,7 @@ def test_page_of_some_plots(recording):
 
 def test_output_that_is_no_picture_or_the_recording(recording):
     result = call("plot", recording, "-o", "run.pdf")
-    text = "P-ERR-27030 run.pdf: a picture is one of .svg, .png, .html by its ending; nothing was started\n"
+    text = "P-ERR-27030 run.pdf: the file name of a picture must end in .svg, .png or .html; nothing was started\n"
     assert (result.exit_code, result.stderr) == (2, text)
 
 

@@ -17,7 +17,7 @@ from cnc_ptp.protocol.commands import COMMANDS
 UNITS = {"axis": (PTP, "y"), "spindle": (MILL, "s"), "channel": (MILL, "channel"), "plc": (MILL, "plc")}
 ALL = {kind: services | (COUPLING_SERVICES if kind == "axis" else {}) for kind, services in SERVICES.items()}
 NO_AXIS = "there is no axis ''. Known: x, z, c"
-NO_SLAVE = "the axis is no slave (it is in Standstill)"
+NO_SLAVE = "the axis is not coupled (it is in Standstill)"
 REFUSED = {
     ("axis", "move_absolute"): "argument 'target' is missing",
     ("axis", "move_relative"): "argument 'distance' is missing",

@@ -90,13 +90,13 @@ def test_a_warning_is_shown_and_a_refusal_is_status_1(machine):
     [
         (
             ["do", "q", "halt"],
-            "P-ERR-26111 the machine has no unit 'q'; nothing was asked. Known: channel, x, y, s, plc",
+            "P-ERR-26111 the machine has no unit 'q'; nothing was sent. Known: channel, x, y, s, plc",
         ),
         (
             ["watch", "plc"],
-            "P-ERR-26111 the machine has no channel or axis or spindle 'plc'; nothing was asked. Known: ",
+            "P-ERR-26111 the machine has no channel or axis or spindle 'plc'; nothing was sent. Known: ",
         ),
-        (["jog", "s", "+", "--speed", "1"], "P-ERR-26111 the machine has no axis 's'; nothing was asked. Known: x, y"),
+        (["jog", "s", "+", "--speed", "1"], "P-ERR-26111 the machine has no axis 's'; nothing was sent. Known: x, y"),
         (["do", "x", "move_absolute"], "P-ERR-22001 axis x: move_absolute refused: argument 'target' is missing"),
         (["status", "--namespace", "elsewhere"], "P-ERR-26135 no machine is running on ROS domain "),
         (["status", "--ros-args", "-r", "__ns:=/other"], "P-ERR-26135 no machine is running on ROS domain "),

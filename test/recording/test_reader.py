@@ -183,14 +183,22 @@ def test_missing_file(tmp_path):
     )
 
 
-@pytest.mark.parametrize("content", [b"", b"\x89MCAP0\r", b"SQLite format 3\0 and more"])
-def test_file_that_is_no_mcap(scratch, content):
+@pytest.mark.parametrize(
+    ("content", "shown"),
+    [
+        (b"", ""),
+        (b"\x89MCAP0\r", "�MCAP0\r"),
+        (b"SQLite format 3\0 and more", "SQLite f"),
+        (b"# cnc_ptp\n", "# cnc_pt"),
+    ],
+)
+def test_file_that_is_no_mcap(scratch, content, shown):
     scratch.write_bytes(content)
     with pytest.raises(CncError) as error:
         read_recording(scratch)
     assert str(error.value) == (
-        f"P-ERR-26002 recording {scratch}: not an MCAP file: it begins with {content[:8]!r} instead of "
-        "b'\\x89MCAP0\\r\\n'; nothing was "
+        f"P-ERR-26002 recording {scratch}: not an MCAP file: it begins with {shown!r} instead of "
+        "'�MCAP0\\r\\n'; nothing was "
         "read, give a file that cnc_ptp or 'ros2 bag record --storage mcap' has written"
     )
 

@@ -493,13 +493,13 @@ CASES: list[tuple[int, Ask, str, dict[str, Any]]] = [
     (
         23047,
         of_y(SlaveBench, "decouple"),
-        "axis y: decouple refused: the axis is no slave (it is in Standstill); nothing was changed",
+        "axis y: decouple refused: the axis is not coupled (it is in Standstill); nothing was changed",
         {"state": "Standstill"},
     ),
     (
         23047,
         of_y(SlaveBench, "set_coupling_factor", factor=1.0),
-        "axis y: set_coupling_factor refused: the axis is no slave (it is in Standstill); nothing was changed",
+        "axis y: set_coupling_factor refused: the axis is not coupled (it is in Standstill); nothing was changed",
         {"state": "Standstill"},
     ),
     (

@@ -171,7 +171,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         standing(powered_at_start=False),
         "start",
         START,
-        "spindle s: start refused: the spindle is in Disabled; give it power first; nothing was changed",
+        "spindle s: start refused: the spindle is in Disabled; power it on; nothing was changed",
         {"state": "Disabled"},
     ),
     (

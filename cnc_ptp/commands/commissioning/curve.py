@@ -69,8 +69,8 @@ def check_outputs(outputs: Sequence[str], csv: str | None) -> None:
     """Raises CncError 27030 for an output that cannot be made or would overwrite the points."""
     for output in outputs:
         if picture_kind(output) not in (*KINDS, *YAML):
-            known = "a picture (.svg, .png, .html) or the lines for the machine file (.yaml, .yml)"
-            raise CncError(BAD_OUTPUT, f"{output}: an output is {known} by its ending", "nothing was started")
+            known = ".svg, .png or .html (picture), .yaml or .yml (lines for the machine file)"
+            raise CncError(BAD_OUTPUT, f"{output}: its name must end in {known}", "nothing was started")
         check_output(output, point_file=csv)
 
 

@@ -25,6 +25,8 @@ UNITS = {"polynomial": ("1/s", "1/°", "s/°²"), "hyperbola": ("°/s²", "", ""
 """Of b1, b2, b3."""
 LARGE_MISS = 0.05
 """Over the acceleration of the point."""
+DIGITS = 12
+"""Of the coefficients, fewer than the rounding of a fit leaves."""
 DRAWN = 400
 """Places of a drawn curve above the limit speed."""
 
@@ -44,7 +46,7 @@ def curve_lines(fit: CurveFit, *, usable: bool) -> Iterator[str]:
     yield f"a_konst  {parameters.constant:.10g} °/s²"
     coefficients = (parameters.b1, parameters.b2, parameters.b3)
     for number, (value, unit) in enumerate(zip(coefficients, UNITS[parameters.kind], strict=True), start=1):
-        yield f"b{number}       {value:.9g} {unit}".rstrip()
+        yield f"b{number}       {value:.{DIGITS}g} {unit}".rstrip()
     yield from point_lines(fit)
     if usable:
         top = fit.top_speed
@@ -88,6 +90,11 @@ def warning_lines(fit: CurveFit) -> Iterator[str]:
         yield WarningLine(f"no point lies between {last.speed:g} °/s and the largest speed {fit.top_speed:g} °/s")
 
 
+def rounded(value: float) -> float:
+    """To DIGITS significant digits: the same on every computer."""
+    return float(f"{value:.{DIGITS}g}")
+
+
 def curve_yaml(fit: CurveFit, spindle: str, gear: int) -> str:
     """The lines to paste into the machine file, in the units of the parameters."""
     parameters, (unit_1, unit_2, unit_3) = fit.parameters, UNITS[fit.parameters.kind]
@@ -96,9 +103,9 @@ def curve_yaml(fit: CurveFit, spindle: str, gear: int) -> str:
         ("n_grenz", round(1000.0 * parameters.limit_speed), "0.001 °/s", "00130"),
         ("a_konst", round(parameters.constant), "°/s²", "00007"),
         ("a_min", round(parameters.minimum), "°/s²", "00010"),
-        ("b1", parameters.b1, unit_1, "00026"),
-        ("b2", parameters.b2, unit_2, "00027"),
-        ("b3", parameters.b3, unit_3, "00028"),
+        ("b1", rounded(parameters.b1), unit_1, "00026"),
+        ("b2", rounded(parameters.b2), unit_2, "00027"),
+        ("b3", rounded(parameters.b3), unit_3, "00028"),
     )
     lines = [
         f"# {title(fit)}; spindle {spindle}, gear {gear}.",

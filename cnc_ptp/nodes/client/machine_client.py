@@ -68,7 +68,7 @@ class MachineClient(Node):
         if answer is None:
             where = f"ROS domain {self.context.get_domain_id()}"
             where += "" if self.get_namespace() == "/" else f" in namespace {self.get_namespace()}"
-            raise CncError(NO_MACHINE, f"no machine is running on {where}", "nothing was asked")
+            raise CncError(NO_MACHINE, f"no machine is running on {where}", "nothing was sent")
         for kind, value in zip(UNITS.values(), answer, strict=True):
             self.kinds |= dict.fromkeys(value.string_array_value, kind)
         self.kinds[PLC] = "plc"
@@ -93,7 +93,7 @@ class MachineClient(Node):
         if self.kinds.get(unit) not in wanted:
             known = ", ".join(name for name, kind in self.kinds.items() if kind in wanted) or "none"
             what = " or ".join(wanted) if kinds else "unit"
-            raise CncError(UNKNOWN_UNIT, f"the machine has no {what} '{unit}'", f"nothing was asked. Known: {known}")
+            raise CncError(UNKNOWN_UNIT, f"the machine has no {what} '{unit}'", f"nothing was sent. Known: {known}")
         return self.kinds[unit]
 
     def look_at(self, units: Iterable[str]) -> LatestBlocks:
