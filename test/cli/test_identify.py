@@ -361,7 +361,7 @@ def test_a_torque_in_coarse_steps_is_warned_about(tmp_path):
         assert abs(friction - plant_friction(machine, "x", speed)) <= scatter == 0.2
     warning = (
         "warning: axis x: scatter above 3 % of the friction at 2, 300 mm/s; half a digit of the torque, which counts as "
-        "scatter, is 0.2 Nm there: more digits a Nm in drive and P-AXIS-00325, 00326, 00392"
+        "scatter, is 0.2 Nm there: more digits per Nm in drive and P-AXIS-00325, 00326, 00392"
     )
     assert result.stdout.splitlines()[3] == warning
     assert f"# {warning}\n" in path.read_text()
