@@ -5,6 +5,7 @@ import pty
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 from commands_support import MILL, changed_mill
@@ -59,12 +60,14 @@ def slow_circle(*options):
     return [sys.executable, "-m", "cnc_ptp", *map(str, words)]
 
 
-def test_interrupted_runs_stop_on_their_ramps_and_are_status_1():
-    with subprocess.Popen(slow_circle(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
-        try:
-            running.wait(5)  # until it runs for certain
-        except subprocess.TimeoutExpired:
-            running.send_signal(signal.SIGINT)
+def test_interrupted_runs_stop_on_their_ramps_and_are_status_1(tmp_path):
+    recording = tmp_path / "circle.mcap"
+    job = slow_circle("--record", recording)
+    with subprocess.Popen(job, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        while running.poll() is None and not recording.is_file():  # its first block is under way then
+            time.sleep(0.1)
+        time.sleep(1.0)
+        running.send_signal(signal.SIGINT)
         output, errors = running.communicate(timeout=100)
     assert running.returncode == 1
     assert "failed: P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in errors
