@@ -45,20 +45,22 @@ def separate_nodes(given, switches, namespace):
     from cnc_ptp.commands.output_file import check_recording
     from cnc_ptp.machine.run_entries import read_entries
     from cnc_ptp.machine.runner import CLOCK
-    from cnc_ptp.nodes.supervisor import RunOrder, command_lines
+    from cnc_ptp.nodes.supervisor import RunOptions, command_lines
     from cnc_ptp.nodes.topics import RECORDER
     from cnc_ptp.parameters import read_machine
 
     duration = float(given.pop("duration")) if "duration" in given else None
     rate = float(given.pop("state_rate")) if "state_rate" in given else None
-    job = RunOrder(**given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate)
-    check_recording(job.record, machine_file=job.machine, NC_program=job.program, scenario=job.scenario)
-    machine = read_machine(job.machine)
-    read_entries(machine, program=job.program, scenario=job.scenario)
-    observers = [RECORDER] if job.record else []
+    options = RunOptions(
+        **given, duration=duration, free_run=switches["free_run"], stay=switches["stay"], state_rate=rate
+    )
+    check_recording(options.record, machine_file=options.machine, NC_program=options.program, scenario=options.scenario)
+    machine = read_machine(options.machine)
+    read_entries(machine, program=options.program, scenario=options.scenario)
+    observers = [RECORDER] if options.record else []
     return [
         node(executable, arguments, name=name, namespace=namespace, on_exit=Shutdown() if name == CLOCK else refused)
-        for name, (executable, *arguments) in command_lines(machine, job, observers)
+        for name, (executable, *arguments) in command_lines(machine, options, observers)
     ]
 
 
