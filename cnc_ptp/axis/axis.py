@@ -298,11 +298,7 @@ class Axis:
     def _report_limit(self, cycle: int) -> None:
         position, rest = self.ptp.state(cycle)[0], self.setpoint(cycle)[0]
         limit = self.checks.soft_limit(1.0 if position == self.parameters.soft_limit_positive else -1.0)
-        now = (
-            "the axis is at a standstill"
-            if rest == position
-            else f"the axis is at a standstill at {rest:g} {self.unit}"
-        )
+        now = "the axis is at a standstill" + (f" at {rest:g} {self.unit}" if rest != position else "")
         if self.external.mode is not None or self.superposition_moves(cycle):
             now = "external setpoints move the axis now"
         self._report_warning(cycle, JOG_AT_LIMIT, f"axis {self.name}: the jog has reached the {limit.text}; {now}")

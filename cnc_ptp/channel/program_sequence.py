@@ -176,9 +176,12 @@ class ProgramSequence:
             if lost := spindle.lost_speed(cycle, watched=runs and spindle.node not in waited_for):
                 self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program continues"))
 
+    def _holds(self, wait: Wait) -> bool:
+        """The path waits for it now."""
+        return self.phase in WAITING and wait.until in self._due
+
     def _waited_for(self) -> list[Wait]:
-        """The waits that hold the path now."""
-        return [wait for wait in self._waits if wait.until in self._due] if self.phase in WAITING else []
+        return [wait for wait in self._waits if self._holds(wait)]
 
     def _speeds_waited_for(self) -> set[str]:
         """Nodes of the spindles whose speed the path waits for: a missed speed is noticed there."""
@@ -210,9 +213,11 @@ class ProgramSequence:
             return True
         if self.phase not in WAITING:
             return False
-        done = [w for w in self._waited_for() if w.fulfilled(first_cycle, self._feedback, self.handshake)]
-        self._waits = [wait for wait in self._waits if wait not in done]
-        if self._waited_for():
+        waits = self._waited_for()
+        done = [wait for wait in waits if wait.fulfilled(first_cycle, self._feedback, self.handshake)]
+        if done:
+            self._waits = [wait for wait in self._waits if wait not in done]
+        if len(done) < len(waits):
             return False
         if self.phase is Phase.WAIT_GEAR:
             self._functions_before()
@@ -309,13 +314,13 @@ class ProgramSequence:
     def _queue(self, outgoing: Outgoing) -> None:
         """Functions go out with the next block; the path waits for them if their synchronisation type says so.
 
-        A newer function of a spindle replaces the wait for an older one, unless the path waits for that already: it
-        must not start because its spindle has been commanded something else by a measuring event.
+        A newer function of a spindle replaces the wait for an older one, unless that holds the path now: then a
+        measuring event would start a motion whose spindle does something else.
         """
         self._outgoing.commands += outgoing.commands
         self._outgoing.requests += outgoing.requests
         self.notes += outgoing.notes
-        later = [wait for wait in self._waits if self.phase not in WAITING or wait.until not in self._due]
+        later = [wait for wait in self._waits if not self._holds(wait)]
         for newer in outgoing.expected:
             waits_too = any(wait.expected is newer for wait in outgoing.waits)
             for wait in later:

@@ -28,7 +28,8 @@ def picture_kind(output: str) -> str:
 def check_picture(output: str, **inputs: str | None) -> None:
     """Raises CncError 27030 for a picture that cannot be made or would overwrite an input: machine_file="…"."""
     if picture_kind(output) not in KINDS:
-        wrong = f"{output}: the file name of a picture must end in .svg, .png or .html"
+        *others, last = (f".{kind}" for kind in KINDS)
+        wrong = f"{output}: the file name of a picture must end in {', '.join(others)} or {last}"
         raise CncError(BAD_OUTPUT, wrong, "nothing was started")
     check_output(output, **inputs)
 

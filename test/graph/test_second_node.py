@@ -10,12 +10,14 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from graph_support import TIMEOUT, Running, nodes_of, one_axis_machine, run, verified
+from graph_support import MILL, TIMEOUT, Running, nodes_of, one_axis_machine, run, verified
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.nodes import process
+from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode
+from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
 from cnc_ptp.nodes.topics import BLOCKS, REMEMBERED_BLOCKS, REPORT, block_topic
 from cnc_ptp.parameters import read_machine
 
@@ -148,3 +150,13 @@ def test_the_clock_does_not_start_with_two_nodes_of_a_unit_on_two_computers(one_
         "P-ERR-26140 2 nodes have the unit 'x' (/elsewhere/x and /x); the clock ends, nothing was started. "
         "End all but one of them"
     )
+
+
+def test_nodes_that_were_never_set_up_end_without_a_word():
+    process.initialise()
+    try:
+        machine = read_machine(str(MILL))
+        for node in (AxisNode(machine, "x"), PlcBridgeNode(machine)):
+            node.destroy_node()
+    finally:
+        rclpy.try_shutdown()

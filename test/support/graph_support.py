@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,7 @@ def run(*arguments, expect=0):
     """The finished command; fails when its status is another one than expected or it printed a traceback."""
     done = finished(*arguments)
     if NOT_FOUND in done.stdout + done.stderr:
+        warnings.warn(f"{NOT_FOUND}: started again", stacklevel=2)
         done = finished(*arguments)
     assert done.returncode == expect, done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr, done.stderr
