@@ -4,12 +4,19 @@ from contextlib import nullcontext
 
 import pytest
 import rclpy
+from builtin_interfaces.msg import Time
 from graph_support import MILL, run
 from live_support import call
 
-from cnc_ptp.nodes import player, process
+from cnc_ptp import msg
+from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.nodes import convert, player, process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
+from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, integer_range
+from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import CycleTick
 
 
 @pytest.fixture
@@ -61,6 +68,25 @@ def test_a_unit_without_blocks_has_no_data(client):
     done = call("status")
     assert done.exit_code == 1
     assert done.stdout.splitlines()[-1].split() == ["x", "no", "data"]
+
+
+def test_a_late_reader_sees_no_old_blocks(client):
+    """Axes remember their blocks for slaves; who asks where an axis is gets the next one."""
+    axis = build_units(read_machine(MILL))["x"]
+    publisher = client.create_publisher(msg.AxisBlock, "x/block", REMEMBERED_BLOCKS)
+    old = []
+    for first_cycle in range(0, 200, 10):
+        publisher.publish(convert.block_to_message(axis.step(CycleTick(first_cycle, 10), {}), Time()))
+    reader = client.create_subscription(msg.AxisBlock, "x/block", old.append, REMEMBERED_BLOCKS)
+    assert client.spin_until(lambda: bool(old), 5.0)
+    client.destroy_subscription(reader)
+    assert client.spin_until(lambda: publisher.get_subscription_count() == 0, 5.0)
+    blocks = LatestBlocks(client, client.kinds, rotary=())
+    assert client.spin_until(lambda: publisher.get_subscription_count() == 1, 5.0)
+    client.spin_for(0.2)
+    assert blocks.views() == []
+    publisher.publish(convert.block_to_message(axis.step(CycleTick(200, 10), {}), Time()))
+    assert client.spin_until(blocks.views, 5.0) and blocks.views()[0].cycle == 210
 
 
 def test_a_jog_without_a_listener_moves_nothing(client):

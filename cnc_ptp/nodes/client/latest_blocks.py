@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
@@ -16,8 +16,8 @@ from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 GONE = 5.0
 """Seconds without a block of any unit after which a machine counts as gone."""
 GONE_TEXT = f"nothing new for {GONE:g} s: the machine no longer runs"
-REMEMBERED = ("axis", "spindle")
-"""Kinds of units whose last block a late reader gets, too."""
+NEWEST = QoSProfile(depth=1)
+"""Volatile: axes and spindles remember ten seconds of blocks, and a late reader would see the oldest first."""
 
 
 class LatestBlocks:
@@ -30,9 +30,7 @@ class LatestBlocks:
         self._serialised: dict[str, bytes] = {}
         self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
-            durability = DurabilityPolicy.TRANSIENT_LOCAL if kind in REMEMBERED else DurabilityPolicy.VOLATILE
-            quality = QoSProfile(depth=1, durability=durability)
-            node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), quality, raw=True)
+            node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), NEWEST, raw=True)
 
     def _keeper(self, unit: str) -> Any:
         def received(serialised: bytes) -> None:
