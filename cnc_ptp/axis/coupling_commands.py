@@ -126,10 +126,14 @@ class CouplingCommands:
         slave_scaling: float = 1.0,
         slave_offset: float | None = None,
         file: str = "",
-        **group: Any,
+        above: Sequence[str] = (),
+        master_stands: bool = True,
+        master_lost: bool = False,
+        on_path: bool = False,
     ) -> str | None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
+        group: dict[str, Any] = {"above": above, "master_stands": master_stands, "master_lost": master_lost, "on_path": on_path}
         self._check(command, master, **group)
         self._check_factor(command, slave_scaling, "slave_scaling")
         self._check_factor(command, master_scaling, "master_scaling")

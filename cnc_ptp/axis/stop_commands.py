@@ -72,7 +72,7 @@ class StopCommands:
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
-        if axis.state not in (*MOVING, S.STOPPING):
+        if axis.state not in MOVING and axis.state != S.STOPPING:
             return without_effect(axis.name, command, axis.state)
         if self._brakes_naturally(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")

@@ -20,7 +20,7 @@ class BlockGate:
     def __init__(self, inputs: Inputs) -> None:
         self._upstream = list(inputs.upstream)
         self._feedback = list(inputs.feedback)
-        self._blocks: dict[str, dict[int, CycleBlock]] = {name: {} for name in (*inputs.upstream, *inputs.feedback)}
+        self._blocks: dict[str, dict[int, CycleBlock]] = {name: {} for name in [*inputs.upstream, *inputs.feedback]}
         self._ticks: deque[CycleTick] = deque()
         self._next_cycle = 0
         self._closed = False

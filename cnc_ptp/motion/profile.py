@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,21 +38,14 @@ class Profile:
 
     __slots__ = ("_columns", "duration", "end", "rows", "starts")
 
-    rows: tuple[Segment, ...]
-    starts: tuple[float, ...]
-    duration: float
-    end: tuple[float, float, float]
-    _columns: NDArray[np.float64] | None
-
     def __init__(self, rows: Iterable[Segment]) -> None:
-        keep = object.__setattr__
         table = tuple(rows)
         last = table[-1]
-        keep(self, "rows", table)
-        keep(self, "starts", tuple([row[0] for row in table]))
-        keep(self, "duration", last[0])
-        keep(self, "end", last[1:4])
-        keep(self, "_columns", None)
+        self.rows: Final = table
+        self.starts: Final = tuple([row[0] for row in table])
+        self.duration: Final = last[0]
+        self.end: Final = (last[1], last[2], last[3])
+        self._columns: NDArray[np.float64] | None = None
 
     def state_at(self, t: float) -> MotionState:
         """(p, v, a, j) at t seconds after the start; before the start as at 0, after the end with the end velocity."""
@@ -72,19 +65,13 @@ class Profile:
         if columns is None:
             start, p, v, a, j = np.array(self.rows, dtype=np.float64).T
             columns = np.array((j / 6.0, 0.5 * j, j, j, 0.5 * a, a, a, v, v, p, start))
-            object.__setattr__(self, "_columns", columns)
+            self._columns = columns
         out = columns.take(columns[-1, 1:].searchsorted(t, side="right"), axis=1)
         d = t - out[10]
         for state, following in ((out[:3], out[4:7]), (out[:2], out[7:9]), (out[0], out[9])):
             state *= d
             state += following
         return out[:4]
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a Profile is immutable: {name} cannot be set")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a Profile is immutable: {name} cannot be deleted")
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Profile) and self.rows == other.rows

@@ -202,7 +202,7 @@ class _BlockWords:
 
     def block(self, skip: int) -> NcBlock:
         """The finished block."""
-        functions = bool(self.m or self.spindles or FUNCTION_WORDS & self.words.keys())
+        functions = bool(self.m or self.spindles or not FUNCTION_WORDS.isdisjoint(self.words))
         functions = functions or any(code.spindle for code in self.codes)
         flow = next((code.flow for code in self.m if code.flow), "")
         return NcBlock(

@@ -5,6 +5,7 @@ Source: TF5200 feedforward 3. The weights are percent; they and the selection ar
 
 import re
 from collections.abc import Iterator
+from typing import Final
 
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
@@ -12,7 +13,9 @@ from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedf
 from cnc_ptp.nc.lexer import NUMBER, Token, column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
-ON, WEIGHTS, OFF = 135, 136, 137
+ON: Final = 135
+WEIGHTS: Final = 136
+OFF: Final = 137
 SELECTION = "feedforward"
 
 _BRACKET = re.compile(r"G\s*=?\s*0*13[567](?!\d)", re.ASCII)

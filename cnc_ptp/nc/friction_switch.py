@@ -50,7 +50,7 @@ def _words(token: Token) -> Iterator[tuple[str, int]]:
 
 def _check(axis: str, switch: str, kinds: list[str], word: str, source: Source, column: int) -> None:
     """Raises for a word that cannot follow `switch` and `kinds`."""
-    if word not in (*SWITCHES, *KINDS):
+    if word not in SWITCHES and word not in KINDS:
         known = ", ".join((*SWITCHES, *KINDS))
         raise faults.COMP_WORD.at(source, column, axis=axis, word=word, known=known)
     if word == switch or word in kinds:

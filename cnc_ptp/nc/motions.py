@@ -191,9 +191,10 @@ class _Arc:
 
 def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Dwell:
     """G04, alone in its block: seconds as a number without a letter, by the first main axis or F; revolutions by S."""
-    times = {word: value for word, value in block.words.items() if word in ("F", "S", *channel.axes[:1])}
+    duration_words = ["F", "S", *channel.axes[:1]]
+    times = {word: value for word, value in block.words.items() if word in duration_words}
     others = [word for word in block.words if word not in times]
-    others += [m.name for m in block.m] + [words.name for words in (*block.spindles, *block.controls)]
+    others += [m.name for m in block.m] + [words.name for words in [*block.spindles, *block.controls]]
     others += [other.name for other in block.codes if other is not code]
     others += list(times)[1:]
     if others:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import inf
+from typing import Final
 
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, gears, spindle_faults
@@ -20,7 +21,7 @@ from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
 M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
-FUNCTION_WORDS = frozenset("STD")
+FUNCTION_WORDS: Final[frozenset[str]] = frozenset("STD")
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:

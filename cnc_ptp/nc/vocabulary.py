@@ -3,6 +3,8 @@
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """
 
+from typing import Final
+
 from cnc_ptp.nc import feedforward, functions, motions, spindles
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
@@ -75,7 +77,7 @@ MAX_M = 999
 VALUE_WORDS = frozenset("FSTDIJKR")
 """Words with a number and a meaning of their own, besides axes."""
 
-FUNCTION_WORDS = spindles.FUNCTION_WORDS
+FUNCTION_WORDS: Final[frozenset[str]] = spindles.FUNCTION_WORDS
 
 AXIS_LETTERS = frozenset("ABCQUVWXYZ")
 """Letters with which an axis name can begin (X, X1, Y_ACHSE)."""

@@ -160,7 +160,7 @@ class CommandsOfBlock:
         self.completed.append(command)
         if starts(command):
             self.started.add(axis)
-        elif master is not None and axis not in (master, *self.above(master)):
+        elif master is not None and axis != master and axis not in self.above(master):
             self._possible.setdefault(axis, []).append(master)
             self.masters[axis] = master
         elif command.command == "decouple":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -47,16 +48,19 @@ class Entry:
     command: Command
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML as people write it: `on` is a word (not true), 1e3 a number."""
-
-
-_Loader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if not tag.endswith((":bool", ":float"))]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
-}
-_BOOL = yaml.resolver.re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")  # type: ignore[attr-defined]
-_FLOAT = yaml.resolver.re.compile(  # type: ignore[attr-defined]
+_Loader: Any = type(
+    "ScenarioLoader",
+    (yaml.SafeLoader,),
+    {
+        "__doc__": "YAML as people write it: `on` is a word (not true), 1e3 a number.",
+        "yaml_implicit_resolvers": {
+            first: [(tag, pattern) for tag, pattern in resolvers if not tag.endswith((":bool", ":float"))]
+            for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+        },
+    },
+)
+_BOOL = re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")
+_FLOAT = re.compile(
     r"^[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?$|^[-+]?\.(?:inf|Inf|INF)$|^\.(?:nan|NaN|NAN)$"
 )
 _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", _BOOL, list("tTfF"))
@@ -111,7 +115,7 @@ def _entry(node: yaml.Node, kinds: Mapping[str, str], read: ReadFile | None) -> 
         file = arguments.pop("file")
         arguments["table"] = parse_cam(read("cam file", file), file)
     check_command(kinds[to], to, do, arguments, sources_of(kinds))
-    for name in sorted((OF_CHANNELS | OF_PLC) & arguments.keys()):
+    for name in sorted((OF_CHANNELS | OF_PLC).intersection(arguments)):
         giver = "for channels only" if name in OF_CHANNELS else "filled in by the PLC"
         raise CncError(
             BAD_ARGUMENT,

@@ -224,7 +224,7 @@ def check_arguments(
             known = ", ".join(known for known in specification if known not in OF_PLC) or "none"
             raise _bad(where, name, f"unknown argument '{name}'", f"nothing was changed. Known: {known}")
     if "file" in arguments:
-        for name in FILE_CONTENTS & arguments.keys():
+        for name in FILE_CONTENTS.intersection(arguments):
             raise _bad(where, name, f"'{name}' and 'file' are both given", "nothing was changed. Give one")
     for name, argument in specification.items():
         if name in arguments:

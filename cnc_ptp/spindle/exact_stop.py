@@ -31,7 +31,7 @@ class ExactStop:
     def note(self, cycle: int, *, in_position: bool, at_rest: bool) -> bool:
         """True once the position is reached; to be called in every cycle from the end of the setpoint on."""
         if self.reached and not in_position:
-            self.reached, self.left_at = False, cycle
+            self.reached, self.left_at = False, float(cycle)
         if not self.reached:
             self._settle(cycle, in_position and at_rest)
         return self.reached

@@ -125,7 +125,7 @@ class Spindle:
         if reached:
             self.speed_was_reached = True
         elif self.speed_was_reached and self.state == S.CONTINUOUS_MOTION:
-            self.speed_was_reached, self.speed_lost_at = False, cycle
+            self.speed_was_reached, self.speed_lost_at = False, float(cycle)
             self.unsettled = True
 
     def follow(self, cycle: int, table: SpeedTable) -> None:

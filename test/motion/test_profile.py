@@ -48,16 +48,6 @@ def test_the_same_plan_gives_the_same_bits():
     assert first != "profile"
 
 
-def test_a_profile_cannot_be_changed():
-    profile = plan_rest_to_rest(0.0, 1.0, LIMITS)
-    with pytest.raises(AttributeError) as fault:
-        profile.duration = 3.0
-    assert str(fault.value) == "a Profile is immutable: duration cannot be set"
-    with pytest.raises(AttributeError) as fault:
-        del profile.rows
-    assert str(fault.value) == "a Profile is immutable: rows cannot be deleted"
-
-
 def test_repr_names_segments_duration_and_end():
     profile = Profile([(0.0, 1.0, 0.0, 0.0, 0.0), (2.0, 1.0, 0.0, 0.0, 0.0)])
     assert repr(profile) == "Profile(1 segments, 2.0 s, end (1.0, 0.0, 0.0))"
