@@ -22,7 +22,7 @@ from cnc_ptp.axis.override_filter import OverrideFilter
 from cnc_ptp.axis.ptp import PtpGenerator
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.errors import Value
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -262,10 +262,10 @@ class Axis:
             self.set_override(cycle, percent)
         self.ptp.advance(cycle)
 
-    def basic_motion(self, cycle: int, count: int) -> list[MotionState]:
+    def basic_motion(self, cycle: int, count: int) -> Setpoints:
         """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them."""
         due = self.override_filter.due_cycle
-        return self.ptp.states(cycle, count if due is None else max(1, min(count, due - cycle)))
+        return self.ptp.setpoints(cycle, count if due is None else max(1, min(count, due - cycle)))
 
     def take(self, transition: Transition) -> None:
         """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""

@@ -14,7 +14,7 @@ from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.axis.gantry import GantryPair
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE, OUT_OF_RANGE
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.path.path_motion import begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -26,10 +26,13 @@ PATH_TOLERANCE = 1e-9
 """Largest distance (mm, deg) of an axis from the start of the path that takes it over."""
 
 
-def in_range(state: MotionState) -> bool:
-    """False for an infinity or a NaN, for which no table can be made; multiplied factors of a cascade lead there."""
-    p, v, a, _ = state
-    return -LARGEST_STATE <= p <= LARGEST_STATE and abs(v) <= LARGEST_STATE and abs(a) <= LARGEST_STATE
+def in_range(setpoints: Setpoints) -> bool:
+    """False with an infinity or a NaN, for which no table can be made; multiplied factors of a cascade lead there."""
+    for column in (setpoints.positions, setpoints.velocities, setpoints.accelerations):
+        for value in column:
+            if not -LARGEST_STATE <= value <= LARGEST_STATE:
+                return False
+    return True
 
 
 class PathSource:
@@ -41,28 +44,27 @@ class PathSource:
         self._to_go = [0.0]
         """Distance to the end of the element: at the end of the last block, then in each cycle of this one."""
 
-    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """The setpoints of the channel that moves the axis, none if no channel does; switches the setpoint source."""
         channel = self._owning_channel(inputs)
         if channel is None:
             self._leave(first_cycle)
-            return []
-        start = channel.axes.index(self._axis.name) * channel.count
-        part = slice(start, start + channel.count)
-        setpoints = list(
-            zip(
-                channel.set_position[part],
-                channel.set_velocity[part],
-                channel.set_acceleration[part],
-                channel.set_jerk[part],
-                strict=True,
-            )
+            return None
+        count = channel.count
+        start = channel.axes.index(self._axis.name) * count
+        end = start + count
+        setpoints = Setpoints(
+            channel.set_position[start:end],
+            channel.set_velocity[start:end],
+            channel.set_acceleration[start:end],
+            channel.set_jerk[start:end],
         )
         self._first_cycle, self._to_go = first_cycle, [self._to_go[-1], *channel.distance_to_go]
-        self._enter(first_cycle, setpoints[0][0])
+        self._enter(first_cycle, setpoints.positions[0])
         if self._axis.state != S.SYNCHRONIZED_MOTION:
-            return []
-        self._axis.ptp.take_over(first_cycle + channel.count - 1, *setpoints[-1][:3])
+            return None
+        position, velocity, acceleration, _ = setpoints.at(count - 1)
+        self._axis.ptp.take_over(first_cycle + count - 1, position, velocity, acceleration)
         return setpoints
 
     def watch(self, cycle: int, velocity: float) -> None:
@@ -140,17 +142,17 @@ class MasterSource:
         """Position of the master at the end of its last block, None if it moved."""
         self.gantry = GantryPair(axis)
 
-    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
+    def setpoints(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
         """The setpoints of the coupling; none when the axis is not coupled or cannot follow."""
         axis = self._axis
         coupling = axis.coupling
         self.gantry.rest()
         if coupling is None or axis.state != S.SYNCHRONIZED_MOTION:
-            return []
+            return None
         block = inputs.get(coupling.master)
         if not isinstance(block, AxisBlock):
             axis.fault(first_cycle, UPSTREAM_LOST, f"there is no block of its master '{coupling.master}'")
-            return []
+            return None
         if coupling is not self._coupling:
             self._coupling, self._actual = coupling, block.couples_actual
             self.gantry.begin()
@@ -158,22 +160,25 @@ class MasterSource:
             self._allow_placing(coupling, block)
         self._rest = block.set_position[-1] if block.set_velocity[-1] == block.set_acceleration[-1] == 0.0 else None
         axis.follow_master(block.target_velocity, bool(block.status_bits[-1] & StatusBit.HAS_JOB))
-        states = self._states(coupling, block)
+        master = self._master_setpoints(coupling, block)
         try:
-            setpoints = coupling.follow((axis.carried or axis.ptp).state(first_cycle)[0], states)
+            carried = axis.carried
+            position = axis.ptp.state(first_cycle)[0] if carried is None else carried.state(first_cycle)[0]
+            setpoints = coupling.follow(position, master)
         except CncError as error:
             axis.abort_coupling(first_cycle, error.number, error.message)
-            return []
-        if not all(in_range(state) for state in setpoints):
+            return None
+        if not in_range(setpoints):
             axis.fault(first_cycle, OUT_OF_RANGE, f"its setpoints as a slave of {coupling.master} are out of range")
-            return []
-        if axis.error_id and self.gantry.ends(first_cycle, setpoints[0][0], block):
-            return []
+            return None
+        if axis.error_id and self.gantry.ends(first_cycle, setpoints.positions[0], block):
+            return None
         if axis.carried is not None:
             axis.carried.take(first_cycle, setpoints)
-            return []
+            return None
         self.gantry.take(coupling, first_cycle, block)
-        axis.ptp.take_over(first_cycle + block.count - 1, *setpoints[-1])
+        position, velocity, acceleration, jerk = setpoints.at(block.count - 1)
+        axis.ptp.take_over(first_cycle + block.count - 1, position, velocity, acceleration, jerk)
         return setpoints
 
     def _allow_placing(self, coupling: Coupling, block: AxisBlock) -> None:
@@ -184,18 +189,17 @@ class MasterSource:
         if block.set_velocity[0] == 0.0:
             coupling.change_source(before, now)
 
-    def _states(self, coupling: Coupling, block: AxisBlock) -> list[MotionState]:
+    def _master_setpoints(self, coupling: Coupling, block: AxisBlock) -> Setpoints:
         if block.couples_actual != self._actual:
             sources = block.set_position[0], block.actual_position[0]
             before, now = sources if block.couples_actual else sources[::-1]
             coupling.change_source(before, now)
             self._actual, self._velocity = block.couples_actual, block.actual_velocity[0]
         if not self._actual:
-            return list(
-                zip(block.set_position, block.set_velocity, block.set_acceleration, block.set_jerk, strict=True)
-            )
+            return Setpoints(block.set_position, block.set_velocity, block.set_acceleration, block.set_jerk)
         velocities = [self._filtered(coupling.master, velocity) for velocity in block.actual_velocity]
-        return [(p, v, 0.0, 0.0) for p, v in zip(block.actual_position, velocities, strict=True)]
+        none = [0.0] * block.count
+        return Setpoints(block.actual_position, velocities, none, none)
 
     def _filtered(self, master: str, velocity: float) -> float:
         """Actual velocity of the master: 0 within its velocity window, through a first-order filter.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from operator import attrgetter
 from typing import ClassVar
 
 from cnc_ptp.axis.axis import Axis
@@ -21,19 +20,16 @@ from cnc_ptp.axis.power_commands import PowerCommands
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
-from cnc_ptp.control.control_loop import ControlCycle, ControlLoop
+from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.faults import FOLLOWING_ERROR
 from cnc_ptp.control.feedforward import CouplingLimits
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, CycleTick, Severity
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Handler, Unit
-
-control_columns = attrgetter(*ControlCycle._fields)
-"""The columns of an AxisBlock with the values of a ControlCycle, which have the same names."""
 
 
 class AxisUnit(Unit):
@@ -149,11 +145,15 @@ class AxisUnit(Unit):
         first_cycle, count = tick
         axis = self._axis
         block = self._make_block(first_cycle, count)
+        control = ControlColumns()
         axis.advance(first_cycle)
-        self._follow(first_cycle, self._led(first_cycle, inputs), block)
+        setpoints = self._led(first_cycle, inputs)
+        if setpoints is not None:
+            self._follow(first_cycle, setpoints, block, control)
         while (done := len(block.state)) < count:
             axis.advance(first_cycle + done)
-            self._follow(first_cycle + done, axis.basic_motion(first_cycle + done, count - done), block)
+            self._follow(first_cycle + done, axis.basic_motion(first_cycle + done, count - done), block, control)
+        take_columns(block, control)
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
         if warning is not None:
             self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")
@@ -162,8 +162,8 @@ class AxisUnit(Unit):
         self._last_block = block
         return block
 
-    def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> list[MotionState]:
-        """Setpoints of a master or of a channel, none if its own generator moves the axis."""
+    def _led(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> Setpoints | None:
+        """Setpoints of a master or of a channel, None if its own generator moves the axis."""
         axis = self._axis
         if axis.carried is not None:
             self._path.put_down(first_cycle, inputs)
@@ -175,46 +175,44 @@ class AxisUnit(Unit):
                 return setpoints
         return self._path.setpoints(first_cycle, inputs)
 
-    def _follow(self, first_cycle: int, setpoints: list[MotionState], block: AxisBlock) -> None:
+    def _follow(self, first_cycle: int, setpoints: Setpoints, block: AxisBlock, control: ControlColumns) -> None:
         """Adds the cycles of `setpoints`; fewer when a fault puts the axis on its own ramp."""
         axis = self._axis
         done = 0
-        if setpoints and not self._master.gantry.watches:
+        if not self._master.gantry.watches:
             if axis.state in MOVING_ALONE:
                 axis.advance_state(first_cycle)
             if self._monitoring.undisturbed(first_cycle, setpoints):
-                done = self._undisturbed_cycles(first_cycle, setpoints, block)
+                done = self._undisturbed_cycles(first_cycle, setpoints, block, control)
         error_id = axis.error_id
-        for cycle, setpoint in enumerate(setpoints[done:], first_cycle + done):
-            self._cycle(cycle, setpoint, block)
+        for index in range(done, len(setpoints)):
+            self._cycle(first_cycle + index, setpoints.at(index), block, control)
             if axis.error_id != error_id and not axis.coupled:
                 break
 
-    def _undisturbed_cycles(self, first_cycle: int, setpoints: list[MotionState], block: AxisBlock) -> int:
+    def _undisturbed_cycles(
+        self, first_cycle: int, setpoints: Setpoints, block: AxisBlock, control: ControlColumns
+    ) -> int:
         """The same as `_cycle` for cycles in which the axis only follows; up to an excessive following error.
 
         Returns their number.
         """
         axis, loop = self._axis, self._loop
         closed = axis.powered or axis.moving(first_cycle + len(setpoints) - 1)
-        control = loop.follow(setpoints, closed, watched=closed and loop.monitor.on)
-        actual_positions = control[0]
-        n = len(actual_positions)
+        first = len(control.actual_position)
+        n = loop.follow(setpoints, closed, control, watched=closed and loop.monitor.on)
         if n == 0:
             return 0
-        if n < len(setpoints):
-            setpoints = setpoints[:n]
-        positions, velocities, accelerations, jerks = zip(*setpoints, strict=True)
-        block.set_position += positions
-        block.set_velocity += velocities
-        block.set_acceleration += accelerations
-        block.set_jerk += jerks
-        for column, values in zip(control_columns(block), control, strict=True):
-            column += values
+        block.set_position += setpoints.positions[:n]
+        block.set_velocity += setpoints.velocities[:n]
+        block.set_acceleration += setpoints.accelerations[:n]
+        block.set_jerk += setpoints.jerks[:n]
         block.override_percent += [axis.override_percent] * n
         block.state += [axis.state] * n
         common = axis.common_bits(0) | self._control_bits
-        block.status_bits += [common | axis.motion_bits(s, p) for s, p in zip(setpoints, actual_positions, strict=True)]
+        for index in range(n):
+            bits = axis.motion_bits(setpoints.at(index), control.actual_position[first + index])
+            block.status_bits.append(common | bits)
         block.error_id += [0] * n
         return n
 
@@ -222,7 +220,7 @@ class AxisUnit(Unit):
     def _control_bits(self) -> int:
         return int(StatusBit.FRICTION_COMPENSATION) if self._loop.friction.on else 0
 
-    def _cycle(self, cycle: int, base: MotionState, block: AxisBlock) -> None:
+    def _cycle(self, cycle: int, base: MotionState, block: AxisBlock, control: ControlColumns) -> None:
         """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
@@ -236,23 +234,27 @@ class AxisUnit(Unit):
         closed = axis.powered or axis.moving(cycle)
         if closed and axis.error_id == 0 and loop.too_far(setpoint):
             axis.fault(cycle, FOLLOWING_ERROR, loop.why_too_far(setpoint, axis.unit), setpoint)
-        control = loop.step(setpoint, closed)
+        loop.cycle(setpoint, closed, control)
         position, velocity, acceleration, jerk = setpoint
         block.set_position.append(position)
         block.set_velocity.append(velocity)
         block.set_acceleration.append(acceleration)
         block.set_jerk.append(jerk)
-        block.actual_position.append(control.actual_position)
-        block.actual_velocity.append(control.actual_velocity)
-        block.following_error.append(control.following_error)
-        block.command_velocity.append(control.command_velocity)
-        block.feedforward_velocity.append(control.feedforward_velocity)
-        block.additive_velocity.append(control.additive_velocity)
-        block.additive_torque.append(control.additive_torque)
-        block.friction_current.append(control.friction_current)
-        block.actual_torque.append(control.actual_torque)
-        block.feedforward_percent.append(control.feedforward_percent)
         block.override_percent.append(axis.override_percent)
         block.state.append(axis.state)
-        block.status_bits.append(axis.status_bits(cycle, setpoint, control.actual_position) | self._control_bits)
+        block.status_bits.append(axis.status_bits(cycle, setpoint, control.actual_position[-1]) | self._control_bits)
         block.error_id.append(axis.error_id)
+
+
+def take_columns(block: AxisBlock, control: ControlColumns) -> None:
+    """The block has the columns of the control loop, which have the same names."""
+    block.actual_position = control.actual_position
+    block.actual_velocity = control.actual_velocity
+    block.following_error = control.following_error
+    block.command_velocity = control.command_velocity
+    block.feedforward_velocity = control.feedforward_velocity
+    block.additive_velocity = control.additive_velocity
+    block.additive_torque = control.additive_torque
+    block.friction_current = control.friction_current
+    block.actual_torque = control.actual_torque
+    block.feedforward_percent = control.feedforward_percent

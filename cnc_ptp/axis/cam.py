@@ -14,7 +14,7 @@ from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.faults import BAD_CAM_TABLE, CAM_POSITION
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.limits import LARGEST_STATE
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
 SMALLEST_TABLE = 3
 SMALLEST_STEP = 1e-6
@@ -143,11 +143,15 @@ class CamCoupling(Coupling):
     def _x(self, master_position: float) -> float:
         return (master_position - self._master_offset) / self._master_scaling
 
-    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
+    def follow(self, position: float, master: Setpoints) -> Setpoints:
         """Raises CncError 23053 in the first block when the slave is not where the slave offset puts it."""
         if self._turn is None:
-            self._begin(position, self._x(states[0][0]))
-        return [self._state(state) for state in states]
+            self._begin(position, self._x(master.positions[0]))
+        slaves = Setpoints([], [], [], [])
+        for index in range(len(master)):
+            p, v, a, j = self._state(master.at(index))
+            slaves.add(p, v, a, j)
+        return slaves
 
     def _begin(self, position: float, x: float) -> None:
         height = self._slave_scaling * self.table.at(x)[0]
@@ -167,7 +171,8 @@ class CamCoupling(Coupling):
             x = self._x(master[0])
         y, dy, ddy, dddy = self.table.at(x)
         assert self._slave_offset is not None
-        s, (v, a, j) = self._slave_scaling, (value / self._master_scaling for value in master[1:])
+        s, scaling = self._slave_scaling, self._master_scaling
+        v, a, j = master[1] / scaling, master[2] / scaling, master[3] / scaling
         acceleration = s * (ddy * v * v + dy * a)
         return s * y + self._slave_offset, s * dy * v, acceleration, s * (dddy * v**3 + 3.0 * ddy * v * a + dy * j)
 

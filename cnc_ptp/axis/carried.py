@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
 
 class CarriedMotion:
@@ -17,17 +15,18 @@ class CarriedMotion:
         """Nothing is added at `cycle`; `cycle_time` in s."""
         self._cycle_time = cycle_time
         self._first_cycle = cycle
-        self._states: Sequence[MotionState] = [(0.0, 0.0, 0.0, 0.0)]
+        self._setpoints = Setpoints([0.0], [0.0], [0.0], [0.0])
 
-    def take(self, first_cycle: int, states: Sequence[MotionState]) -> None:
+    def take(self, first_cycle: int, setpoints: Setpoints) -> None:
         """The cycles of a block."""
-        self._first_cycle, self._states = first_cycle, states
+        self._first_cycle, self._setpoints = first_cycle, setpoints
 
     def state(self, cycle: int) -> MotionState:
         """What is added at `cycle`."""
         number = cycle - self._first_cycle
-        if number < len(self._states):
-            return self._states[number]
-        d = (number - len(self._states) + 1) * self._cycle_time
-        p, v, a, _ = self._states[-1]
+        last = len(self._setpoints) - 1
+        if number <= last:
+            return self._setpoints.at(number)
+        d = (number - last) * self._cycle_time
+        p, v, a, _ = self._setpoints.at(last)
         return p + d * (v + 0.5 * d * a), v + d * a, a, 0.0

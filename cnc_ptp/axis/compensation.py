@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import copysign, sqrt
 
 from cnc_ptp.motion import Profile
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 
 ROUNDING = 1e-12
 """Part of a value that counts as rounding."""

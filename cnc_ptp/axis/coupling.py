@@ -6,10 +6,9 @@ All work cycle by cycle on the states of the master; the position of the slave i
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from math import copysign
 
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
 ROUNDING = 1e-9
 """Part of an acceleration limit that counts as rounding: a velocity is rounded, its change in a cycle even more so."""
@@ -26,8 +25,8 @@ class Coupling(ABC):
         would tear the two apart."""
 
     @abstractmethod
-    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        """States of the slave for the cycles of these master states; `position` is that of the slave in the first."""
+    def follow(self, position: float, master: Setpoints) -> Setpoints:
+        """Setpoints of the slave in the cycles of these of its master; `position` is its own in the first of them."""
 
     @abstractmethod
     def change_source(self, before: float, now: float) -> None:
@@ -49,16 +48,27 @@ class LinearCoupling(Coupling):
         """Counts from the next cycle that is computed."""
         self._new_factor = factor
 
-    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
+    def follow(self, position: float, master: Setpoints) -> Setpoints:
         """p = f·pm + offset, v = f·vm, a = f·am, j = f·jm."""
-        begin = states[0][0]
+        begin = master.positions[0]
         if self.offset is None:
             self.offset = position - self.ratio * begin
         if self._new_factor is not None:
             self.offset += (self.ratio - self._new_factor) * begin
             self.ratio, self._new_factor = self._new_factor, None
         f, offset = self.ratio, self.offset
-        return [(f * p + offset, f * v, f * a, f * j) for p, v, a, j in states]
+        return Setpoints(
+            [f * p + offset for p in master.positions],
+            [f * v for v in master.velocities],
+            [f * a for a in master.accelerations],
+            [f * j for j in master.jerks],
+        )
+
+    def place(self, master: MotionState) -> MotionState:
+        """`follow` for one cycle of a coupling that has begun."""
+        assert self.offset is not None
+        f = self.ratio
+        return f * master[0] + self.offset, f * master[1], f * master[2], f * master[3]
 
     def change_source(self, before: float, now: float) -> None:
         if self.offset is not None:
@@ -87,13 +97,13 @@ class CyclicCoupling(Coupling):
         """Counts from the next cycle that is computed."""
         self.ratio = factor
 
-    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
-        if self._slave is None:
-            self._slave = (position, 0.0, 0.0, 0.0)
-        slaves = []
-        for state in states:
-            self._slave = self._next(self._slave, state)
-            slaves.append(self._slave)
+    def follow(self, position: float, master: Setpoints) -> Setpoints:
+        slave = (position, 0.0, 0.0, 0.0) if self._slave is None else self._slave
+        slaves = Setpoints([], [], [], [])
+        for index in range(len(master)):
+            slave = self._next(slave, master.at(index))
+            slaves.add(slave[0], slave[1], slave[2], slave[3])
+        self._slave = slave
         return slaves
 
     def _next(self, slave: MotionState, master: MotionState) -> MotionState:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cnc_ptp.axis.tables import standing
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import LARGEST_STATE, rounding
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 
 LONGEST_PERIOD = 0.02
 """Seconds between two setpoints of a cyclic task; a longer distance is a pause."""

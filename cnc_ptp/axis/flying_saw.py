@@ -8,7 +8,6 @@ waits, the run-up is replanned when the velocity of the master changes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import copysign
 
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
@@ -16,7 +15,7 @@ from cnc_ptp.axis.faults import SAW_TOO_LATE
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_to_velocity
 from cnc_ptp.motion.limits import rounding
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
 ROUNDING = 1e-12
 """s; tolerance for a run-up that is late or long, as it can be replanned in the very cycle in which it starts.
@@ -53,13 +52,17 @@ class FlyingSaw(Coupling):
         self._waits = True
         self.synchronous = False
 
-    def follow(self, position: float, states: Sequence[MotionState]) -> list[MotionState]:
+    def follow(self, position: float, master: Setpoints) -> Setpoints:
         """Raises CncError 23051 before the start of the slave if no time or distance is left to synchronise."""
         if self._table is None:
-            if states[0][1] == 0.0:
+            if master.velocities[0] == 0.0:
                 raise CncError(SAW_TOO_LATE, "the master is at a standstill; a flying saw needs a moving master")
-            self._plan(position, states[0])
-        return [self._next(position, state) for state in states]
+            self._plan(position, master.at(0))
+        slaves = Setpoints([], [], [], [])
+        for index in range(len(master)):
+            p, v, a, j = self._next(position, master.at(index))
+            slaves.add(p, v, a, j)
+        return slaves
 
     def _next(self, position: float, master: MotionState) -> MotionState:
         assert self._table is not None
@@ -70,14 +73,14 @@ class FlyingSaw(Coupling):
             moment = self._plan(position, master)
         if moment >= self._table.duration:
             self.synchronous = True
-        return self._linear.follow(0.0, [master])[0] if self.synchronous else self._run_up(moment, master)
+        return self._linear.place(master) if self.synchronous else self._run_up(moment, master)
 
     def _plan(self, position: float, master: MotionState) -> float:
         """Wait, ramp up to factor · v0, and on at that velocity so that the two positions are met together.
 
         Returns the moment 0.0 at which the table starts.
         """
-        self._start, self._speed = master[:2]
+        self._start, self._speed = master[0], master[1]
         velocity, unit = self.ratio * self._speed, self._unit
         if abs(velocity) > self._limits.velocity:
             limit = f"its velocity is limited to {self._limits.velocity:g} {unit}/s"
@@ -106,7 +109,7 @@ class FlyingSaw(Coupling):
     def _run_up(self, moment: float, master: MotionState) -> MotionState:
         assert self._table is not None
         p, v, a, j = self._table.state_at(moment)
-        r, dr, ddr = (value / self._speed for value in master[1:])
+        r, dr, ddr = master[1] / self._speed, master[2] / self._speed, master[3] / self._speed
         return p, v * r, a * r * r + v * dr, j * r**3 + 3.0 * a * r * dr + v * ddr
 
     def shift(self, distance: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.coupling import Coupling, LinearCoupling
 from cnc_ptp.axis.faults import GANTRY_DIFFERENCE
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.protocol.blocks import AxisBlock
 
 PAIR_PATIENCE = 4

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import copysign
 
 from cnc_ptp.axis.axis import ROUNDING, Axis, Report
 from cnc_ptp.axis.faults import FEED_WITHHELD, SETPOINT_TOO_FAR, SETPOINTS_STOPPED, SUM_TOO_FAST
 from cnc_ptp.control.faults import TARGET_MISSED
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 MOVING_ALONE = (S.DISCRETE_MOTION, S.STOPPING, S.CONTINUOUS_MOTION)
@@ -23,10 +22,11 @@ class Monitoring:
         self._axis = axis
         self._report_warning = report_warning
         self._longest_silence = round(axis.parameters.external_timeout / cycle_time)
+        self._low, self._high = axis.parameters.soft_limit_negative, axis.parameters.soft_limit_positive
         self._before: tuple[int, MotionState] | None = None
         """The last cycle with superimposed motion, and its setpoint."""
 
-    def undisturbed(self, first_cycle: int, setpoints: Sequence[MotionState]) -> bool:
+    def undisturbed(self, first_cycle: int, setpoints: Setpoints) -> bool:
         """True when in these cycles of basic motion nothing can happen to state, soft limits and target window.
 
         The state of the first cycle has been advanced already.
@@ -38,11 +38,10 @@ class Monitoring:
         if axis.state in MOVING_ALONE and axis.ptp.arrived(last_cycle):
             return False
         if axis.coupling is not None or axis.state == S.CONTINUOUS_MOTION:
-            positions = [setpoint[0] for setpoint in setpoints]
-            low, high = axis.parameters.soft_limit_negative, axis.parameters.soft_limit_positive
-            if min(positions) < low or max(positions) > high:
-                return False
-        if axis.ptp.job is not None or all(setpoint[1] for setpoint in setpoints):
+            for position in setpoints.positions:
+                if not self._low <= position <= self._high:
+                    return False
+        if axis.ptp.job is not None or 0.0 not in setpoints.velocities:
             axis.target_window.moves()
             return True
         return not axis.target_window.watching

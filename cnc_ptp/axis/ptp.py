@@ -18,7 +18,8 @@ from cnc_ptp.motion import (
     plan_to_velocity,
 )
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, check_state, rounding
-from cnc_ptp.motion.profile import MotionState, Segment
+from cnc_ptp.motion.profile import Segment
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
 STANDING = (0.0, 0.0, 0.0)
 """Velocity, acceleration and jerk of an axis at rest."""
@@ -64,7 +65,7 @@ class PtpGenerator:
     Time is the cycle number: a table made for cycle c has its start state at c. A command given for cycle c
     plans from the state that the old table has at c, so that no change steps the velocity or the acceleration.
     What happens later without a command (a new velocity at its activation position, a request that waits for the end of
-    a stop) is due at a cycle known beforehand: `states` gives cycles up to it, `advance` carries it out.
+    a stop) is due at a cycle known beforehand: `setpoints` gives cycles up to it, `advance` carries it out.
     """
 
     def __init__(self, *, position: float, cycle_time: float, override_type: int) -> None:
@@ -130,15 +131,14 @@ class PtpGenerator:
         """Setpoint at `cycle`: position, velocity, acceleration, jerk."""
         return self._profile.state_at((cycle - self._origin) * self._cycle_time)
 
-    def states(self, first_cycle: int, count: int) -> list[MotionState]:
+    def setpoints(self, first_cycle: int, count: int) -> Setpoints:
         """Setpoints of `count` cycles, fewer (but one at least) when something comes due among them."""
         if self._due is not None:
             count = max(1, min(count, self._due - first_cycle))
-        state = self.state(first_cycle)
-        if state[1:] == STANDING and self.finished(first_cycle):
-            return [state] * count
-        state_at, origin, cycle_time = self._profile.state_at, self._origin, self._cycle_time
-        return [state_at((cycle - origin) * cycle_time) for cycle in range(first_cycle, first_cycle + count)]
+        p, v, a, j = self.state(first_cycle)
+        if v == a == j == 0.0 and self.finished(first_cycle):
+            return Setpoints([p] * count, [0.0] * count, [0.0] * count, [0.0] * count)
+        return self._profile.setpoints(first_cycle - self._origin, count, self._cycle_time)
 
     def finished(self, cycle: int) -> bool:
         """True when the active table has ended at `cycle`."""

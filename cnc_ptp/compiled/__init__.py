@@ -1,1 +1,1 @@
-"""The kernel as a compiled library: built from the same sources by mypyc, used while they are what it was built from."""
+"""The kernel as a compiled library: built by mypyc, used while the sources are those that it was built from."""

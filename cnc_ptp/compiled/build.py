@@ -61,4 +61,4 @@ def compile_library(extension: Extension, work: Path) -> Path:
 
 
 if __name__ == "__main__":
-    build(Path(sys.argv[1]) if len(sys.argv) > 1 else PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}")
+    build(PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}")

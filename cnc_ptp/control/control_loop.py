@@ -9,7 +9,6 @@ P-COMP-00044). Sources: TF5200 feedforward figures 1 and 2, friction figures 4 a
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -17,17 +16,11 @@ from cnc_ptp.control.drives import Drive, VirtualDrive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
 from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.control.friction_compensation import FrictionCompensation
+from cnc_ptp.control.history import SetpointHistory
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.control.velocity_controller import VelocityController
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters.view.control_view import ControlParameters
-
-LoopRow = tuple[float, float, float, float, float, float, float, float, float, float]
-"""A ControlCycle as a plain tuple, which is faster."""
-Columns = Sequence[list[float]]
-"""The values of ControlCycle over many cycles."""
-HISTORY = 16
-"""Number of setpoints kept: 4 cycles of lead, 6 of delay, and their neighbours."""
 
 
 class ControlCycle(NamedTuple):
@@ -46,6 +39,59 @@ class ControlCycle(NamedTuple):
     actual_torque: float
     feedforward_percent: float
     """Weight with which feedforward acts in this cycle, 0 = off."""
+
+
+class ControlColumns:
+    """The values of ControlCycle over many cycles, each a list."""
+
+    __slots__ = (
+        "actual_position",
+        "actual_torque",
+        "actual_velocity",
+        "additive_torque",
+        "additive_velocity",
+        "command_velocity",
+        "feedforward_percent",
+        "feedforward_velocity",
+        "following_error",
+        "friction_current",
+    )
+
+    def __init__(self) -> None:
+        self.actual_position: list[float] = []
+        self.actual_velocity: list[float] = []
+        self.following_error: list[float] = []
+        self.command_velocity: list[float] = []
+        self.feedforward_velocity: list[float] = []
+        self.additive_velocity: list[float] = []
+        self.additive_torque: list[float] = []
+        self.friction_current: list[float] = []
+        self.actual_torque: list[float] = []
+        self.feedforward_percent: list[float] = []
+
+    def last(self) -> ControlCycle:
+        """The newest cycle."""
+        return ControlCycle(
+            self.actual_position[-1],
+            self.actual_velocity[-1],
+            self.following_error[-1],
+            self.command_velocity[-1],
+            self.feedforward_velocity[-1],
+            self.additive_velocity[-1],
+            self.additive_torque[-1],
+            self.friction_current[-1],
+            self.actual_torque[-1],
+            self.feedforward_percent[-1],
+        )
+
+    def nothing_added(self, count: int) -> None:
+        """Neither feedforward nor friction compensation has acted in `count` cycles."""
+        none = [0.0] * count
+        self.feedforward_velocity += none
+        self.additive_velocity += none
+        self.additive_torque += none
+        self.friction_current += none
+        self.feedforward_percent += none
 
 
 class ControlLoop:
@@ -76,13 +122,14 @@ class ControlLoop:
         self._torque_per_digit = 1.0 / scaling.torque if scaling.torque else 0.0
         self._modulo = ModuloCompensation(parameters.modulo_error, origin=drive.position)
         self._interface = parameters.drive.interface
+        self._takes_velocity = self._interface == "velocity"
         self._velocity_controller = VelocityController(
             gain=parameters.drive.velocity_gain,
             integral_time=parameters.drive.velocity_integral_time,
             torque_per_acceleration=scaling.torque_per_acceleration,
             cycle_time=cycle_time,
         )
-        self._history: deque[MotionState] = deque(maxlen=HISTORY)
+        self._history = SetpointHistory()
         self.offset = 0.0
         """Offset between the position of the encoder and the coordinates of the axis."""
         self._plain = self._interface == "velocity" and self.delay_cycles == 0
@@ -111,7 +158,7 @@ class ControlLoop:
     def shift(self, distance: float) -> None:
         """All coordinates grow by `distance`."""
         self.offset += distance
-        self._history = deque(((p + distance, v, a, j) for p, v, a, j in self._history), maxlen=HISTORY)
+        self._history.shift(distance)
 
     def select_feedforward(self, on: bool, weight_percent: float) -> None:
         """G135 or G137 with the weight of G136: immediately at a standstill, softly in motion.
@@ -125,12 +172,16 @@ class ControlLoop:
     def monitored(self, setpoint: MotionState) -> tuple[float, float]:
         """Following error and set velocity that the position controller has at `setpoint`, behind the delay line."""
         behind, history = self.delay_cycles, self._history
-        position, velocity, _, _ = history[behind - 1] if behind and history else setpoint
-        return position - self.position, velocity
+        if behind and history.filled:
+            return history.position(behind - 1) - self.position, history.velocity(behind - 1)
+        return setpoint[0] - self.position, setpoint[1]
 
     def too_far(self, setpoint: MotionState) -> bool:
         """True when the following error of this cycle is above what P-AXIS-00172 permits; changes nothing."""
-        return self._virtual is None and self.monitor.exceeded(*self.monitored(setpoint))
+        if self._virtual is not None:
+            return False
+        following_error, velocity = self.monitored(setpoint)
+        return self.monitor.exceeded(following_error, velocity)
 
     def why_too_far(self, setpoint: MotionState, unit: str) -> str:
         """Following error, limit and its parameter, for messages."""
@@ -152,90 +203,103 @@ class ControlLoop:
 
     def step(self, setpoint: MotionState, closed: bool, open_velocity: float = 0.0) -> ControlCycle:
         """Closes the loop for one cycle; if open, the drive gets `open_velocity` and the history is cleared."""
-        return ControlCycle(*self._cycle(setpoint, closed, open_velocity))
+        columns = ControlColumns()
+        self.cycle(setpoint, closed, columns, open_velocity)
+        return columns.last()
 
-    def follow(self, setpoints: Sequence[MotionState], closed: bool, *, watched: bool) -> Columns:
-        """`step` for many setpoints, value by value; if `watched`, up to the first excessive following error."""
+    def follow(self, setpoints: Setpoints, closed: bool, columns: ControlColumns, *, watched: bool) -> int:
+        """`cycle` for many setpoints; if `watched`, up to the first excessive following error. Returns their number."""
         if closed and self._plain and not self.feedforward.active:
-            return self._plain_cycles(setpoints, watched)
-        rows = []
-        for setpoint in setpoints:
+            return self._plain_cycles(setpoints, columns, watched)
+        count = len(setpoints)
+        for index in range(count):
+            setpoint = setpoints.at(index)
             if watched and self.too_far(setpoint):
-                break
-            rows.append(self._cycle(setpoint, closed))
-        return [*map(list, zip(*rows, strict=True))] if rows else [[] for _ in ControlCycle._fields]
+                return index
+            self.cycle(setpoint, closed, columns)
+        return count
 
-    def _plain_cycles(self, setpoints: Sequence[MotionState], watched: bool) -> Columns:
+    def _plain_cycles(self, setpoints: Setpoints, columns: ControlColumns, watched: bool) -> int:
         """Position control alone: v = Kv · following error."""
         drive, monitor, offset, kv = self.drive, self.monitor, self.offset, self.kv
-        step, monitored = drive.step, monitor.on
-        columns: tuple[list[float], ...] = [], [], [], [], []
-        positions, velocities, errors, commands, torques = columns
-        for setpoint in setpoints:
+        monitored = monitor.on
+        set_positions, set_velocities = setpoints.positions, setpoints.velocities
+        positions, velocities, errors = columns.actual_position, columns.actual_velocity, columns.following_error
+        commands, torques = columns.command_velocity, columns.actual_torque
+        count = len(set_positions)
+        n = 0
+        while n < count:
             position = drive.position + offset
-            following_error = setpoint[0] - position
+            following_error = set_positions[n] - position
             if monitored:
-                if watched and monitor.exceeded(following_error, setpoint[1]):
+                if watched and monitor.exceeded(following_error, set_velocities[n]):
                     break
-                monitor.advance(following_error, setpoint[1])
+                monitor.advance(following_error, set_velocities[n])
             command = kv * following_error
             positions.append(position)
             velocities.append(drive.velocity)
             errors.append(following_error)
             commands.append(command)
             torques.append(drive.torque)
-            step(command)
-        n = len(positions)
+            drive.step(command)
+            n += 1
         if self.feedforward.mode:
-            for setpoint in setpoints[:n][-HISTORY:]:
-                self._remember(setpoint)
-        none = [0.0] * n
-        return positions, velocities, errors, commands, none, none, none, none, torques, none
+            for index in range(n):
+                self._history.take(
+                    set_positions[index],
+                    set_velocities[index],
+                    setpoints.accelerations[index],
+                    setpoints.jerks[index],
+                )
+        columns.nothing_added(n)
+        return n
 
-    def _remember(self, setpoint: MotionState) -> None:
-        """Before the first setpoint the axis was at rest there."""
-        if self._history:
-            self._history.appendleft(setpoint)
-        else:
-            self._history.extend([setpoint] * HISTORY)
-
-    def _cycle(self, setpoint: MotionState, closed: bool, open_velocity: float = 0.0) -> LoopRow:
+    def cycle(self, setpoint: MotionState, closed: bool, columns: ControlColumns, open_velocity: float = 0.0) -> None:
+        """`step`, with the values of the cycle added to `columns`."""
         drive = self.drive
         if self._virtual is not None:
             self._virtual.follow(setpoint[0] - self.offset, setpoint[1])
-            return setpoint[0], setpoint[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        position, velocity, torque = self.position, drive.velocity, drive.torque
+            columns.actual_position.append(setpoint[0])
+            columns.actual_velocity.append(setpoint[1])
+            columns.following_error.append(0.0)
+            columns.command_velocity.append(0.0)
+            columns.actual_torque.append(0.0)
+            columns.nothing_added(1)
+            return
+        position = self.position
+        columns.actual_position.append(position)
+        columns.actual_velocity.append(drive.velocity)
+        columns.following_error.append(setpoint[0] - position)
+        columns.actual_torque.append(drive.torque)
         if closed:
-            return self._closed_cycle(setpoint, position, velocity, torque)
-        self._open(open_velocity)
-        return position, velocity, setpoint[0] - position, open_velocity, 0.0, 0.0, 0.0, 0.0, torque, 0.0
+            self._close(setpoint, position, columns)
+        else:
+            self._open(open_velocity)
+            columns.command_velocity.append(open_velocity)
+            columns.nothing_added(1)
 
-    def _closed_cycle(self, setpoint: MotionState, position: float, velocity: float, torque: float) -> LoopRow:
-        self._remember(setpoint)
-        history = self._history
-        set_position, set_velocity, _, _ = history[self.delay_cycles]
+    def _close(self, setpoint: MotionState, position: float, columns: ControlColumns) -> None:
+        """Position control with all that is added to it."""
+        history, feedforward, friction = self._history, self.feedforward, self.friction
+        history.take(setpoint[0], setpoint[1], setpoint[2], setpoint[3])
+        behind = self.delay_cycles
+        set_position, set_velocity = history.position(behind), history.velocity(behind)
         lag = set_position - position
         self.monitor.advance(lag, set_velocity)
-        feedforward, friction = self.feedforward, self.friction
         command = self.kv * lag
         if feedforward.active:
             feedforward.update(history, command)
             command += feedforward.velocity
         friction.update(history)
         additive_torque = feedforward.additive_torque + friction.current * self._torque_per_digit
+        velocity = self.drive.velocity
         self._command(command, set_position, lag, velocity, feedforward.additive_velocity, additive_torque)
-        return (
-            position,
-            velocity,
-            setpoint[0] - position,
-            command,
-            feedforward.velocity,
-            feedforward.additive_velocity,
-            additive_torque,
-            friction.current,
-            torque,
-            feedforward.percent,
-        )
+        columns.command_velocity.append(command)
+        columns.feedforward_velocity.append(feedforward.velocity)
+        columns.additive_velocity.append(feedforward.additive_velocity)
+        columns.additive_torque.append(additive_torque)
+        columns.friction_current.append(friction.current)
+        columns.feedforward_percent.append(feedforward.percent)
 
     def _command(
         self,
@@ -247,7 +311,7 @@ class ControlLoop:
         additive_torque: float,
     ) -> None:
         """Passes the command on in the form that the drive takes; a drive's own position loop has the same Kv."""
-        if self._interface == "velocity":
+        if self._takes_velocity:
             self.drive.step(command, additive_velocity, additive_torque)
         elif self._interface == "torque":
             torque = self._velocity_controller.torque(command + additive_velocity - velocity)

@@ -8,11 +8,12 @@ Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
 from __future__ import annotations
 
 from collections import deque
-from itertools import islice
+from dataclasses import dataclass
 from math import copysign, exp, floor, sqrt
 from typing import NamedTuple
 
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.control.history import SetpointHistory
+from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.parameters.view.control_view import ACC, ADD_ACC, ADD_JERK, ADD_VEL, JERK, VEL, FeedforwardParameters
 
 ROUNDING = 1e-9
@@ -73,11 +74,13 @@ class Feedforward:
         mode = parameters.mode
         velocity_delay = parameters.velocity_delay / cycle_time if mode & ADD_VEL else 0.0
         torque_delay = parameters.acceleration_delay / cycle_time
-        velocity_value = MomentaryVelocity if samples_velocity else MeanValue
-        self._velocity_at = velocity_value(behind + velocity_delay, cycle_time)
+        at = behind + velocity_delay
+        self._velocity_at: VelocityValue = (
+            MomentaryVelocity(at, cycle_time) if samples_velocity else MeanValue(at, cycle_time)
+        )
         self._acceleration_at = MeanValue(behind + (torque_delay if mode & ADD_ACC else 0.0), cycle_time)
         self._jerk_at = MeanValue(behind + (torque_delay if mode & ADD_JERK else 0.0), cycle_time)
-        oldest = max(value.oldest for value in (self._velocity_at, self._acceleration_at, self._jerk_at))
+        oldest = max(self._velocity_at.oldest, self._acceleration_at.oldest, self._jerk_at.oldest)
         self._depth = max(1, 1 + oldest)  # without feedforward there may be no delay line for the lead
         self._parts = _parts(parameters, kv, torque_per_acceleration)
         self._velocity_of_torque = 1.0 / (torque_per_acceleration * kv) if torque_per_acceleration else 0.0
@@ -117,10 +120,12 @@ class Feedforward:
         """The axis' largest velocity if the selection waits in vain for room up to it; reported once."""
         return self._coupling.take_wait()
 
-    def at_rest(self, history: deque[MotionState]) -> bool:
-        """True if all setpoints in use are at a standstill; `history` ends with the cycle before, newest first."""
-        seen = islice(history, self._depth)
-        return all(v == 0.0 and a == 0.0 for _, v, a, _ in seen) and not any(map(any, self._prefilter))
+    def at_rest(self, history: SetpointHistory) -> bool:
+        """True if all setpoints in use are at a standstill; `history` ends with the cycle before."""
+        seen = range(self._depth if history.filled else 0)
+        if any(history.velocity(back) != 0.0 or history.acceleration(back) != 0.0 for back in seen):
+            return False
+        return not any(map(any, self._prefilter))
 
     def forget(self) -> None:
         """The loop is open: nothing is output, the selection takes effect in the next closed cycle."""
@@ -128,8 +133,8 @@ class Feedforward:
         self._prefilter.clear()
         self._coupling.forget()
 
-    def update(self, history: deque[MotionState], feedback: float) -> None:
-        """The values of this cycle; `history` has the newest setpoint at its left end.
+    def update(self, history: SetpointHistory, feedback: float) -> None:
+        """The values of this cycle, whose setpoint `history` has.
 
         `feedback` is the output of the position controller in this cycle, mm/s (deg/s).
         """
@@ -148,20 +153,19 @@ class Feedforward:
         torque = p.torque * mean_acceleration + p.jerk_torque * mean_jerk
         coupling = self._coupling
         if coupling.factor != coupling.target:
-            coupling.step(feedback, velocity + additive, torque * self._velocity_of_torque, history[0])
+            coupling.step(feedback, velocity + additive, torque * self._velocity_of_torque, history.at(0))
         factor = coupling.factor
-        self.velocity, self.additive_velocity, self.additive_torque = (
-            factor * velocity,
-            factor * additive,
-            factor * torque,
-        )
+        self.velocity = factor * velocity
+        self.additive_velocity = factor * additive
+        self.additive_torque = factor * torque
         if coupling.active:
             coupling.note(feedback + factor * (velocity + additive))
         else:
             self.forget()
 
 
-class Parts(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Parts:
     """Factors of mean velocity, acceleration and jerk in the three outputs."""
 
     velocity: float
@@ -195,14 +199,25 @@ def _split(behind: float) -> tuple[int, float]:
     return whole, fraction if fraction > 1e-9 else 0.0
 
 
-class MeanValue:
+class VelocityValue:
+    """A velocity out of the history; `oldest`: how far back it looks, in cycles."""
+
+    __slots__ = ("oldest",)
+
+    oldest: int
+
+    def velocity(self, history: SetpointHistory) -> float:
+        raise NotImplementedError
+
+
+class MeanValue(VelocityValue):
     """Mean of velocity, acceleration or jerk over the cycle that began `behind` cycles before the newest setpoint.
 
     A fraction of a cycle takes the end of one setpoint's cycle and the start of the next one's. Exact for a jerk that
-    is constant in each cycle. `oldest`: index of the oldest setpoint that it looks at.
+    is constant in each cycle.
     """
 
-    __slots__ = ("_first", "_index", "_second", "_split", "oldest")
+    __slots__ = ("_first", "_index", "_second", "_split")
 
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
@@ -214,33 +229,33 @@ class MeanValue:
         self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
         self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
 
-    def velocity(self, history: deque[MotionState]) -> float:
-        _, v, a, j = history[self._index]
+    def velocity(self, history: SetpointHistory) -> float:
+        index = self._index
         p, q, r = self._second
-        mean = p * v + q * a + r * j
+        mean = p * history.velocity(index) + q * history.acceleration(index) + r * history.jerk(index)
         if self._split:
-            _, v, a, j = history[self._index + 1]
             p, q, r = self._first
-            mean += p * v + q * a + r * j
+            index += 1
+            mean += p * history.velocity(index) + q * history.acceleration(index) + r * history.jerk(index)
         return mean
 
-    def acceleration(self, history: deque[MotionState]) -> float:
-        _, _, a, j = history[self._index]
-        mean = self._second[0] * a + self._second[1] * j
+    def acceleration(self, history: SetpointHistory) -> float:
+        index = self._index
+        mean = self._second[0] * history.acceleration(index) + self._second[1] * history.jerk(index)
         if self._split:
-            _, _, a, j = history[self._index + 1]
-            mean += self._first[0] * a + self._first[1] * j
+            index += 1
+            mean += self._first[0] * history.acceleration(index) + self._first[1] * history.jerk(index)
         return mean
 
-    def jerk(self, history: deque[MotionState]) -> float:
-        mean = self._second[0] * history[self._index][3]
-        return mean + self._first[0] * history[self._index + 1][3] if self._split else mean
+    def jerk(self, history: SetpointHistory) -> float:
+        mean = self._second[0] * history.jerk(self._index)
+        return mean + self._first[0] * history.jerk(self._index + 1) if self._split else mean
 
 
-class MomentaryVelocity:
-    """Velocity `behind` cycles before the newest setpoint; `oldest`: index of the setpoint that it looks at."""
+class MomentaryVelocity(VelocityValue):
+    """Velocity `behind` cycles before the newest setpoint."""
 
-    __slots__ = ("_time", "oldest")
+    __slots__ = ("_time",)
 
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
@@ -248,10 +263,9 @@ class MomentaryVelocity:
         self.oldest = whole + 1 if fraction else whole
         self._time = (1.0 - fraction) * cycle_time if fraction else 0.0
 
-    def velocity(self, history: deque[MotionState]) -> float:
-        _, v, a, j = history[self.oldest]
-        t = self._time
-        return v + t * (a + 0.5 * t * j)
+    def velocity(self, history: SetpointHistory) -> float:
+        back, t = self.oldest, self._time
+        return history.velocity(back) + t * (history.acceleration(back) + 0.5 * t * history.jerk(back))
 
 
 class CouplingLimits(NamedTuple):

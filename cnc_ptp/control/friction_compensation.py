@@ -9,7 +9,7 @@ from bisect import bisect_right
 from collections import deque
 from itertools import pairwise
 
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.control.history import SetpointHistory
 from cnc_ptp.parameters.view.control_view import FrictionParameters
 
 COUPLING_TIME = 0.1
@@ -94,9 +94,9 @@ class FrictionCompensation:
         for index in range(len(self._delayed)):
             self._delayed[index] = 0.0
 
-    def update(self, history: deque[MotionState]) -> None:
-        """The current of this cycle; `history` has the newest setpoint at its left end."""
-        position, velocity, _, _ = history[self._behind]
+    def update(self, history: SetpointHistory) -> None:
+        """The current of this cycle, whose setpoint `history` has."""
+        position, velocity = history.position(self._behind), history.velocity(self._behind)
         value = 0.0
         self._moving = velocity != 0.0
         if self._moving:
@@ -117,7 +117,7 @@ class FrictionCompensation:
         target = float(self.on)
         self._factor = min(target, self._factor + self._step) if target else max(target, self._factor - self._step)
 
-    def _note_direction(self, position: float, velocity: float, history: deque[MotionState]) -> None:
+    def _note_direction(self, position: float, velocity: float, history: SetpointHistory) -> None:
         """Notes where the axis has reversed: at the farther of its two positions around that instant.
 
         The current changes its sign there, so it may be switched.
@@ -126,11 +126,11 @@ class FrictionCompensation:
         if direction != self._direction:
             if self._direction != 0.0:
                 self._factor = float(self.on)
-                before = history[self._behind + 1][0]
+                before = history.position(self._behind + 1)
                 self._reversed_at = min(position, before) if velocity > 0.0 else max(position, before)
             self._direction = direction
 
-    def _weight(self, position: float, velocity: float, history: deque[MotionState]) -> float:
+    def _weight(self, position: float, velocity: float, history: SetpointHistory) -> float:
         weight = 1.0
         if self._reversed_at is not None:
             distance = abs(position - self._reversed_at)
@@ -141,11 +141,11 @@ class FrictionCompensation:
         cycles = self._cycles_to_reversal(velocity, history)
         return min(weight, cycles / self._lookahead) if cycles else weight
 
-    def _cycles_to_reversal(self, velocity: float, history: deque[MotionState]) -> int:
+    def _cycles_to_reversal(self, velocity: float, history: SetpointHistory) -> int:
         """Cycles up to the first one that does not move in the direction of `velocity`; 0: no reversal ahead."""
         end = 0
         for cycles in range(1, self._lookahead + 1):
-            onward = history[self._behind - cycles][1] * velocity
+            onward = history.velocity(self._behind - cycles) * velocity
             if onward <= 0.0 and not end:
                 end = cycles
             if onward < 0.0:

@@ -17,14 +17,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
+
 Segment = tuple[float, float, float, float, float]
 """Segment start time, position, velocity, acceleration, jerk."""
 
 Piece = tuple[float, float, float]
 """Segment duration, acceleration at its start, jerk: a segment before position and velocity are known."""
-
-MotionState = tuple[float, float, float, float]
-"""Position, velocity, acceleration, jerk."""
 
 
 class Profile:
@@ -54,6 +53,14 @@ class Profile:
         start, p, v, a, j = self.rows[bisect_right(self.starts, t) - 1]
         d = t - start
         return p + d * (v + d * (0.5 * a + d * (j / 6.0))), v + d * (a + d * (0.5 * j)), a + d * j, j
+
+    def setpoints(self, first: int, count: int, cycle_time: float) -> Setpoints:
+        """`state_at` for `count` times from first · cycle_time on, in s."""
+        setpoints = Setpoints([], [], [], [])
+        for cycle in range(first, first + count):
+            p, v, a, j = self.state_at(cycle * cycle_time)
+            setpoints.add(p, v, a, j)
+        return setpoints
 
     def sample(self, times: ArrayLike) -> NDArray[np.float64]:
         """States at many times: times (n,) in seconds -> array (4, n) of p, v, a, j; equals state_at to the bit.

@@ -7,7 +7,7 @@ from math import inf
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.path.geometry import Element
 from cnc_ptp.path.planner import JERK_LIMITED, Planner
 

@@ -10,14 +10,13 @@ feedforward. Units: °, °/s.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf
 
-from cnc_ptp.control.control_loop import ControlLoop
+from cnc_ptp.control.control_loop import ControlColumns, ControlLoop
 from cnc_ptp.control.drive_format import shown_velocity
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.feedforward import CouplingLimits, Feedforward
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 
 ROUNDING = 1e-12
@@ -209,7 +208,7 @@ class PositionLoop:
         """True while the following error is monitored; `on` is False without power."""
         return self.control.monitor.on and on and self.closed
 
-    def cycles(self, setpoints: Sequence[MotionState], *, on: bool, watched: bool) -> Cycles:
+    def cycles(self, setpoints: Setpoints, *, on: bool, watched: bool) -> Cycles:
         """Many cycles in which the loop neither opens nor closes; if `watched`, up to an excessive following error.
 
         The same as actual_position, actual_speed and command, cycle by cycle.
@@ -218,7 +217,8 @@ class PositionLoop:
             return self._closed_cycles(setpoints, watched)
         cycles: Cycles = [], [], [], [], []
         actuals, actual_speeds, errors, outputs, percents = cycles
-        for setpoint in setpoints:
+        for index in range(len(setpoints)):
+            setpoint = setpoints.at(index)
             if watched and self.control.too_far(setpoint):
                 break
             actual = self.actual_position(setpoint[0], setpoint[1])
@@ -230,16 +230,22 @@ class PositionLoop:
             percents.append(self.feedforward_percent)
         return cycles
 
-    def _closed_cycles(self, setpoints: Sequence[MotionState], watched: bool) -> Cycles:
-        actuals, actual_speeds, errors, commands, feedforward, additive, _, _, _, percents = self.control.follow(
-            setpoints, True, watched=watched
-        )
-        outputs = self._output.encode_all(commands)
+    def _closed_cycles(self, setpoints: Setpoints, watched: bool) -> Cycles:
+        control = ControlColumns()
+        self.control.follow(setpoints, True, control, watched=watched)
+        outputs = self._output.encode_all(control.command_velocity)
         if outputs:
             self.drive_output = outputs[-1]
-            self.feedforward_percent = percents[-1]
-            self._note_feedforward(feedforward[-1] + additive[-1], setpoints[len(outputs) - 1][1])
-        return actuals, actual_speeds, errors, outputs, percents
+            self.feedforward_percent = control.feedforward_percent[-1]
+            added = control.feedforward_velocity[-1] + control.additive_velocity[-1]
+            self._note_feedforward(added, setpoints.velocities[len(outputs) - 1])
+        return (
+            control.actual_position,
+            control.actual_velocity,
+            control.following_error,
+            outputs,
+            control.feedforward_percent,
+        )
 
     def _note_feedforward(self, feedforward_speed: float, set_speed: float) -> None:
         self._feedforward = feedforward_speed / set_speed if set_speed else 0.0

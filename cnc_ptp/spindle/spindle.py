@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from cnc_ptp.control.drives import Drive
 from cnc_ptp.errors import CncError, Value, warning_text
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
@@ -98,15 +98,22 @@ class Spindle:
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
 
-    def motions(self, first_cycle: int, count: int) -> list[MotionState]:
+    def motions(self, first_cycle: int, count: int) -> Setpoints:
         """`motion` of many cycles, as setpoints of the control loop (no jerk is fed forward)."""
         cycle_time, shift, first = self.cycle_time, self._shift, first_cycle - self._origin
         times = [cycle * cycle_time for cycle in range(first, first + count)]
         if not self.finished(first_cycle):
-            return [(p + shift, v, a, 0.0) for p, v, a in self._table.states_at(times)]
+            motions = self._table.states_at(times)
+            return Setpoints(
+                [p + shift for p, _, _ in motions],
+                [v for _, v, _ in motions],
+                [a for _, _, a in motions],
+                [0.0] * count,
+            )
         end = self._table.segments[-1]
         start, (position, speed) = end.start, end.position
-        return [(position + (t - start) * speed + shift, speed, 0.0, 0.0) for t in times]
+        positions = [position + (t - start) * speed + shift for t in times]
+        return Setpoints(positions, [speed] * count, [0.0] * count, [0.0] * count)
 
     def finished(self, cycle: int) -> bool:
         """True when the table has reached its end speed."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from cnc_ptp.control.faults import FOLLOWING_ERROR
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -221,7 +221,7 @@ class SpindleCycles:
             motions, on=state != S.DISABLED, watched=self._watched()
         )
         n = len(actuals)
-        positions, speeds, accelerations, _ = map(list, zip(*motions[:n], strict=True)) if n else ([], [], [], [])
+        positions, speeds = motions.positions[:n], motions.velocities[:n]
         target = spindle.target
         reached = self._speeds_reached(actual_speeds)
         block = SpindleBlock(
@@ -230,7 +230,7 @@ class SpindleCycles:
             set_speed_rpm=[speed / DEG_S_PER_RPM for speed in speeds],
             actual_speed_rpm=[speed / DEG_S_PER_RPM for speed in actual_speeds],
             programmed_speed_rpm=[spindle.programmed_speed / DEG_S_PER_RPM] * n,
-            set_acceleration_deg_s2=accelerations,
+            set_acceleration_deg_s2=motions.accelerations[:n],
             set_position_deg=positions,
             actual_position_deg=actuals,
             target_position_deg=[*positions] if target is None else [target] * n,

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from slave_support import follow
 
 from cnc_ptp.axis.coupling import CyclicCoupling
-from cnc_ptp.motion.profile import MotionState
+from cnc_ptp.motion.setpoints import MotionState
 
 QUICK = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 T = 0.001
@@ -34,7 +35,7 @@ def slave(states: Sequence[MotionState], factors: Sequence[float], bound: float,
     for block, factor in enumerate(factors):
         coupling.set_factor(factor)
         part = states[block * BLOCK : (block + 1) * BLOCK]
-        rows += coupling.follow(start if not rows else rows[-1][0], part)
+        rows += follow(coupling, start if not rows else rows[-1][0], part)
     return np.array(rows)[:, :3]
 
 
@@ -117,7 +118,7 @@ def test_factor_0_brings_the_slave_to_rest_and_change_of_sign_turns_it() -> None
 
 def test_slave_without_a_factor_stands() -> None:
     coupling = CyclicCoupling("x", 8000.0, cycle_time=T)
-    assert {state[:3] for state in coupling.follow(5.0, master(CONSTANT))} == {(5.0, 0.0, 0.0)}
+    assert {state[:3] for state in follow(coupling, 5.0, master(CONSTANT))} == {(5.0, 0.0, 0.0)}
 
 
 def test_factor_that_is_set_at_rest_acts_from_the_first_cycle() -> None:
@@ -148,8 +149,8 @@ def test_change_of_the_source_moves_nothing() -> None:
     plain, shifted = (CyclicCoupling("x", 8000.0, cycle_time=T) for _ in range(2))
     for coupling in (plain, shifted):
         coupling.set_factor(-2.0)
-        coupling.follow(0.0, states[:400])
+        follow(coupling, 0.0, states[:400])
     shifted.change_source(10.0, 35.0)
-    expected = plain.follow(0.0, states[400:800])
-    moved = shifted.follow(0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[400:800]])
+    expected = follow(plain, 0.0, states[400:800])
+    moved = follow(shifted, 0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[400:800]])
     assert np.array(moved) == pytest.approx(np.array(expected), abs=1e-9)

@@ -54,11 +54,13 @@ def test_a_table_of_cycle_c_gives_its_start_at_c() -> None:
 @pytest.mark.parametrize("first_cycle", [0, 95, 100, 480, 700, 10**6])
 def test_states_of_a_block_are_those_of_its_cycles(first_cycle: int) -> None:
     ptp = generator(position=-0.0)
-    assert list(map(repr, ptp.states(first_cycle, 10))) == [repr(ptp.state(first_cycle + n)) for n in range(10)]
+    assert list(map(repr, ptp.setpoints(first_cycle, 10).states())) == [
+        repr(ptp.state(first_cycle + n)) for n in range(10)
+    ]
     ptp.start(100, 20.0, LIMITS)
-    assert ptp.states(first_cycle, 10) == [ptp.state(first_cycle + n) for n in range(10)]
+    assert ptp.setpoints(first_cycle, 10).states() == [ptp.state(first_cycle + n) for n in range(10)]
     ptp.take_over(100, 5.0, 0.0, 3.0)  # at rest for one instant only
-    assert ptp.states(first_cycle, 10) == [ptp.state(first_cycle + n) for n in range(10)]
+    assert ptp.setpoints(first_cycle, 10).states() == [ptp.state(first_cycle + n) for n in range(10)]
 
 
 def test_take_over_goes_on_from_any_state_until_a_stop_follows() -> None:

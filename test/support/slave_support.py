@@ -10,6 +10,8 @@ import numpy as np
 from error_support import Refused, refusal_of
 from machine_support import PTP, MachineBench, changed
 
+from cnc_ptp.axis.coupling import Coupling
+from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord
 
@@ -28,6 +30,11 @@ COMPENSATION = {
 """The manual's example of TX1250 3.2.4."""
 PROTECTED, DELAYED, STOPPED, HAS_JOB = 1 << 5, 1 << 6, 1 << 7, 1 << 8
 COMPENSATING, ERROR = 1 << 13, 1 << 31
+
+
+def follow(coupling: Coupling, position: float, master: Iterable[MotionState]) -> list[MotionState]:
+    """The states of a slave for those of its master."""
+    return coupling.follow(position, Setpoints.of(master)).states()
 
 
 class SlaveBench(MachineBench):

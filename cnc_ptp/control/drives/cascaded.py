@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import copysign, exp, inf
 
+from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.control.drives.exact_steps import transition
 from cnc_ptp.parameters.view.control_view import PlantParameters
 
@@ -21,7 +22,7 @@ STRONGEST = 1e12
 """mm/s² or deg/s²; bounds an unstable loop without torque limit before numbers overflow."""
 
 
-class CascadedDrive:
+class CascadedDrive(Drive):
     """Velocity command -> first-order filter -> PI controller -> current loop with limit -> inertia with friction.
 
     w' = (u - w) / Tf; torque = k (Kp (w + u_add - v + 1/Tn ∫(w + u_add - v) dt)) + M_add, limited, behind a lag Ti;
@@ -68,11 +69,7 @@ class CascadedDrive:
         "_uneven",
         "_viscous",
         "_wanted",
-        "has_torque",
         "load_position",
-        "position",
-        "torque",
-        "velocity",
     )
 
     def __init__(self, plant: PlantParameters, *, cycle_time: float) -> None:

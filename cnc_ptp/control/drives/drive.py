@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from mypy_extensions import mypyc_attr
 
 
-class Drive(Protocol):
+@mypyc_attr(allow_interpreted_subclasses=True)
+class Drive:
     """A drive of one axis or spindle; a real one would exchange its process data in `step`.
 
     Axis units: mm, mm/s (deg, deg/s). Torques are Nm at the motor shaft, or N if a linear axis has no feed constant.
     """
+
+    __slots__ = ("has_torque", "position", "torque", "velocity")
 
     position: float
     """Actual position as the telegram gives it, mm or deg."""
@@ -26,3 +29,4 @@ class Drive(Protocol):
         `command` is the quantity of the drive's interface: velocity in mm/s (deg/s), position or lag in mm (deg),
         torque in Nm (N).
         """
+        raise NotImplementedError

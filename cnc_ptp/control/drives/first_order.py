@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 
+from cnc_ptp.control.drives.drive import Drive
+
 NEGLIGIBLE = 1e-12
 """mm/s or deg/s; a smaller lag is 0, so that a drive comes to rest exactly."""
 FASTEST = 1e9
 """mm/s or deg/s; bounds an unstable loop before numbers overflow."""
 
 
-class FirstOrderDrive:
+class FirstOrderDrive(Drive):
     """Velocity-controlled drive as a first-order lag G(s) = 1 / (1 + Ta s) before an integrator and an encoder.
 
     dv/dt = (u - v) / Ta + M / k with u = command + additive velocity, M the additive torque, k the torque for a unit
@@ -27,10 +29,6 @@ class FirstOrderDrive:
         "_torque_per_change",
         "_true_position",
         "_velocity_per_torque",
-        "has_torque",
-        "position",
-        "torque",
-        "velocity",
     )
 
     def __init__(

@@ -7,10 +7,13 @@ from collections import deque
 from cnc_ptp.control.drives.drive import Drive
 
 
-class PositionCommandedDrive:
+class PositionCommandedDrive(Drive):
     """The drive closes the position loop: v = Kv (x_set - x) once per cycle, x as its encoder shows it."""
 
-    __slots__ = ("_drive", "_kv", "has_torque", "position", "torque", "velocity")
+    __slots__ = (
+        "_drive",
+        "_kv",
+    )
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s (S-0-0104, P-SIM-00019); `drive` takes velocities."""
@@ -28,10 +31,13 @@ class PositionCommandedDrive:
         self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
 
 
-class LagCommandedDrive:
+class LagCommandedDrive(Drive):
     """Dynamic servo control: the NC sends its following error, the drive multiplies it: v = Kv · lag."""
 
-    __slots__ = ("_drive", "_kv", "has_torque", "position", "torque", "velocity")
+    __slots__ = (
+        "_drive",
+        "_kv",
+    )
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s; `drive` takes velocities."""
@@ -49,10 +55,13 @@ class LagCommandedDrive:
         self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
 
 
-class DelayedDrive:
+class DelayedDrive(Drive):
     """Delays commands by some cycles on the bus to the drive."""
 
-    __slots__ = ("_commands", "_drive", "has_torque", "position", "torque", "velocity")
+    __slots__ = (
+        "_commands",
+        "_drive",
+    )
 
     def __init__(self, drive: Drive, *, cycles: int, rest: float) -> None:
         """`cycles` >= 1; `rest` is the command of the drive until the first one has arrived."""

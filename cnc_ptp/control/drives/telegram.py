@@ -7,7 +7,7 @@ from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
 
-class TelegramDrive:
+class TelegramDrive(Drive):
     """Encodes commands as the telegram does and decodes the actual values; the drive gets the values of the words.
 
     What the telegram does not carry is not transmitted: additive values without an object are 0, a velocity without an
@@ -27,12 +27,8 @@ class TelegramDrive:
         "additive_torque_word",
         "additive_velocity_word",
         "command_word",
-        "has_torque",
-        "position",
         "position_word",
-        "torque",
         "torque_word",
-        "velocity",
         "velocity_word",
     )
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from cnc_ptp.control.drives.drive import Drive
 
-class VirtualDrive:
+
+class VirtualDrive(Drive):
     """Shows the set values; `step` moves nothing."""
 
-    __slots__ = ("has_torque", "position", "torque", "velocity")
+    __slots__ = ()
 
     def __init__(self, *, start_position: float) -> None:
         """`start_position` in mm or deg."""
