@@ -1,7 +1,8 @@
-"""Package of build type ament_python that also generates its ROS interfaces.
+"""Package of build type ament_python that also generates its ROS interfaces and compiles its kernel.
 
 `pip install .`, `pip install -e .` and `colcon build` all end in build_ext: it lets CMake generate the interfaces,
-takes their Python part into the package and hands libraries and share files on as data files of the prefix.
+takes their Python part into the package and hands libraries and share files on as data files of the prefix. Then it
+compiles the kernel (cnc_ptp/compiled), which is no failure where that cannot be done.
 """
 
 import os
@@ -22,8 +23,8 @@ COMMANDS = (
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")
 
 
-class GenerateInterfaces(build_ext):
-    """Configures, builds and stages the interfaces with CMake."""
+class BuildInterfacesAndKernel(build_ext):
+    """Configures, builds and stages the interfaces with CMake; compiles the kernel."""
 
     def build_extension(self, ext: Extension) -> None:
         build = ROOT / "build" / f"interfaces-{sys.implementation.cache_tag}"
@@ -47,15 +48,27 @@ class GenerateInterfaces(build_ext):
             subprocess.run(
                 command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL
             )
+        self.compile_kernel()
         self.take_python_part(stage)
         self.hand_on(prefix_part(stage))
         if {"bdist_wheel", "editable_wheel"} & {*self.distribution.commands}:  # colcon puts the scripts there itself
             self.hand_on(ros_executables(build.parent / "executables"))
 
+    @property
+    def package(self) -> Path:
+        """Where the package is put together: in the build folder, or in the source tree if editable."""
+        return ROOT / PACKAGE if self.inplace or self.editable_mode else Path(self.build_lib).absolute() / PACKAGE
+
+    def compile_kernel(self) -> None:
+        """A kernel that was not compiled runs interpreted; `cnc_ptp --version` says why."""
+        command = [sys.executable, "-m", f"{PACKAGE}.compiled.build", str(self.package / "compiled" / "library")]
+        environment = os.environ | {"CNC_PTP_PURE": "1"}
+        subprocess.run(command, cwd=ROOT, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL)
+
     def take_python_part(self, stage: Path) -> None:
-        """Copies the generated modules into the package: in the build folder, or the source tree if editable."""
+        """Copies the generated modules into the package."""
         generated = next(stage.glob(f"**/{PACKAGE}/msg/__init__.py")).parent.parent
-        package = ROOT / PACKAGE if self.inplace or self.editable_mode else Path(self.build_lib) / PACKAGE
+        package = self.package
         for entry in generated.iterdir():
             if entry.is_dir() and entry.name in ("msg", "srv", "action"):
                 shutil.rmtree(package / entry.name, ignore_errors=True)
@@ -137,7 +150,7 @@ setup(
     ),
     package_data={PACKAGE: ["parameters/declare/*.yaml", "nodes/*.xml", "plots/*.js", "py.typed"]},
     ext_modules=[Extension(f"{PACKAGE}._interfaces", sources=[])],
-    cmdclass={"build_ext": GenerateInterfaces},
+    cmdclass={"build_ext": BuildInterfacesAndKernel},
     distclass=BinaryDistribution,
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),

@@ -1,6 +1,7 @@
 """A CNC and axis kernel as a ROS 2 node graph."""
 
-from cnc_ptp.compiled.finder import choose_kernel
+from cnc_ptp.compiled.finder import Kernel
 
-INTERPRETED_BECAUSE = choose_kernel()
-"""Why the kernel runs interpreted; empty when it is compiled."""
+KERNEL = Kernel()
+"""Compiled or interpreted; chosen before any module of it is imported."""
+KERNEL.choose()

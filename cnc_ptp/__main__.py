@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Callable
 
+from cnc_ptp import KERNEL
 from cnc_ptp.interrupt import end_command
 
 
@@ -14,6 +15,8 @@ def _entry(*command: str) -> Callable[[], object]:
 
     def call() -> object:
         signal.signal(signal.SIGINT, end_command)
+        if KERNEL.edited:
+            print(f"{KERNEL}; make setup compiles it again", file=sys.stderr)
         from cnc_ptp.cli import main
 
         return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")

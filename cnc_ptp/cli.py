@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cnc_ptp import KERNEL
 from cnc_ptp.commands.completion import (
     complete_axis,
     complete_command,
@@ -64,7 +65,7 @@ class Group(click.Group):
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="cnc_ptp")
+@click.version_option(package_name="cnc_ptp", message=f"%(prog)s %(version)s, {KERNEL}")
 @click.pass_context
 def main(context: click.Context) -> None:
     """CNC and axis kernel: run NC programs and PLC scenarios offline or as a ROS 2 graph, record, replay, report."""

@@ -14,25 +14,28 @@ settings.register_profile("project", deadline=None, derandomize=True, suppress_h
 settings.load_profile("project")
 
 
-def strict(take):
-    """`take` of an axis or a spindle, only from the states that its table of transitions names."""
-
-    def checked(self, transition):
-        assert self.state in transition.sources, (
-            f"{self.name}: no transition '{transition.cause}' from {self.state.name}"
-        )
-        take(self, transition)
-
-    return checked
-
-
 @pytest.fixture(autouse=True, scope="session")
 def only_transitions_of_the_table() -> Iterator[None]:
     """No test of this process takes an axis or a spindle from a state to another by a transition that is not in the tables."""
-    from cnc_ptp.axis.axis import Axis
-    from cnc_ptp.spindle.spindle import Spindle
+    from cnc_ptp.protocol import transitions
 
     with pytest.MonkeyPatch.context() as patch:
-        for unit in (Axis, Spindle):
-            patch.setattr(unit, "take", strict(unit.take))
+        patch.setattr(transitions, "strict", True)
         yield
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests that put something else in place of a part of the kernel need the interpreted one."""
+    from cnc_ptp import KERNEL
+
+    if not KERNEL.interpreted_because:
+        skip = pytest.mark.skip(reason="needs the interpreted kernel: CNC_PTP_PURE=1 pytest -m interpreted")
+        for item in items:
+            if "interpreted" in item.keywords:
+                item.add_marker(skip)
+
+
+def pytest_report_header() -> str:
+    from cnc_ptp import KERNEL
+
+    return str(KERNEL)

@@ -26,7 +26,7 @@ from cnc_ptp.motion.setpoints import MotionState, Setpoints
 from cnc_ptp.parameters import AxisParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
-from cnc_ptp.protocol.transitions import Transition
+from cnc_ptp.protocol.transitions import Transition, require_source
 
 CONSTANT_VELOCITY, IN_TARGET_POSITION = int(StatusBit.CONSTANT_VELOCITY), int(StatusBit.IN_TARGET_POSITION)
 
@@ -269,6 +269,7 @@ class Axis:
 
     def take(self, transition: Transition) -> None:
         """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
+        require_source(self.name, self.state, transition)
         self.state = transition.target
 
     def advance_state(self, cycle: int) -> None:

@@ -133,9 +133,7 @@ class CouplingCommands:
     ) -> str | None:
         """Slave position over master position from a table of points (master, slave)."""
         command = "couple_cam"
-        self._check(
-            command, master, above=above, master_stands=master_stands, master_lost=master_lost, on_path=on_path
-        )
+        self._check(command, master, above=above, master_stands=master_stands, master_lost=master_lost, on_path=on_path)
         self._check_factor(command, slave_scaling, "slave_scaling")
         self._check_factor(command, master_scaling, "master_scaling")
         coupling = CamCoupling(

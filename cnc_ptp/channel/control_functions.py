@@ -6,6 +6,8 @@ The next motion of the path starts in that block at the earliest, with what they
 
 from __future__ import annotations
 
+from typing import Any
+
 from cnc_ptp.nc.canonical import AxisFeedforward, ControlFunction, SpindleFeedforward
 from cnc_ptp.parameters import ChannelParameters
 from cnc_ptp.protocol.blocks import Command
@@ -35,5 +37,5 @@ def _axis_feedforward(channel: ChannelParameters, function: AxisFeedforward) -> 
 
 
 def _set_feedforward(node: str, on: bool | None, weight: float | None) -> Command:
-    arguments = {"enabled": on, "weight_percent": weight}
+    arguments: dict[str, Any] = {"enabled": on, "weight_percent": weight}
     return Command(node, "set_feedforward", {name: value for name, value in arguments.items() if value is not None})

@@ -26,15 +26,15 @@ class Condition(Enum):
     SPEED = "the speed of spindle {spindle}"
     STANDSTILL = "the standstill of spindle {spindle}"
     POSITION = "the position of spindle {spindle}"
-    GEAR = "gear {value} of spindle {spindle}"
-    MASTER = "the coupling of spindle {spindle} to {value}"
+    GEAR = "gear {value:g} of spindle {spindle}"
+    MASTER = "the coupling of spindle {spindle} to {master}"
 
 
 COMMANDED = {
     Condition.SPEED: "turn at {value:g} rpm",
     Condition.STANDSTILL: "stop",
     Condition.POSITION: "go to {value:g} deg",
-    Condition.GEAR: "change to gear {value}",
+    Condition.GEAR: "change to gear {value:g}",
 }
 """The command in words, by quantity."""
 
@@ -85,7 +85,7 @@ class Expectation:
 
     def awaited(self) -> str:
         """What is waited for, in words."""
-        return self.condition.value.format(spindle=self.spindle, value=self.master or self.value)
+        return self.condition.value.format(spindle=self.spindle, value=self.value, master=self.master)
 
     def missed(self) -> str:
         """The command that the spindle does not carry out, for the text of an error or a warning."""

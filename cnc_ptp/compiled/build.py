@@ -1,41 +1,59 @@
-"""Compiles the kernel: `python -m cnc_ptp.compiled.build`. mypyc translates it to C; only what changed is compiled."""
+"""Compiles the kernel: `python -m cnc_ptp.compiled.build [FOLDER]`. Only what has changed is compiled again.
+
+mypyc translates the sources to C. Without a C compiler, or when anything else fails, the reason is kept in place of the
+library, and the kernel runs interpreted.
+"""
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mypyc.build import mypycify
-from pybind11.setup_helpers import ParallelCompile
-from setuptools import Distribution, Extension
-from setuptools.command.build_ext import build_ext
+from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, PACKAGE, hashes, read_state, sources, write_state
 
-from cnc_ptp.compiled.sources import LIBRARY, NAME, PACKAGE, hashes, library_state, sources
+if TYPE_CHECKING:
+    from setuptools import Extension
 
 OPTIMISATION = "1"
+"""Level of the C compiler: 2 takes half as long again and gains 3 %."""
 
 
-def build(work: Path) -> None:
-    """Makes the library out of the sources; `work` keeps C sources and objects for the next time."""
+def build(folder: Path) -> str:
+    """Makes the library in `folder`. Returns why it could not be made, empty when it was."""
     files = sources()
     state = hashes(files)
-    library_state().unlink(missing_ok=True)
+    if read_state(folder) == state:
+        return ""
+    write_state(folder, {FAILURE: "its compilation was interrupted"})
+    work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
+    failure = ""
+    try:
+        make_library([file.relative_to(PACKAGE.parent) for file in files.values()], work, folder)
+    except ImportError as error:
+        failure = f"it cannot be compiled without {error.name}"
+    except (Exception, SystemExit) as error:  # mypyc ends the process when it does not understand a source
+        failure = f"it could not be compiled: {str(error).splitlines()[0] if str(error) else type(error).__name__}"
+    write_state(folder, {FAILURE: failure} if failure else state)
+    return failure
+
+
+def make_library(files: list[Path], work: Path, folder: Path) -> None:
+    """`work` keeps C sources and objects for the next time."""
     os.chdir(PACKAGE.parent)  # tracebacks name files as they are given here
-    extension = translate([str(file.relative_to(PACKAGE.parent)) for file in files.values()], work)
-    library = compile_library(extension, work)
-    LIBRARY.mkdir(exist_ok=True)
-    shutil.copy2(library, LIBRARY / library.name)
-    library_state().write_text(json.dumps(state, indent=1))
+    library = compile_library(translate(files, work), work)
+    folder.mkdir(parents=True, exist_ok=True)
+    shutil.copy2(library, folder / library.name)
 
 
-def translate(files: list[str], work: Path) -> Extension:
-    """The extension of mypyc's C sources; the shims, one for each module, are not needed."""
-    options = ["--config-file=pyproject.toml"]
+def translate(files: list[Path], work: Path) -> Extension:
+    """The extension of mypyc's C sources; its shims, one for each module, are not needed."""
+    from mypyc.build import mypycify
+
     (extension, *_shims) = mypycify(
-        [*options, *files],
+        ["--config-file=pyproject.toml", *map(str, files)],
         opt_level=OPTIMISATION,
         debug_level="0",
         multi_file=True,
@@ -43,10 +61,15 @@ def translate(files: list[str], work: Path) -> Extension:
         group_name=NAME.removesuffix("__mypyc"),
     )
     extension.extra_compile_args = [flag for flag in extension.extra_compile_args if flag != "-Werror"]
+    extension.extra_compile_args.append("-ffp-contract=off")  # the same bits as Python on every processor
     return extension
 
 
 def compile_library(extension: Extension, work: Path) -> Path:
+    from pybind11.setup_helpers import ParallelCompile
+    from setuptools import Distribution
+    from setuptools.command.build_ext import build_ext
+
     newest_header = max(file.stat().st_mtime for file in work.rglob("*.h"))
 
     def outdated(target: str, source: str) -> bool:
@@ -61,4 +84,7 @@ def compile_library(extension: Extension, work: Path) -> Path:
 
 
 if __name__ == "__main__":
-    build(PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}")
+    because = build(Path(sys.argv[1]).absolute() if len(sys.argv) > 1 else LIBRARY)
+    if because:
+        print(f"The kernel runs interpreted, which takes several times as long: {because}", file=sys.stderr)
+    sys.exit(1 if because else 0)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader, ModuleSpec
 from importlib.util import spec_from_loader
 from types import ModuleType
 
-from cnc_ptp.compiled.sources import LIBRARY, NAME, PACKAGE, built_hashes, hashes, sources
+from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, hashes, read_state, sources
 
 INTERPRET = "CNC_PTP_PURE"
 """Environment variable: 1 chooses the interpreted kernel."""
@@ -21,7 +21,7 @@ INTERPRET = "CNC_PTP_PURE"
 class KernelFinder(MetaPathFinder, Loader):
     """Finds the modules of the compiled kernel in its library."""
 
-    def __init__(self, modules: Sequence[str]) -> None:
+    def __init__(self, modules: Iterable[str]) -> None:
         self._modules = frozenset(modules)
         self._library = str(LIBRARY / f"{NAME}{EXTENSION_SUFFIXES[0]}")
 
@@ -34,38 +34,51 @@ class KernelFinder(MetaPathFinder, Loader):
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Lets the library make and execute a module, as mypyc's own shim per module does."""
-        capsule_name = f"{NAME}.init_{spec.name.replace('.', '___')}"
-        capsule = getattr(import_module(NAME), capsule_name.partition(".")[2])
-        pointer = ctypes.pythonapi.PyCapsule_GetPointer
-        pointer.restype, pointer.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
-        initialise = ctypes.PYFUNCTYPE(ctypes.py_object)(pointer(capsule, capsule_name.encode()))
-        module: ModuleType = initialise()
+        function = f"init_{spec.name.replace('.', '___')}"
+        pointer_of = ctypes.pythonapi.PyCapsule_GetPointer
+        pointer_of.restype, pointer_of.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
+        pointer = pointer_of(getattr(import_module(NAME), function), f"{NAME}.{function}".encode())
+        module: ModuleType = ctypes.PYFUNCTYPE(ctypes.py_object)(pointer)()
         return module
 
     def exec_module(self, module: ModuleType) -> None:
         """It has been executed already."""
 
 
-def choose_kernel() -> str:
-    """Installs the finder when the library is what the sources are; returns why not otherwise."""
-    if os.environ.get(INTERPRET, "") not in ("", "0"):
-        return f"{INTERPRET} is set"
-    built = built_hashes()
-    if built is None:
-        return "it was not compiled"
-    if changed := changes(built, hashes(sources())):
-        return f"{changed} since it was compiled"
-    sys.meta_path.insert(0, KernelFinder([*built]))
-    return ""
+class Kernel:
+    """Which kernel runs. `interpreted_because`: empty when it is the compiled one; `edited`: the sources differ."""
+
+    def __init__(self) -> None:
+        self.interpreted_because = ""
+        self.edited = False
+
+    def choose(self) -> None:
+        """Installs the finder when the library is what the sources are."""
+        if os.environ.get(INTERPRET, "") not in ("", "0"):
+            self.interpreted_because = f"{INTERPRET} is set"
+            return
+        built = read_state(LIBRARY)
+        if not built or FAILURE in built:
+            self.interpreted_because = built.get(FAILURE, "it was not compiled")
+        elif change := changed(built, hashes(sources())):
+            self.interpreted_because, self.edited = f"{change} since it was compiled", True
+        else:
+            sys.meta_path.insert(0, KernelFinder(built))
+
+    @property
+    def kind(self) -> str:
+        return "kernel interpreted" if self.interpreted_because else "kernel compiled"
+
+    def __str__(self) -> str:
+        return f"{self.kind} ({self.interpreted_because})" if self.interpreted_because else self.kind
 
 
-def changes(built: dict[str, str], current: dict[str, str]) -> str:
-    """What differs between two states of the sources; empty when nothing does."""
-    different = [name for name in sorted({*built, *current}) if built.get(name) != current.get(name)]
-    if not different:
+def changed(built: Mapping[str, str], current: Mapping[str, str]) -> str:
+    """What differs between two states of the sources, in words; empty when nothing does."""
+    names = [name for name in sorted({*built, *current}) if built.get(name) != current.get(name)]
+    if not names:
         return ""
-    first = different[0]
-    file = f"{PACKAGE.name}/{'/'.join(first.split('.')[1:])}.py"
-    verb = "edited" if first in built and first in current else "added" if first in current else "removed"
-    more = f" and {len(different) - 1} more" if len(different) > 1 else ""
-    return f"{file}{more} was {verb}" if not more else f"{file}{more} were changed"
+    files = f"{'/'.join(names[0].split('.'))}.py"
+    if len(names) > 1:
+        return f"{files} and {len(names) - 1} more have changed"
+    return f"{files} has changed"

@@ -13,32 +13,38 @@ LEFT_OUT = ("nc/faults.py",)
 
 PACKAGE = Path(__file__).parent.parent
 LIBRARY = PACKAGE / "compiled" / "library"
-"""Folder of what is built: one library, and the state of the sources that it was built from."""
+"""Folder of what is built: the library, and the state of the sources that it was built from."""
 NAME = "cnc_ptp_kernel__mypyc"
 """Module name of the library; the ending is mypyc's."""
+FAILURE = "failure"
 
 
 def sources() -> dict[str, Path]:
-    """Module name -> file. Packages themselves (`__init__`) hold no code and stay as they are."""
-    files = [file for room in ROOMS for file in sorted((PACKAGE / room).rglob("*.py")) if file.name != "__init__.py"]
-    left_out = [PACKAGE / name for name in LEFT_OUT]
-    files = [file for file in files if file not in left_out]
-    return {".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts): file for file in files}
+    """Module name -> file. Packages themselves (`__init__`) hold no code and are not among them."""
+    left_out = {PACKAGE / name for name in LEFT_OUT}
+    files = [file for room in ROOMS for file in sorted((PACKAGE / room).rglob("*.py"))]
+    chosen = [file for file in files if file.name != "__init__.py" and file not in left_out]
+    return {".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts): file for file in chosen}
 
 
 def hashes(files: dict[str, Path]) -> dict[str, str]:
     return {name: hashlib.blake2b(file.read_bytes(), digest_size=16).hexdigest() for name, file in files.items()}
 
 
-def library_state() -> Path:
-    """File with the hashes of the sources; one for each version of Python."""
-    return LIBRARY / f"{sys.implementation.cache_tag}.json"
+def state_file(folder: Path) -> Path:
+    """One for each version of Python."""
+    return folder / f"{sys.implementation.cache_tag}.json"
 
 
-def built_hashes() -> dict[str, str] | None:
-    """Of the sources that the library was built from; None without a library."""
+def read_state(folder: Path) -> dict[str, str]:
+    """Hashes of the sources that a library was built from, by module; or why it could not be, as FAILURE."""
     try:
-        state: dict[str, str] = json.loads(library_state().read_text())
+        state: dict[str, str] = json.loads(state_file(folder).read_text())
     except (OSError, ValueError):
-        return None
+        return {}
     return state
+
+
+def write_state(folder: Path, state: dict[str, str]) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    state_file(folder).write_text(json.dumps(state, indent=1))

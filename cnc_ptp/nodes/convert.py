@@ -60,9 +60,12 @@ def block_to_message(block: CycleBlock, stamp: Time) -> Any:
 
 
 def message_to_block(message: Any) -> Any:
-    """The block of a message; sequences stay arrays, which index and slice like lists."""
+    """The block of a message; its arrays become lists."""
     block_class = BLOCK_CLASSES[type(message)]
-    values = {name: getattr(message, name) for name, _ in _PLANS[block_class]}
+    values = {
+        name: getattr(message, name).tolist() if typecode else getattr(message, name)
+        for name, typecode in _PLANS[block_class]
+    }
     if block_class in (PlcBlock, ChannelBlock, SpindleBlock):
         values["commands"] = [message_to_command(command) for command in message.commands]
     if block_class is SpindleBlock:

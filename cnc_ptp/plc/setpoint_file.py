@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 from cnc_ptp.axis.external import Setpoint, read_setpoint
 from cnc_ptp.errors import CncError
@@ -12,7 +13,7 @@ from cnc_ptp.plc.csv_table import table_lines
 BAD_SETPOINT_FILE = 25102
 COLUMNS = Setpoint._fields
 
-SetpointRow = list[float]
+SetpointRow = list[Any]
 """One setpoint, in the order of COLUMNS."""
 
 
@@ -39,7 +40,7 @@ def parse_setpoints(text: str, file: str) -> list[SetpointRow]:
 def _row(values: Sequence[str]) -> SetpointRow:
     """Raises ValueError if the values are not a setpoint."""
     cycle, position, velocity, acceleration, direction = values
-    row = [int(cycle), float(position), float(velocity), float(acceleration), int(direction)]
+    row: SetpointRow = [int(cycle), float(position), float(velocity), float(acceleration), int(direction)]
     read_setpoint(row)
     return row
 

@@ -17,7 +17,7 @@ HORIZON = 60.0
 
 Warn = Callable[[int, int, str], None]
 """Takes a warning: cycle, number, text."""
-Waiting = list[tuple[float, int, SetpointRow]]
+Waiting = list[tuple[int, int, SetpointRow]]
 """A heap: cycle, order of arrival, row."""
 
 
@@ -34,7 +34,7 @@ class SetpointQueue:
         self._waiting: dict[str, Waiting] = {}
         self._arrived: dict[str, list[SetpointRow]] = {}
         self._enabled: set[str] = set()
-        self._newest_sent: dict[str, float] = {}
+        self._newest_sent: dict[str, int] = {}
         self._numbers = count()
 
     def __bool__(self) -> bool:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import get_type_hints
+from dataclasses import dataclass, fields
 
 from cnc_ptp.plots.colours import BLUE, GREEN, PURPLE, RED, TEAL, YELLOW, Pair
 from cnc_ptp.protocol.blocks import AxisBlock, SpindleBlock
@@ -38,9 +37,13 @@ class UnitKind:
     usual: tuple[str, ...]
 
 
-def columns(block: type) -> tuple[str, ...]:
+LISTS = ("commands", "refused")
+"""Lists of a block that do not have one entry per cycle."""
+
+
+def columns(block: type[AxisBlock | SpindleBlock]) -> tuple[str, ...]:
     """Fields of a block with one number per cycle; the others are of the block as a whole."""
-    return tuple(name for name, of in get_type_hints(block).items() if of in (list[float], list[int], list[bool]))
+    return tuple(field.name for field in fields(block) if field.default_factory is list and field.name not in LISTS)
 
 
 AXIS = {

@@ -265,7 +265,7 @@ def _check_source(where: str, source: str, sources: Collection[str]) -> None:
         raise _bad(where, "source", f"unknown source '{source}'", f"nothing was changed. Known: {known}")
 
 
-def is_finite(value: float) -> bool:
+def is_finite(value: Any) -> bool:
     """False for NaN, infinities and integers beyond the range of floating point numbers."""
     try:
         return math.isfinite(value)

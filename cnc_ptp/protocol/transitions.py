@@ -6,6 +6,9 @@ from typing import NamedTuple
 
 from cnc_ptp.protocol.axis_states import AxisStateCode
 
+strict = False
+"""True in tests: a transition from a state that its table does not name is a defect."""
+
 
 class Transition(NamedTuple):
     """From one of the states `sources` to `target`; `cause` is the label of the arrow in diagrams."""
@@ -13,6 +16,12 @@ class Transition(NamedTuple):
     cause: str
     sources: frozenset[AxisStateCode]
     target: AxisStateCode
+
+
+def require_source(name: str, state: AxisStateCode, transition: Transition) -> None:
+    """Raises AssertionError in strict runs when `transition` does not begin in `state`."""
+    if strict and state not in transition.sources:
+        raise AssertionError(f"{name}: no transition '{transition.cause}' from {state.name}")
 
 
 def transition(cause: str, *sources: AxisStateCode, to: AxisStateCode) -> Transition:

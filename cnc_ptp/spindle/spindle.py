@@ -12,7 +12,7 @@ from cnc_ptp.motion.setpoints import Setpoints
 from cnc_ptp.parameters import GearParameters, SpindleParameters
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.spindle_states import SpindleMode
-from cnc_ptp.protocol.transitions import Transition
+from cnc_ptp.protocol.transitions import Transition, require_source
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
@@ -162,6 +162,7 @@ class Spindle:
 
     def take(self, transition: Transition) -> None:
         """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
+        require_source(self.name, self.state, transition)
         self.state = transition.target
 
     # endless rotation

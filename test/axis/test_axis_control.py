@@ -24,6 +24,7 @@ from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.axis.monitoring import Monitoring
+from cnc_ptp.control.drives import Drive
 from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -124,17 +125,15 @@ def test_refusals_and_warnings_of_the_unit() -> None:
 # ---------------------------------------------------------------- following errors
 
 
-def stuck() -> Any:
-    class Stuck:
-        """A drive that has lost its coupling."""
+class Stuck(Drive):
+    """A drive that has lost its coupling."""
 
-        position = velocity = torque = 0.0
-        has_torque = False
+    def __init__(self) -> None:
+        self.position = self.velocity = self.torque = 0.0
+        self.has_torque = False
 
-        def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
-            pass
-
-    return Stuck()
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        pass
 
 
 def monitored(kind: int, **changes: Any) -> LagMonitoring:
@@ -144,7 +143,7 @@ def monitored(kind: int, **changes: Any) -> LagMonitoring:
 
 @pytest.mark.parametrize("filter_time", [0.0, 0.004])
 def test_a_following_error_on_the_way(filter_time: float) -> None:
-    bench = control_bench(plain_control(monitoring=monitored(4, filter_time=filter_time)), drive=stuck())
+    bench = control_bench(plain_control(monitoring=monitored(4, filter_time=filter_time)), drive=Stuck())
     move(bench, 100.0)
     bench.run(1000)
     cycle, position = bench.events[0].cycle, bench.column("set_position")
@@ -169,7 +168,7 @@ def test_a_following_error_on_the_way(filter_time: float) -> None:
 def test_texts_name_the_parameter_that_has_set_the_limit(
     monitoring: LagMonitoring, source: str, limit: Callable[[float, float], float]
 ) -> None:
-    bench = control_bench(plain_control(monitoring=monitoring), drive=stuck())
+    bench = control_bench(plain_control(monitoring=monitoring), drive=Stuck())
     move(bench, 100.0)
     bench.run(400)
     cycle = bench.events[0].cycle
@@ -182,7 +181,7 @@ def test_texts_name_the_parameter_that_has_set_the_limit(
 
 def test_a_standing_axis_that_is_pushed_out_of_place() -> None:
     """P-AXIS-00169 counts from 5/Kv = 100 ms after the end of the motion on."""
-    bench = control_bench(plain_control(monitoring=monitored(4, moving_limit=5.0)), drive=stuck())
+    bench = control_bench(plain_control(monitoring=monitored(4, moving_limit=5.0)), drive=Stuck())
     move(bench, 0.5)
     bench.run(1000)
     end = next(k for k in range(1, 1000) if bench.column("set_velocity")[k] == 0.0)
@@ -197,7 +196,7 @@ def test_behind_a_delay_line_the_text_has_the_error_of_the_position_controller()
     """4 cycles of shift_time at 200 mm/s are 0.8 mm, and no following error."""
     of_feedforward = feedforward(CONVENTIONAL, lead_cycles=4, always_active=True)
     control = replace(plain_control(monitoring=monitored(4)), feedforward=of_feedforward)
-    bench = control_bench(control, drive=stuck())
+    bench = control_bench(control, drive=Stuck())
     move(bench, 100.0)
     bench.run(400)
     cycle, position = bench.events[0].cycle, bench.column("set_position")
@@ -280,6 +279,7 @@ def differing(ours: dict[str, list[Any]], theirs: dict[str, list[Any]]) -> list[
     return result
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("name", CONTROLS)
 def test_the_fast_way_is_the_slow_way(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """`_undisturbed_cycles` against `_cycle`, in states in which the one or the other is taken."""

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
-from slave_support import follow
+from slave_support import follow as follow_block
 
 from cnc_ptp.axis.cam import CamCoupling, CamTable
 from cnc_ptp.errors import CncError
@@ -174,7 +174,7 @@ def sweep(begin: float, velocity: float, seconds: float, acceleration: float = 0
 
 
 def follow(cam: CamCoupling, states: list[MotionState], position: float = 0.0) -> np.ndarray:
-    return np.array(follow(cam, position, states))
+    return np.array(follow_block(cam, position, states))
 
 
 @pytest.mark.parametrize("velocity", [700.0, -700.0])
@@ -215,10 +215,10 @@ def test_offset_results_from_the_coupling_positions() -> None:
 def test_slave_offset_that_does_not_fit_is_told_and_nothing_begins() -> None:
     cam = coupling(COSINE, slave_offset=7.0)
     with pytest.raises(CncError) as caught:
-        follow(cam, 7.5, sweep(180.0, 0.0, 0.01))
+        follow_block(cam, 7.5, sweep(180.0, 0.0, 0.01))
     text = "the cam table puts the slave at 107 with its slave_offset, the axis is at 7.5"
     assert (caught.value.number, caught.value.message) == (23053, text)
-    assert follow(cam, 107.0, sweep(180.0, 0.0, 0.01))[0][0] == 107.0
+    assert follow_block(cam, 107.0, sweep(180.0, 0.0, 0.01))[0][0] == 107.0
 
 
 def test_single_cam_holds_its_ends_in_both_directions() -> None:
@@ -262,7 +262,7 @@ def test_new_table_comes_in_at_the_seam(first: list[list[float]], direction: flo
 
 def test_new_table_waits_while_the_master_stays_in_its_turn() -> None:
     cam = coupling(COSINE)
-    follow(cam, 0.0, sweep(100.0, 0.0, 0.01))
+    follow_block(cam, 0.0, sweep(100.0, 0.0, 0.01))
     cam.change_table(CamTable(SHORT, cyclic=True))
     there, back = sweep(100.0, 250.0, 1.0), sweep(350.0, -340.0, 1.0)
     rows = follow(cam, [*there, *back])
@@ -275,7 +275,7 @@ def test_change_of_the_source_moves_nothing() -> None:
     states = sweep(100.0, 700.0, 1.0)
     plain, shifted = coupling(FEED, master_scaling=2.0), coupling(FEED, master_scaling=2.0)
     for cam in (plain, shifted):
-        follow(cam, 0.0, states[:500])
+        follow_block(cam, 0.0, states[:500])
     shifted.change_source(10.0, 35.0)
-    moved = follow(shifted, 0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[500:]])
-    assert np.array(moved) == pytest.approx(np.array(follow(plain, 0.0, states[500:])), rel=1e-9, abs=1e-7)
+    moved = follow_block(shifted, 0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[500:]])
+    assert np.array(moved) == pytest.approx(np.array(follow_block(plain, 0.0, states[500:])), rel=1e-9, abs=1e-7)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from machine_support import assert_smooth
-from slave_support import follow
+from slave_support import follow as follow_block
 
 from cnc_ptp.axis.flying_saw import FlyingSaw
 from cnc_ptp.errors import CncError
@@ -44,7 +44,7 @@ def follow(coupling: FlyingSaw, states: list[MotionState], position: float = 0.0
     """Columns p, v, a, j, block by block as the axis asks."""
     rows: list[MotionState] = []
     for first in range(0, len(states), BLOCK):
-        rows += follow(coupling, rows[-1][0] if rows else position, states[first : first + BLOCK])
+        rows += follow_block(coupling, rows[-1][0] if rows else position, states[first : first + BLOCK])
     return np.array(rows)
 
 
@@ -179,8 +179,8 @@ def test_change_of_the_source_moves_nothing() -> None:
         follow(plain, states[:cut])
         follow(shifted, states[:cut])
         shifted.change_source(10.0, 35.0)
-        moved = follow(shifted, 0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[cut:]])
-        assert np.array(moved) == pytest.approx(np.array(follow(plain, 0.0, states[cut:])), abs=1e-8)
+        moved = follow_block(shifted, 0.0, [(p + 25.0, v, a, j) for p, v, a, j in states[cut:]])
+        assert np.array(moved) == pytest.approx(np.array(follow_block(plain, 0.0, states[cut:])), abs=1e-8)
 
 
 @pytest.mark.parametrize("place", [0.0, 99_000.0, -99_000.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from error_support import attributes
 
 from cnc_ptp.axis.ptp import PtpGenerator, reaches, standing
 from cnc_ptp.axis.two_stage import Request
@@ -130,10 +131,10 @@ def test_a_request_that_no_table_can_be_made_for_changes_nothing(
     if stopped:
         ptp.stop(400, LIMITS)
         ptp.redirect(400, Request(-100.0))
-    before = vars(ptp).copy()
+    before = attributes(ptp)
     with pytest.raises(CncError) as caught:
         ptp.redirect(410, request_)
-    assert caught.value.number == error_id and vars(ptp) == before
+    assert caught.value.number == error_id and attributes(ptp) == before
 
 
 @pytest.mark.parametrize("duration_cycles", range(40, 60))

@@ -11,6 +11,7 @@ from machine_support import CYCLE_TIME, PTP, machine
 from slave_support import DELAYED, DYNAMICS, ERROR, SlaveBench, assert_linear
 
 from cnc_ptp.axis.axis_unit import AxisUnit
+from cnc_ptp.control.drives import Drive
 from cnc_ptp.machine.runner import UnitRunner
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.plc_unit import at_rest
@@ -19,11 +20,12 @@ from cnc_ptp.protocol.axis_states import AxisStateCode as S
 ACTUAL = {"couple_to_actual": True, "velocity_window": 1.0, "velocity_filter_time": 0.0}
 
 
-class HandDrive:
+class HandDrive(Drive):
     """A drive that obeys its command, and a hand that pushes it when it is open: `push` in mm/s, added."""
 
     def __init__(self) -> None:
         self.position = self.velocity = self.torque = self.push = 0.0
+        self.has_torque = False
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         self.velocity = command + self.push

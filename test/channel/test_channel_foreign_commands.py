@@ -218,6 +218,7 @@ def test_override_0_makes_the_path_wait() -> None:
     assert speed_at_the_move(bench) == pytest.approx(10000.0, rel=0.1)
 
 
+@pytest.mark.interpreted
 def test_a_speed_that_never_comes_ends_in_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """A drive that makes 400 rpm at most; 5 s (P-MACH-00050) after the setpoint has got to 1000 rpm."""
     drive = StuckDrive(stuck=False, limit=400.0 * RPM)

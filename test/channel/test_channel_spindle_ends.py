@@ -339,6 +339,7 @@ def test_stop_at_program_end_stops_the_slaves_too(own: bool) -> None:
     assert stands(bench, "s") and bench.last("t").set_speed_rpm[-1] == (600.0 if own else 0.0)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("ratio", [(1e308, 1e-308), (1e-308, 1e308), (1.0, 1e-7)])
 def test_a_ratio_that_is_no_ratio(ratio: tuple[float, float]) -> None:
     bench = MachineBench(None, machine=machine_of(*three(MOS)[:2]))

@@ -53,6 +53,9 @@ AXES = {
 """The x axis of the mill as it is and with other parameters: a mass in N, deg, digits of 0.05 Nm, other drives."""
 
 
+pytestmark = pytest.mark.interpreted
+
+
 class MomentaryDrive(CascadedDrive):
     """Reports the torque at the end of the cycle instead of its mean."""
 

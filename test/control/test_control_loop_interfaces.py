@@ -30,7 +30,7 @@ from loop_support import (
 )
 
 from cnc_ptp.control.control_loop import ControlLoop
-from cnc_ptp.control.drives import make_drive
+from cnc_ptp.control.drives import Drive, make_drive
 from cnc_ptp.control.velocity_controller import VelocityController
 from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 
@@ -205,22 +205,26 @@ def test_closed_again_where_it_stands_nothing_moves(interface: str, plant: str) 
     assert set(column(cycles, "additive_torque")) == {0.0}
 
 
-class Pushed:
+class Pushed(Drive):
     """A drive that somebody moves while nothing holds it."""
 
-    def __init__(self, drive: Any) -> None:
+    def __init__(self, drive: Drive) -> None:
         self.drive, self.by, self.commands = drive, 0.0, []
+        self.has_torque = drive.has_torque
+        self._take_over()
 
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.drive, name)
+    def push(self, by: float) -> None:
+        self.by = by
+        self._take_over()
 
-    @property
-    def position(self) -> float:
-        return float(self.drive.position + self.by)
+    def _take_over(self) -> None:
+        self.position = self.drive.position + self.by
+        self.velocity, self.torque = self.drive.velocity, self.drive.torque
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         self.commands.append((command, additive_velocity, additive_torque))
         self.drive.step(command, additive_velocity, additive_torque)
+        self._take_over()
 
 
 @pytest.mark.parametrize("interface", ["velocity", "lag", "torque"])
@@ -233,7 +237,7 @@ def test_pushed_away_while_open(interface: str, lead: int) -> None:
     loop = make_loop(parameters, drive)
     run(loop, STATES)
     run(loop, [STATES[-1]] * 50, closed=False)
-    drive.by = 5.0
+    drive.push(5.0)
     run(loop, [STATES[-1]] * 3, closed=False)
     place = loop.position
     assert place == pytest.approx(END + 5.0, abs=0.01)
@@ -248,7 +252,7 @@ def test_an_open_position_drive_is_told_where_it_is() -> None:
     loop = make_loop(parameters, drive)
     run(loop, STATES)
     for by in (0.0, 1.0, 7.5):
-        drive.by = by
+        drive.push(by)
         place = drive.position
         loop.step(STATES[-1], False)
         assert drive.commands[-1] == (place, 0.0, 0.0)

@@ -23,6 +23,7 @@ from loop_support import (
 )
 from scipy.signal import lfilter
 
+from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.parameters.view.control_view import LagMonitoring
 
@@ -157,9 +158,10 @@ def test_an_open_loop_forgets_what_was_too_large() -> None:
 def test_a_blocked_axis_is_found_in_the_first_cycle_above_the_limit(kind: int) -> None:
     """The drive does not move: the following error is the set position."""
 
-    class Blocked:
-        position = velocity = torque = 0.0
-        has_torque = False
+    class Blocked(Drive):
+        def __init__(self) -> None:
+            self.position = self.velocity = self.torque = 0.0
+            self.has_torque = False
 
         def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
             pass

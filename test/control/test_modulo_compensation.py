@@ -8,7 +8,7 @@ import random
 import pytest
 from loop_support import PLANT, T, control, make_loop, motion, trapezoid
 
-from cnc_ptp.control.drives import FirstOrderDrive, PositionCommandedDrive
+from cnc_ptp.control.drives import Drive, FirstOrderDrive, PositionCommandedDrive
 from cnc_ptp.control.modulo_compensation import ModuloCompensation
 from cnc_ptp.parameters import load_machine
 from cnc_ptp.parameters.view.control_view import ModuloError
@@ -17,37 +17,32 @@ INCREMENT = 0.01
 """deg"""
 
 
-class ShortTurns:
+class ShortTurns(Drive):
     """A drive whose encoder shows whole increments, `missing` fewer a turn than 360°/increment."""
-
-    has_torque = False
 
     def __init__(self, *, missing: float, start: float = 0.0, kv: float | None = None) -> None:
         ideal = FirstOrderDrive(cycle_time=T, time_constant=0.003, encoder_increment=0.0, start_position=0.0)
         self.drive = ideal if kv is None else PositionCommandedDrive(ideal, kv=kv)
         self.motor, self.missing, self.start = ideal, missing, start
-        self.torque = 0.0
+        self.has_torque, self.torque = False, 0.0
+        self._take_over()
+
+    def _take_over(self) -> None:
+        self.position, self.velocity = self.shown(self.true_position), self.motor.velocity
 
     @property
     def true_position(self) -> float:
         return self.motor.position
 
-    @property
-    def velocity(self) -> float:
-        return self.motor.velocity
-
     def shown(self, position: float) -> float:
         share = (360.0 - self.missing * INCREMENT) / 360.0
         return self.start + round(position * share / INCREMENT) * INCREMENT
-
-    @property
-    def position(self) -> float:
-        return self.shown(self.true_position)
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         if isinstance(self.drive, PositionCommandedDrive):  # its position loop closes over the same encoder
             command += self.true_position - self.position
         self.drive.step(command, additive_velocity, additive_torque)
+        self._take_over()
 
 
 def correction(missing: float, origin: float = 0.0) -> ModuloCompensation:

@@ -61,6 +61,7 @@ def test_every_fault_has_a_bad_program():
     assert known == shown | {faults.TOO_MANY_BLOCKS.number}
 
 
+@pytest.mark.interpreted
 def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
     monkeypatch.setattr(interpreter, "BLOCK_LIMIT", 50)
     text = "%L TEN\n" + "G91 G00 X1\n" * 10 + "M29\n%P\n" + "LL TEN\n" * 5 + "M30\n"

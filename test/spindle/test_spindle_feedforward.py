@@ -129,6 +129,7 @@ def test_another_gear_has_it_from_its_first_cycle_on() -> None:
     assert spindle.column("feedforward_percent")[20:] == [100.0] * 100
 
 
+@pytest.mark.interpreted
 def test_feedforward_without_room_is_told_in_the_unit_of_rotary_axes(monkeypatch: pytest.MonkeyPatch) -> None:
     """deg/s, as an axis tells it; the wait itself is that of test_axis_control."""
     spindle = bench()

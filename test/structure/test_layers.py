@@ -10,7 +10,7 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "cnc_ptp"
 GENERATED = ("msg", "srv", "action")
 FLOORS = (
-    "errors", "motion", "parameters", "protocol", "control", "spindle", "nc", "path", "axis", "channel", "plc",
+    "compiled", "errors", "motion", "parameters", "protocol", "control", "spindle", "nc", "path", "axis", "channel", "plc",
     "machine", "recording", "plots", "commissioning", "interrupt", "ros_arguments", "number_range", "nodes", "commands",
     "cli", "__main__",
 )  # fmt: skip

@@ -17,3 +17,9 @@ def refused(number: int, /, **values: Any) -> Refused:
 def refusal_of(record: CommandRecord) -> Refused:
     assert not record.accepted
     return record.error_id, dict(record.values)
+
+
+def attributes(thing: object) -> dict[str, Any]:
+    """All that an object holds, also an object of a compiled class, which has no __dict__."""
+    names = [name for name in dir(thing) if not name.startswith("__")]
+    return {name: value for name in names if not callable(value := getattr(thing, name))}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rich.console import Console
 
+from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.output_file import check_recording
@@ -61,7 +62,7 @@ def print_summary(
     console = Console(highlight=False, soft_wrap=True)
     cycle_time = machine.cycle_time_us * 1e-6
     cycles = monitor.cycle
-    console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles)")
+    console.print(f"machine time {cycles * cycle_time:.3f} s ({cycles} cycles), {KERNEL.kind}")
     for line in time_lines(monitor.programs, cycle_time):
         console.print(line, markup=False)
     blocks, lost, twice = (

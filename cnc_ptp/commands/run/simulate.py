@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from rich.console import Console
 
+from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import ProgramReport, cut_off_notes, time_lines
 from cnc_ptp.commands.console import RUN_FAILED, print_error, print_faults, print_note_of_idle_run
 from cnc_ptp.commands.output_file import check_recording
@@ -131,7 +132,7 @@ def print_summary(
     seconds = result.cycles * cycle_time
     console.print(
         f"machine time {seconds:.3f} s ({result.cycles} cycles) in {wall_seconds:.2f} s: "
-        f"{seconds / max(wall_seconds, 1e-9):.0f} times real time"
+        f"{seconds / max(wall_seconds, 1e-9):.0f} times real time, {KERNEL.kind}"
     )
     for line in time_lines(result.programs, cycle_time):
         console.print(line, markup=False)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import copysign, exp, inf
 
+from mypy_extensions import mypyc_attr
+
 from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.control.drives.exact_steps import transition
 from cnc_ptp.parameters.view.control_view import PlantParameters
@@ -22,6 +24,7 @@ STRONGEST = 1e12
 """mm/s² or deg/s²; bounds an unstable loop without torque limit before numbers overflow."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class CascadedDrive(Drive):
     """Velocity command -> first-order filter -> PI controller -> current loop with limit -> inertia with friction.
 

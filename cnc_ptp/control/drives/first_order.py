@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from mypy_extensions import mypyc_attr
+
 from cnc_ptp.control.drives.drive import Drive
 
 NEGLIGIBLE = 1e-12
@@ -12,6 +14,7 @@ FASTEST = 1e9
 """mm/s or deg/s; bounds an unstable loop before numbers overflow."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class FirstOrderDrive(Drive):
     """Velocity-controlled drive as a first-order lag G(s) = 1 / (1 + Ta s) before an integrator and an encoder.
 

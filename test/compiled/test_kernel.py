@@ -1,0 +1,126 @@
+"""Compiled and interpreted kernel: which one runs, the same bits from both, and what happens where one cannot be built."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cnc_ptp import KERNEL
+from cnc_ptp.compiled import build as build_module
+from cnc_ptp.compiled.build import build
+from cnc_ptp.compiled.finder import changed
+from cnc_ptp.compiled.sources import FAILURE, LIBRARY, hashes, read_state, sources
+
+ROOT = Path(__file__).parents[2]
+compiled_only = pytest.mark.skipif(not LIBRARY.exists() or KERNEL.edited, reason="no library of these sources")
+RUNS = {
+    "bracket": ("config/mill.yaml", "--program", "examples/bracket.nc", "--scenario", "examples/bracket_overrides.yaml"),
+    "spindles": ("examples/spindles/three_spindles.yaml", "--program", "examples/spindles/three_spindles.nc"),
+    "gantry": ("config/gantry.yaml", "--scenario", "examples/figures/slave_gantry.yaml"),
+    "cam": ("config/ptp.yaml", "--scenario", "examples/figures/slave_cam.yaml"),
+    "external setpoints": ("config/ptp.yaml", "--scenario", "examples/figures/ptp_external_setpoints.yaml"),
+}
+
+
+def call(*arguments: object, pure: bool = False, folder: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {"PYTHONPATH": str(folder), "CNC_PTP_PURE": "1" if pure else "0"}
+    command = [sys.executable, *map(str, arguments)]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize("run", RUNS)
+@compiled_only
+def test_both_kernels_give_the_same_bits(run: str, tmp_path: Path) -> None:
+    files = tmp_path / "compiled" / "run.mcap", tmp_path / "interpreted" / "run.mcap"
+    for file, pure in zip(files, (False, True), strict=True):
+        file.parent.mkdir()
+        done = call("-m", "cnc_ptp", "simulate", *RUNS[run], "--record", file, pure=pure)
+        assert done.returncode == (1 if run == "gantry" else 0), done.stderr  # the gantry ends in its difference
+        kind = "interpreted" if pure else "compiled"
+        assert done.stdout.splitlines()[0].endswith(f"times real time, kernel {kind}")
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@compiled_only
+def test_the_version_says_which_kernel_runs() -> None:
+    assert call("-m", "cnc_ptp", "--version").stdout.endswith(", kernel compiled\n")
+    assert call("-m", "cnc_ptp", "--version", pure=True).stdout.endswith(
+        ", kernel interpreted (CNC_PTP_PURE is set)\n"
+    )
+
+
+@compiled_only
+def test_a_fault_in_the_compiled_kernel_has_file_and_line() -> None:
+    done = call("-c", "from cnc_ptp.axis.cam import CamTable\nCamTable(None, cyclic=True)")
+    assert 'File "cnc_ptp/axis/cam.py", line ' in done.stderr and "in __init__" in done.stderr
+
+
+@compiled_only
+def test_an_edited_source_never_runs_as_its_old_compiled_self(tmp_path: Path) -> None:
+    ignored = shutil.ignore_patterns("msg", "srv", "action", "__pycache__")
+    shutil.copytree(ROOT / "cnc_ptp", tmp_path / "cnc_ptp", ignore=ignored)
+    shutil.copytree(ROOT / "config", tmp_path / "config")
+    assert call("-m", "cnc_ptp", "--version", folder=tmp_path).stdout.endswith(", kernel compiled\n")
+    edited = tmp_path / "cnc_ptp" / "axis" / "axis_unit.py"
+    edited.write_text(edited.read_text() + "\nprint('the edited one')\n")
+    done = call("-m", "cnc_ptp", "simulate", "config/ptp.yaml", "--duration", "0.01", folder=tmp_path)
+    assert done.stdout.startswith("the edited one\n")
+    assert done.stderr == (
+        "kernel interpreted (cnc_ptp/axis/axis_unit.py has changed since it was compiled); make setup compiles it again\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("current", "text"),
+    [
+        ({"cnc_ptp.a": "1", "cnc_ptp.b.c": "2"}, ""),
+        ({"cnc_ptp.a": "1", "cnc_ptp.b.c": "3"}, "cnc_ptp/b/c.py has changed"),
+        ({"cnc_ptp.a": "1"}, "cnc_ptp/b/c.py has changed"),
+        ({"cnc_ptp.a": "1", "cnc_ptp.b.c": "2", "cnc_ptp.d": "4"}, "cnc_ptp/d.py has changed"),
+        ({"cnc_ptp.a": "0", "cnc_ptp.d": "4"}, "cnc_ptp/a.py and 2 more have changed"),
+    ],
+)
+def test_what_has_changed(current: dict[str, str], text: str) -> None:
+    assert changed({"cnc_ptp.a": "1", "cnc_ptp.b.c": "2"}, current) == text
+
+
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [
+        (ImportError("no", name="mypyc"), "it cannot be compiled without mypyc"),
+        (RuntimeError("command 'gcc' failed: No such file\nmore"), "it could not be compiled: command 'gcc' failed: No such file"),
+        (SystemExit(1), "it could not be compiled: 1"),
+        (AssertionError(), "it could not be compiled: AssertionError"),
+    ],
+)  # fmt: skip
+def test_a_kernel_that_cannot_be_compiled_runs_interpreted(
+    error: BaseException, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(build_module, "make_library", fail)
+    assert build(tmp_path / "library") == reason
+    assert read_state(tmp_path / "library") == {FAILURE: reason}
+
+
+def test_a_library_of_these_sources_is_not_built_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+    monkeypatch.setattr(build_module, "make_library", lambda *arguments: calls.append(arguments))
+    assert [build(tmp_path), build(tmp_path)] == ["", ""]
+    assert len(calls) == 1 and read_state(tmp_path) == hashes(sources())
+
+
+def test_without_a_library_the_kernel_runs_interpreted(tmp_path: Path) -> None:
+    ignored = shutil.ignore_patterns("msg", "srv", "action", "__pycache__", "library")
+    shutil.copytree(ROOT / "cnc_ptp", tmp_path / "cnc_ptp", ignore=ignored)
+    done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
+    assert done.stdout.endswith(", kernel interpreted (it was not compiled)\n") and done.stderr == ""
+    (tmp_path / "cnc_ptp" / "compiled" / "library").mkdir()
+    state = tmp_path / "cnc_ptp" / "compiled" / "library" / f"{sys.implementation.cache_tag}.json"
+    state.write_text('{"failure": "it cannot be compiled without mypyc"}')
+    done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
+    assert done.stdout.endswith(", kernel interpreted (it cannot be compiled without mypyc)\n")
