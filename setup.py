@@ -55,20 +55,20 @@ class BuildInterfacesAndKernel(build_ext):
             self.hand_on(ros_executables(build.parent / "executables"))
 
     @property
-    def package(self) -> Path:
+    def package_folder(self) -> Path:
         """Where the package is put together: in the build folder, or in the source tree if editable."""
         return ROOT / PACKAGE if self.inplace or self.editable_mode else Path(self.build_lib).absolute() / PACKAGE
 
     def compile_kernel(self) -> None:
         """A kernel that was not compiled runs interpreted; `cnc_ptp --version` says why."""
-        command = [sys.executable, "-m", f"{PACKAGE}.compiled.build", str(self.package / "compiled" / "library")]
+        command = [sys.executable, "-m", f"{PACKAGE}.compiled.build", str(self.package_folder / "compiled" / "library")]
         environment = os.environ | {"CNC_PTP_PURE": "1"}
         subprocess.run(command, cwd=ROOT, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL)
 
     def take_python_part(self, stage: Path) -> None:
         """Copies the generated modules into the package."""
         generated = next(stage.glob(f"**/{PACKAGE}/msg/__init__.py")).parent.parent
-        package = self.package
+        package = self.package_folder
         for entry in generated.iterdir():
             if entry.is_dir() and entry.name in ("msg", "srv", "action"):
                 shutil.rmtree(package / entry.name, ignore_errors=True)
