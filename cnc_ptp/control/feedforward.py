@@ -204,7 +204,8 @@ class VelocityValue:
 
     __slots__ = ("oldest",)
 
-    oldest: int
+    def __init__(self, oldest: int) -> None:
+        self.oldest = oldest
 
     def velocity(self, history: SetpointHistory) -> float:
         raise NotImplementedError
@@ -222,9 +223,9 @@ class MeanValue(VelocityValue):
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
         whole, fraction = _split(behind)
+        super().__init__(whole + 1 if fraction else whole)
         self._index = whole
         self._split = fraction > 0.0
-        self.oldest = whole + 1 if fraction else whole
         t, s = cycle_time, (1.0 - fraction) * cycle_time
         self._second = (s / t, s * s / (2.0 * t), s**3 / (6.0 * t))
         self._first = ((t - s) / t, (t * t - s * s) / (2.0 * t), (t**3 - s**3) / (6.0 * t))
@@ -260,7 +261,7 @@ class MomentaryVelocity(VelocityValue):
     def __init__(self, behind: float, cycle_time: float) -> None:
         """`behind` >= 0 in cycles, `cycle_time` in s."""
         whole, fraction = _split(behind)
-        self.oldest = whole + 1 if fraction else whole
+        super().__init__(whole + 1 if fraction else whole)
         self._time = (1.0 - fraction) * cycle_time if fraction else 0.0
 
     def velocity(self, history: SetpointHistory) -> float:

@@ -215,6 +215,20 @@ def check_command(
     check_arguments(f"{kind} {unit}: {command} refused", specification, arguments, sources)
 
 
+def with_floats(kind: str, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments that have been checked, with all numbers as floats, whatever a scenario or a message has written."""
+    specification = COMMANDS[kind][command]
+    return {
+        name: float(value) if specification[name].kind == "number" and is_integer(value) else value
+        for name, value in arguments.items()
+    }
+
+
+def is_integer(value: Any) -> bool:
+    """True for an integer within the range of floating point numbers; a switch is none."""
+    return isinstance(value, int) and not isinstance(value, bool) and is_finite(value)
+
+
 def check_arguments(
     where: str, specification: Arguments, arguments: Mapping[str, Any], sources: Collection[str] = ()
 ) -> None:

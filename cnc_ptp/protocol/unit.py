@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity
-from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names
+from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
 
 Handler = Callable[..., str | None]
 
@@ -76,7 +76,7 @@ class Unit(ABC):
         self._warning = ""
         arguments = current_names(self.kind, command, arguments)
         check_command(self.kind, self.name, command, arguments, self.sources)
-        self._warning = self.handler(command)(cycle, **arguments) or ""
+        self._warning = self.handler(command)(cycle, **with_floats(self.kind, command, arguments)) or ""
         if command == "upstream_lost":
             self.lost.add(arguments["source"])
 

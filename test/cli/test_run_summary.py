@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from cnc_ptp import KERNEL
 from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.commands.run import run as command
 from cnc_ptp.commands.run.progress import RunProgress
@@ -44,7 +45,7 @@ def test_axes_come_in_the_order_of_the_machine_file(capsys):
         diagnostics[name] = reported({f"following error, largest [{unit}]": text})
     print_summary(read_machine(PTP), monitor(diagnostics), [])
     assert capsys.readouterr().out.splitlines() == [
-        "machine time 0.070 s (70 cycles)",
+        f"machine time 0.070 s (70 cycles), {KERNEL.kind}",
         "program time 0.040 s",
         "blocks 28 in 4 nodes, lost 0, computed twice 4",
         "largest following error x: 0.1250 mm",

@@ -4,20 +4,38 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from loop_support import PLANT, T, control, make_loop
 
 from cnc_ptp import KERNEL
 from cnc_ptp.compiled import build as build_module
 from cnc_ptp.compiled.build import build
 from cnc_ptp.compiled.finder import changed
 from cnc_ptp.compiled.sources import FAILURE, LIBRARY, hashes, read_state, sources
+from cnc_ptp.control.drives import (
+    CascadedDrive,
+    DelayedDrive,
+    Drive,
+    FirstOrderDrive,
+    LagCommandedDrive,
+    PositionCommandedDrive,
+    TelegramDrive,
+    VirtualDrive,
+)
 
 ROOT = Path(__file__).parents[2]
 compiled_only = pytest.mark.skipif(not LIBRARY.exists() or KERNEL.edited, reason="no library of these sources")
 RUNS = {
-    "bracket": ("config/mill.yaml", "--program", "examples/bracket.nc", "--scenario", "examples/bracket_overrides.yaml"),
+    "bracket": (
+        "config/mill.yaml",
+        "--program",
+        "examples/bracket.nc",
+        "--scenario",
+        "examples/bracket_overrides.yaml",
+    ),
     "spindles": ("examples/spindles/three_spindles.yaml", "--program", "examples/spindles/three_spindles.nc"),
     "gantry": ("config/gantry.yaml", "--scenario", "examples/figures/slave_gantry.yaml"),
     "cam": ("config/ptp.yaml", "--scenario", "examples/figures/slave_cam.yaml"),
@@ -47,9 +65,7 @@ def test_both_kernels_give_the_same_bits(run: str, tmp_path: Path) -> None:
 @compiled_only
 def test_the_version_says_which_kernel_runs() -> None:
     assert call("-m", "cnc_ptp", "--version").stdout.endswith(", kernel compiled\n")
-    assert call("-m", "cnc_ptp", "--version", pure=True).stdout.endswith(
-        ", kernel interpreted (CNC_PTP_PURE is set)\n"
-    )
+    assert call("-m", "cnc_ptp", "--version", pure=True).stdout.endswith(", kernel interpreted (CNC_PTP_PURE is set)\n")
 
 
 @compiled_only
@@ -124,3 +140,31 @@ def test_without_a_library_the_kernel_runs_interpreted(tmp_path: Path) -> None:
     state.write_text('{"failure": "it cannot be compiled without mypyc"}')
     done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
     assert done.stdout.endswith(", kernel interpreted (it cannot be compiled without mypyc)\n")
+
+
+class Shown(Drive):
+    """A drive that is where it is told to be."""
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        self.position = self.velocity = self.torque = command
+
+
+@pytest.mark.parametrize("kind", ["plain", "first order", "cascaded", "virtual", "position", "lag", "bus", "telegram"])
+def test_a_value_that_is_the_compilers_mark_for_undefined_is_a_value(kind: str) -> None:
+    """mypyc marks a float that was not set by -113: an axis can be there all the same."""
+    mark = -113.0
+    shown = Shown(position=mark)
+    shown.step(mark)
+    drives = {
+        "plain": lambda: shown,
+        "first order": lambda: FirstOrderDrive(
+            cycle_time=T, time_constant=0.0, encoder_increment=0.0, start_position=mark
+        ),
+        "cascaded": lambda: CascadedDrive(replace(PLANT, start_position=mark), cycle_time=T),
+        "virtual": lambda: VirtualDrive(start_position=mark),
+        "position": lambda: PositionCommandedDrive(shown, kv=1.0),
+        "lag": lambda: LagCommandedDrive(shown, kv=1.0),
+        "bus": lambda: DelayedDrive(shown, cycles=1, rest=0.0),
+        "telegram": lambda: TelegramDrive(control(), shown, cycle_time=T),
+    }
+    assert make_loop(control(), drives[kind]()).position == mark

@@ -97,7 +97,7 @@ def test_scenario_with_an_unknown_command(tmp_path):
 
 def test_a_refused_command_is_no_figure(tmp_path):
     text = fault_of(written(tmp_path, HEAD, MOVE + "- {at: 0.06, to: x, do: set_override, percent: 101}\n"))
-    assert text.startswith("figure move.yaml: P-ERR-23006 axis x: set_override refused: percent = 101 ")
+    assert text.startswith("figure move.yaml: P-ERR-23006 axis x: set_override refused: percent = 101.0 ")
     assert text.endswith("; nothing was changed; no picture was drawn")
 
 

@@ -54,7 +54,7 @@ def test_imports_go_downwards_only():
         f"{name} imports {other}"
         for name, others in graph().items()
         for other in others
-        if floor(other) and height[floor(other)] > height[floor(name)]
+        if floor(name) and floor(other) and height[floor(other)] > height[floor(name)]
     ]
     assert not upward
 

@@ -145,7 +145,7 @@ CASES: list[tuple[int, Ask, str, dict[str, Any], str, dict[str, Any]]] = [
         spindle_bench,
         "set_limits",
         {"min_speed_rpm": 500.0, "max_speed_rpm": 400},
-        "spindle s: set_limits refused: min_speed_rpm = 500.0 is above max_speed_rpm = 400; nothing was changed",
+        "spindle s: set_limits refused: min_speed_rpm = 500.0 is above max_speed_rpm = 400.0; nothing was changed",
         {"low": 500.0, "high": 400},
     ),
     (

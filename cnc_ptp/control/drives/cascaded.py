@@ -79,10 +79,9 @@ class CascadedDrive(Drive):
         """`cycle_time` in s; inertia must not be 0 (ValueError)."""
         if plant.torque_per_acceleration <= 0.0:
             raise ValueError("a cascaded drive needs an inertia above 0 (P-SIM-00007, P-AXIS-00391)")
-        self.has_torque = True
+        super().__init__(position=plant.start_position, has_torque=True)
         self._set_controller(plant, plant.velocity_gain, cycle_time)
         self._set_mechanics(plant)
-        self.velocity = self.torque = 0.0
         self._setpoint = self._wanted = self._integral = self._motor = 0.0
         self._impulse = 0.0
         """Torque summed up over the cycle."""
@@ -90,7 +89,6 @@ class CascadedDrive(Drive):
         """+1, -1: the motor slides, 0: friction holds it."""
         self._motor_position = self.load_position = plant.start_position
         """Positions of motor and load, mm (deg), without the resolution of the encoder."""
-        self.position = plant.start_position
         self.step(0.0)  # stands; shows the position as the encoder does
 
     def _set_controller(self, plant: PlantParameters, gain: float, cycle_time: float) -> None:
@@ -326,6 +324,7 @@ class CascadedDrive(Drive):
         return self._coulomb + self._stribeck * exp(-ratio * ratio)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class TorqueCommandedDrive(CascadedDrive):
     """The same mechanics behind a torque command: filter and velocity controller of the drive are switched off."""
 

@@ -14,14 +14,16 @@ class Drive:
 
     __slots__ = ("has_torque", "position", "torque", "velocity")
 
-    position: float
-    """Actual position as the telegram gives it, mm or deg."""
-    velocity: float
-    """Actual velocity, mm/s or deg/s."""
-    torque: float
-    """Actual torque, Nm or N; 0.0 if the drive does not report one."""
-    has_torque: bool
-    """True if the drive reports its torque."""
+    def __init__(self, *, position: float = 0.0, has_torque: bool = False) -> None:
+        """At a standstill at `position`. `has_torque`: the drive reports its torque."""
+        self.position = position
+        """Actual position as the telegram gives it, mm or deg."""
+        self.velocity = 0.0
+        """Actual velocity, mm/s or deg/s."""
+        self.torque = 0.0
+        """Actual torque, Nm or N; 0.0 if the drive does not report one."""
+        self.has_torque = has_torque
+        """True if the drive reports its torque."""
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Holds the command for one cycle and takes over the new actual values.

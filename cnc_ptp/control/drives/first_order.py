@@ -48,7 +48,7 @@ class FirstOrderDrive(Drive):
         `time_constant` 0 is an ideal drive: no lag, and no additive torque can move it. `torque_per_acceleration` in
         Nm (N) for 1 mm/s² (deg/s²); with 0 the drive has no inertia: it reports no torque and ignores additive torques.
         """
-        self.has_torque = torque_per_acceleration > 0.0
+        super().__init__(position=start_position, has_torque=torque_per_acceleration > 0.0)
         self._cycle_time = cycle_time
         self._decay = math.exp(-cycle_time / time_constant) if time_constant > 0.0 else 0.0
         self._lag_time = time_constant * (1.0 - self._decay)
@@ -56,8 +56,6 @@ class FirstOrderDrive(Drive):
         self._torque_per_change = torque_per_acceleration / cycle_time
         self._encoder_increment = encoder_increment
         self._true_position = start_position
-        self.velocity = 0.0
-        self.torque = 0.0
         self.step(0.0)  # stands; shows the position as the encoder does
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 
+from mypy_extensions import mypyc_attr
+
 from cnc_ptp.control.drives.drive import Drive
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class PositionCommandedDrive(Drive):
     """The drive closes the position loop: v = Kv (x_set - x) once per cycle, x as its encoder shows it."""
 
@@ -17,8 +20,8 @@ class PositionCommandedDrive(Drive):
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s (S-0-0104, P-SIM-00019); `drive` takes velocities."""
+        super().__init__(has_torque=drive.has_torque)
         self._drive, self._kv = drive, kv
-        self.has_torque = drive.has_torque
         self._take_over()
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
@@ -31,6 +34,7 @@ class PositionCommandedDrive(Drive):
         self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class LagCommandedDrive(Drive):
     """Dynamic servo control: the NC sends its following error, the drive multiplies it: v = Kv · lag."""
 
@@ -41,8 +45,8 @@ class LagCommandedDrive(Drive):
 
     def __init__(self, drive: Drive, *, kv: float) -> None:
         """`kv` in 1/s; `drive` takes velocities."""
+        super().__init__(has_torque=drive.has_torque)
         self._drive, self._kv = drive, kv
-        self.has_torque = drive.has_torque
         self._take_over()
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
@@ -55,6 +59,7 @@ class LagCommandedDrive(Drive):
         self.position, self.velocity, self.torque = drive.position, drive.velocity, drive.torque
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class DelayedDrive(Drive):
     """Delays commands by some cycles on the bus to the drive."""
 
@@ -65,9 +70,9 @@ class DelayedDrive(Drive):
 
     def __init__(self, drive: Drive, *, cycles: int, rest: float) -> None:
         """`cycles` >= 1; `rest` is the command of the drive until the first one has arrived."""
+        super().__init__(has_torque=drive.has_torque)
         self._drive = drive
         self._commands = deque([(rest, 0.0, 0.0)] * cycles)
-        self.has_torque = drive.has_torque
         self._take_over()
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from mypy_extensions import mypyc_attr
+
 from cnc_ptp.control.drive_format import CounterReader, drive_format
 from cnc_ptp.control.drives.drive import Drive
 from cnc_ptp.parameters.view.control_view import ControlParameters
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class TelegramDrive(Drive):
     """Encodes commands as the telegram does and decodes the actual values; the drive gets the values of the words.
 
@@ -34,6 +37,7 @@ class TelegramDrive(Drive):
 
     def __init__(self, control: ControlParameters, drive: Drive, *, cycle_time: float) -> None:
         """`drive` takes the commands of `control.drive.interface` in kernel units; `cycle_time` in s."""
+        super().__init__()
         self._drive = drive
         self._cycle_time = cycle_time
         self._interface = control.drive.interface
@@ -47,7 +51,6 @@ class TelegramDrive(Drive):
         self.command_word = form.position.encode(start) if self._interface == "position" else 0
         self.additive_velocity_word = self.additive_torque_word = 0
         self.velocity_word = self.torque_word = 0
-        self.velocity = self.torque = 0.0
         self.position_word = form.actual_position.encode(start)
         self.position = form.sign * self._shown.position
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from mypy_extensions import mypyc_attr
+
 from cnc_ptp.control.drives.drive import Drive
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class VirtualDrive(Drive):
     """Shows the set values; `step` moves nothing."""
 
@@ -12,10 +15,7 @@ class VirtualDrive(Drive):
 
     def __init__(self, *, start_position: float) -> None:
         """`start_position` in mm or deg."""
-        self.position = start_position
-        self.velocity = 0.0
-        self.torque = 0.0
-        self.has_torque = False
+        super().__init__(position=start_position)
 
     def follow(self, position: float, velocity: float) -> None:
         """Takes over the setpoint of a cycle, mm and mm/s (deg, deg/s)."""
