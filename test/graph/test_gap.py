@@ -1,6 +1,7 @@
 """A clock that leaves out a tick, and other faults of what arrives: the axis stops automatically, no cycle is left out."""
 
 import time
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -228,6 +229,6 @@ def test_converted_blocks_are_the_same():
         "torque_digits",
         "couples_actual",
     )
-    for name in AxisBlock.__slots__:
+    for name in [field.name for field in fields(AxisBlock)]:
         value = getattr(again, name)
         assert (value if name in of_the_block else list(value)) == getattr(block, name), name

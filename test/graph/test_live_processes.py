@@ -18,7 +18,7 @@ def test_a_machine_of_processes_stays_until_it_is_told_to_end(moving, tmp_path):
         wait_for_machine()
         if moving:
             assert call("do", "x", "move_absolute", "target=250", "velocity=20").exit_code == 0
-        time.sleep(0.5)
+        time.sleep(2.0)  # the supervisor has seen all units, too
         graph.process.send_signal(signal.SIGTERM)
         output = graph.finish(1 if moving else 0)
     finally:
