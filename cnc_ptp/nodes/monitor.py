@@ -96,7 +96,7 @@ class RunMonitor(Node):
     def watch_units(self) -> None:
         """Keeps the newest view of all units from now on."""
         rotary = [name for name, axis in self._machine.axes.items() if axis.rotary]
-        self._latest = LatestBlocks(self, unit_kinds(self._machine), rotary=rotary)
+        self._latest = LatestBlocks(self, unit_kinds(self._machine), rotary=rotary, from_the_start=True)
 
     def views(self) -> list[UnitView]:
         """The newest view of each unit, while they are watched."""

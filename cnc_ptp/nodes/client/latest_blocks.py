@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
@@ -18,19 +18,24 @@ GONE = 5.0
 GONE_TEXT = f"nothing new for {GONE:g} s: the machine no longer runs"
 NEWEST = QoSProfile(depth=1)
 """Volatile: axes and spindles remember ten seconds of blocks, and a late reader would see the oldest first."""
+REMEMBERED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""For a reader that is there from the start, of units that remember."""
 
 
 class LatestBlocks:
     """Keeps the newest block of units; only those that are shown are deserialised: some hundred come per second."""
 
-    def __init__(self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str]) -> None:
+    def __init__(
+        self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str], from_the_start: bool = False
+    ) -> None:
         """`kinds`: unit -> kind; the plc is left out. `rotary`: axes in degrees."""
         self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
         self._rotary = rotary
         self._serialised: dict[str, bytes] = {}
         self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
-            node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), NEWEST, raw=True)
+            quality = REMEMBERED if from_the_start and kind in ("axis", "spindle") else NEWEST
+            node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), quality, raw=True)
 
     def _keeper(self, unit: str) -> Any:
         def received(serialised: bytes) -> None:
