@@ -8,7 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INTERFACES := $(wildcard msg/*.msg srv/*.srv action/*.action)
 PACKAGE := setup.py setup.cfg CMakeLists.txt package.xml
-KERNEL := $(shell find $(addprefix cnc_ptp/,motion path nc axis spindle control channel plc machine protocol compiled) -name '*.py')
+SOURCES := $(shell find cnc_ptp -name '*.py' -not -path '*/msg/*' -not -path '*/srv/*' -not -path '*/action/*')
 
 .PHONY: setup demo test lint bench figures docs ids clean
 setup: $(VENV)/.package $(VENV)/.kernel
@@ -26,13 +26,13 @@ $(VENV)/.requirements: requirements-build.txt requirements.txt requirements-test
 	@touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
-	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (three minutes to six) ..."
+	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to nine minutes on two cores) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 
 # Without a C compiler the kernel runs interpreted; the program says why.
-$(VENV)/.kernel: $(KERNEL) pyproject.toml $(VENV)/.package
-	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build > build/kernel.log || true
+$(VENV)/.kernel: $(SOURCES) pyproject.toml $(VENV)/.package
+	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build >> build/kernel.log || true
 	@touch $@
 
 demo: setup

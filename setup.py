@@ -63,7 +63,8 @@ class BuildInterfacesAndKernel(build_ext):
         """A kernel that was not compiled runs interpreted; `cnc_ptp --version` says why."""
         command = [sys.executable, "-m", f"{PACKAGE}.compiled.build", str(self.package_folder / "compiled" / "library")]
         environment = os.environ | {"CNC_PTP_PURE": "1"}
-        subprocess.run(command, cwd=ROOT, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL)
+        with (ROOT / "build" / "kernel.log").open("w") as log:
+            subprocess.run(command, cwd=ROOT, env=environment, stdout=log, stderr=log)
 
     def take_python_part(self, stage: Path) -> None:
         """Copies the generated modules into the package."""

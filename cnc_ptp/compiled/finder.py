@@ -18,6 +18,11 @@ INTERPRET = "CNC_PTP_PURE"
 """Environment variable: 1 chooses the interpreted kernel."""
 
 
+capsule_pointer = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)(
+    ("PyCapsule_GetPointer", ctypes.pythonapi)
+)
+
+
 class KernelFinder(MetaPathFinder, Loader):
     """Finds the modules of the compiled kernel in its library."""
 
@@ -35,9 +40,7 @@ class KernelFinder(MetaPathFinder, Loader):
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Lets the library make and execute a module, as mypyc's own shim per module does."""
         function = f"init_{spec.name.replace('.', '___')}"
-        pointer_of = ctypes.pythonapi.PyCapsule_GetPointer
-        pointer_of.restype, pointer_of.argtypes = ctypes.c_void_p, (ctypes.py_object, ctypes.c_char_p)
-        pointer = pointer_of(getattr(import_module(NAME), function), f"{NAME}.{function}".encode())
+        pointer = capsule_pointer(getattr(import_module(NAME), function), f"{NAME}.{function}".encode())
         module: ModuleType = ctypes.PYFUNCTYPE(ctypes.py_object)(pointer)()
         return module
 
