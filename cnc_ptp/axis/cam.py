@@ -147,11 +147,7 @@ class CamCoupling(Coupling):
         """Raises CncError 23053 in the first block when the slave is not where the slave offset puts it."""
         if self._turn is None:
             self._begin(position, self._x(master.positions[0]))
-        slaves = Setpoints([], [], [], [])
-        for index in range(len(master)):
-            p, v, a, j = self._state(master.at(index))
-            slaves.add(p, v, a, j)
-        return slaves
+        return Setpoints.of([self._state(state) for state in master.states()])
 
     def _begin(self, position: float, x: float) -> None:
         height = self._slave_scaling * self.table.at(x)[0]

@@ -99,12 +99,12 @@ class CyclicCoupling(Coupling):
 
     def follow(self, position: float, master: Setpoints) -> Setpoints:
         slave = (position, 0.0, 0.0, 0.0) if self._slave is None else self._slave
-        slaves = Setpoints([], [], [], [])
-        for index in range(len(master)):
-            slave = self._next(slave, master.at(index))
-            slaves.add(slave[0], slave[1], slave[2], slave[3])
+        slaves = []
+        for state in master.states():
+            slave = self._next(slave, state)
+            slaves.append(slave)
         self._slave = slave
-        return slaves
+        return Setpoints.of(slaves)
 
     def _next(self, slave: MotionState, master: MotionState) -> MotionState:
         """The slave one cycle after `slave`."""

@@ -58,11 +58,7 @@ class FlyingSaw(Coupling):
             if master.velocities[0] == 0.0:
                 raise CncError(SAW_TOO_LATE, "the master is at a standstill; a flying saw needs a moving master")
             self._plan(position, master.at(0))
-        slaves = Setpoints([], [], [], [])
-        for index in range(len(master)):
-            p, v, a, j = self._next(position, master.at(index))
-            slaves.add(p, v, a, j)
-        return slaves
+        return Setpoints.of([self._next(position, state) for state in master.states()])
 
     def _next(self, position: float, master: MotionState) -> MotionState:
         assert self._table is not None

@@ -21,9 +21,6 @@ from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limit, check_limits, che
 from cnc_ptp.motion.profile import Segment
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
 
-STANDING = (0.0, 0.0, 0.0)
-"""Velocity, acceleration and jerk of an axis at rest."""
-
 NEGLIGIBLE = 1e-9
 """mm, mm/s (deg, deg/s): smaller values have no direction."""
 

@@ -122,7 +122,6 @@ class ControlLoop:
         self._torque_per_digit = 1.0 / scaling.torque if scaling.torque else 0.0
         self._modulo = ModuloCompensation(parameters.modulo_error, origin=drive.position)
         self._interface = parameters.drive.interface
-        self._takes_velocity = self._interface == "velocity"
         self._velocity_controller = VelocityController(
             gain=parameters.drive.velocity_gain,
             integral_time=parameters.drive.velocity_integral_time,
@@ -311,7 +310,7 @@ class ControlLoop:
         additive_torque: float,
     ) -> None:
         """Passes the command on in the form that the drive takes; a drive's own position loop has the same Kv."""
-        if self._takes_velocity:
+        if self._interface == "velocity":
             self.drive.step(command, additive_velocity, additive_torque)
         elif self._interface == "torque":
             torque = self._velocity_controller.torque(command + additive_velocity - velocity)

@@ -7,6 +7,7 @@ Sources: TF5200 feedforward 2, 5; spindle 2.8.1 (prefilter, soft coupling).
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import deque
 from dataclasses import dataclass
 from math import copysign, exp, floor, sqrt
@@ -199,7 +200,7 @@ def _split(behind: float) -> tuple[int, float]:
     return whole, fraction if fraction > 1e-9 else 0.0
 
 
-class VelocityValue:
+class VelocityValue(ABC):
     """A velocity out of the history; `oldest`: how far back it looks, in cycles."""
 
     __slots__ = ("oldest",)
@@ -207,8 +208,9 @@ class VelocityValue:
     def __init__(self, oldest: int) -> None:
         self.oldest = oldest
 
+    @abstractmethod
     def velocity(self, history: SetpointHistory) -> float:
-        raise NotImplementedError
+        """In mm/s (deg/s)."""
 
 
 class MeanValue(VelocityValue):

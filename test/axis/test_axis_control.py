@@ -19,12 +19,11 @@ from axis_control_support import (
     plain_control,
 )
 from error_support import refused
-from loop_support import KV, PLANT, TA, feedforward
+from loop_support import KV, PLANT, TA, BlockedDrive, feedforward
 from machine_support import CYCLE_TIME, MILL, UnitBench, changed
 
 from cnc_ptp.axis.axis_unit import AxisUnit
 from cnc_ptp.axis.monitoring import Monitoring
-from cnc_ptp.control.drives import Drive
 from cnc_ptp.parameters.view.control_view import ControlParameters, LagMonitoring
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.axis_states import StatusBit
@@ -125,17 +124,6 @@ def test_refusals_and_warnings_of_the_unit() -> None:
 # ---------------------------------------------------------------- following errors
 
 
-class Stuck(Drive):
-    """A drive that has lost its coupling."""
-
-    def __init__(self) -> None:
-        self.position = self.velocity = self.torque = 0.0
-        self.has_torque = False
-
-    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
-        pass
-
-
 def monitored(kind: int, **changes: Any) -> LagMonitoring:
     of = LagMonitoring(kind=kind, moving_limit=1.0, standstill_limit=0.2, dynamic=960, filter_time=0.0)
     return replace(of, **changes)
@@ -143,7 +131,7 @@ def monitored(kind: int, **changes: Any) -> LagMonitoring:
 
 @pytest.mark.parametrize("filter_time", [0.0, 0.004])
 def test_a_following_error_on_the_way(filter_time: float) -> None:
-    bench = control_bench(plain_control(monitoring=monitored(4, filter_time=filter_time)), drive=Stuck())
+    bench = control_bench(plain_control(monitoring=monitored(4, filter_time=filter_time)), drive=BlockedDrive())
     move(bench, 100.0)
     bench.run(1000)
     cycle, position = bench.events[0].cycle, bench.column("set_position")
@@ -168,7 +156,7 @@ def test_a_following_error_on_the_way(filter_time: float) -> None:
 def test_texts_name_the_parameter_that_has_set_the_limit(
     monitoring: LagMonitoring, source: str, limit: Callable[[float, float], float]
 ) -> None:
-    bench = control_bench(plain_control(monitoring=monitoring), drive=Stuck())
+    bench = control_bench(plain_control(monitoring=monitoring), drive=BlockedDrive())
     move(bench, 100.0)
     bench.run(400)
     cycle = bench.events[0].cycle
@@ -181,7 +169,7 @@ def test_texts_name_the_parameter_that_has_set_the_limit(
 
 def test_a_standing_axis_that_is_pushed_out_of_place() -> None:
     """P-AXIS-00169 counts from 5/Kv = 100 ms after the end of the motion on."""
-    bench = control_bench(plain_control(monitoring=monitored(4, moving_limit=5.0)), drive=Stuck())
+    bench = control_bench(plain_control(monitoring=monitored(4, moving_limit=5.0)), drive=BlockedDrive())
     move(bench, 0.5)
     bench.run(1000)
     end = next(k for k in range(1, 1000) if bench.column("set_velocity")[k] == 0.0)
@@ -196,7 +184,7 @@ def test_behind_a_delay_line_the_text_has_the_error_of_the_position_controller()
     """4 cycles of shift_time at 200 mm/s are 0.8 mm, and no following error."""
     of_feedforward = feedforward(CONVENTIONAL, lead_cycles=4, always_active=True)
     control = replace(plain_control(monitoring=monitored(4)), feedforward=of_feedforward)
-    bench = control_bench(control, drive=Stuck())
+    bench = control_bench(control, drive=BlockedDrive())
     move(bench, 100.0)
     bench.run(400)
     cycle, position = bench.events[0].cycle, bench.column("set_position")

@@ -24,8 +24,8 @@ class HandDrive(Drive):
     """A drive that obeys its command, and a hand that pushes it when it is open: `push` in mm/s, added."""
 
     def __init__(self) -> None:
-        self.position = self.velocity = self.torque = self.push = 0.0
-        self.has_torque = False
+        super().__init__()
+        self.push = 0.0
 
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         self.velocity = command + self.push

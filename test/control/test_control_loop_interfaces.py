@@ -209,8 +209,8 @@ class Pushed(Drive):
     """A drive that somebody moves while nothing holds it."""
 
     def __init__(self, drive: Drive) -> None:
+        super().__init__(has_torque=drive.has_torque)
         self.drive, self.by, self.commands = drive, 0.0, []
-        self.has_torque = drive.has_torque
         self._take_over()
 
     def push(self, by: float) -> None:

@@ -11,6 +11,7 @@ import pytest
 from loop_support import (
     KV,
     NO_FRICTION,
+    BlockedDrive,
     MotionState,
     T,
     control,
@@ -23,7 +24,6 @@ from loop_support import (
 )
 from scipy.signal import lfilter
 
-from cnc_ptp.control.drives import Drive
 from cnc_ptp.control.following_error_monitor import FollowingErrorMonitor
 from cnc_ptp.parameters.view.control_view import LagMonitoring
 
@@ -158,16 +158,8 @@ def test_an_open_loop_forgets_what_was_too_large() -> None:
 def test_a_blocked_axis_is_found_in_the_first_cycle_above_the_limit(kind: int) -> None:
     """The drive does not move: the following error is the set position."""
 
-    class Blocked(Drive):
-        def __init__(self) -> None:
-            self.position = self.velocity = self.torque = 0.0
-            self.has_torque = False
-
-        def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
-            pass
-
     of = replace(FIXED, kind=kind, dynamic=0 if kind == 2 else 900)
-    loop = make_loop(control(monitoring=of), Blocked())
+    loop = make_loop(control(monitoring=of), BlockedDrive())
     watch = monitor(of)
     for x, v, a, j in motion(trapezoid(25_000.0, 40, 0, 600)):
         expected = abs(x) > watch.limit(v)

@@ -24,7 +24,7 @@ class ShortTurns(Drive):
         ideal = FirstOrderDrive(cycle_time=T, time_constant=0.003, encoder_increment=0.0, start_position=0.0)
         self.drive = ideal if kv is None else PositionCommandedDrive(ideal, kv=kv)
         self.motor, self.missing, self.start = ideal, missing, start
-        self.has_torque, self.torque = False, 0.0
+        super().__init__()
         self._take_over()
 
     def _take_over(self) -> None:

@@ -80,6 +80,13 @@ PLANT = PlantParameters(
 )
 
 
+class BlockedDrive(Drive):
+    """A drive that does not move, whatever it is commanded."""
+
+    def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
+        pass
+
+
 def feedforward(mode: int, **changes: Any) -> FeedforwardParameters:
     return replace(OFF, mode=mode, **changes)
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 from mypy_extensions import mypyc_attr
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
-class Drive:
+class Drive(ABC):
     """A drive of one axis or spindle; a real one would exchange its process data in `step`.
 
     Axis units: mm, mm/s (deg, deg/s). Torques are Nm at the motor shaft, or N if a linear axis has no feed constant.
@@ -25,10 +27,10 @@ class Drive:
         self.has_torque = has_torque
         """True if the drive reports its torque."""
 
+    @abstractmethod
     def step(self, command: float, additive_velocity: float = 0.0, additive_torque: float = 0.0) -> None:
         """Holds the command for one cycle and takes over the new actual values.
 
         `command` is the quantity of the drive's interface: velocity in mm/s (deg/s), position or lag in mm (deg),
         torque in Nm (N).
         """
-        raise NotImplementedError
