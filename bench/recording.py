@@ -13,9 +13,9 @@ from bench.figures import Effort, Figure, ShowProgress, median_of, medians_of, s
 from cnc_ptp.plots.report import report_page
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, PlcBlock, SpindleBlock
 from cnc_ptp.recording.reader import iter_messages, read_recording
-from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.verify import verify
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.schemas import load_schema
 
 BLOCKS = 2000
 COUNT = 10
@@ -82,15 +82,6 @@ def record_all(path: Path, run: Run) -> None:
                 recording.block(name, block)
 
 
-def record_states(path: Path, run: Run) -> None:
-    """The per-cycle states alone."""
-    with Recording(path, MACHINE) as recording:
-        for blocks in run:
-            for name, block in blocks:
-                if not isinstance(block, PlcBlock):
-                    recording.states(name, block)
-
-
 class McapPeer:
     """mcap.Writer with the messages of a recording ready as bytes: it encodes none of them."""
 
@@ -138,8 +129,8 @@ def writing(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
     """Messages per second compared with mcap.Writer; cost of a block."""
     peer = McapPeer(path)
     beside = path.with_name("peer.mcap")
-    measures = [lambda: record_all(path, run), lambda: peer.write(beside), lambda: record_states(beside, run)]
-    everything, theirs, states = medians_of(effort.runs, [seconds(measure) for measure in measures])
+    measures = [lambda: record_all(path, run), lambda: peer.write(beside)]
+    everything, theirs = medians_of(effort.runs, [seconds(measure) for measure in measures])
     count, blocks = len(peer.messages), len(run)
     yield Figure(
         "unit blocks to states, blocks, ticks in the file",
@@ -149,7 +140,6 @@ def writing(effort: Effort, run: Run, path: Path) -> Iterator[Figure]:
         peer_value=count / theirs,
     )
     yield Figure(f"all of {count / blocks:.0f} messages a block", 1e6 * everything / blocks, "µs/block")
-    yield Figure("states of 5 units alone", 1e6 * states / blocks, "µs/block")
     size = path.stat().st_size / (blocks * COUNT * CYCLE_TIME)
     yield Figure("size of the file, every number different", size / 1e3, "kB/s")
 

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -12,6 +13,14 @@ sys.path[:0] = [str(HERE / "support"), str(HERE.parent)]
 
 settings.register_profile("project", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("project")
+
+
+@pytest.fixture
+def blocks() -> Any:
+    """Blocks of a machine as test data."""
+    from recording_support import Blocks
+
+    return Blocks(seed=2)
 
 
 @pytest.fixture(autouse=True, scope="session")

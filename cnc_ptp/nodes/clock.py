@@ -13,12 +13,13 @@ from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nodes import convert, node_command_line, process
+from cnc_ptp.nodes import node_command_line, process
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.wire.ticks import encode_tick
 
 POLL = 0.02
 START_DELAY = 0.1
@@ -137,9 +138,8 @@ class ClockNode(Node):
             self._watchdog.restart()
 
     def _publish_tick(self, count: int, scheduled_ns: int) -> None:
-        tick = msg.CycleTick(first_cycle=self._first_cycle, count=count, scheduled_monotonic_ns=scheduled_ns)
-        tick.header.stamp = convert.time_message(self._start_ns + self._first_cycle * self._cycle_ns)
-        self._publisher.publish(tick)
+        stamp_ns = self._start_ns + self._first_cycle * self._cycle_ns
+        self._publisher.publish(encode_tick(self._first_cycle, count, scheduled_ns, stamp_ns))
         self._heartbeat_at = time.monotonic()
 
     def _publish_heartbeat(self) -> None:

@@ -25,6 +25,7 @@ from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
 from cnc_ptp.nodes.topics import (
+    BLOCK_CLASSES,
     BLOCK_TYPES,
     BLOCKS,
     COMMAND,
@@ -40,8 +41,10 @@ from cnc_ptp.nodes.topics import (
     recorded_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.protocol.blocks import Event, Severity
+from cnc_ptp.protocol.blocks import CycleTick, Event, Severity
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.block_codec import head_of
+from cnc_ptp.wire.ticks import decode_tick
 
 NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
@@ -78,10 +81,10 @@ class RecorderNode(Node):
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
         """The error that ended the writing."""
-        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS)]
+        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS, raw=True)]
         for unit, kind in self._units.items():
             block_type = BLOCK_TYPES[kind]
-            received = self._guarded(partial(self._on_block, unit, block_type))
+            received = self._guarded(partial(self._on_block, unit, BLOCK_CLASSES[kind]))
             self._needed.append(self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
@@ -127,9 +130,10 @@ class RecorderNode(Node):
     def _report(self, first_cycle: int) -> None:
         self._report_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
-    def _on_tick(self, message: msg.CycleTick) -> None:
+    def _on_tick(self, data: bytes) -> None:
         self._heard = time.monotonic()
-        self._tick_ns = convert.nanoseconds(message.header.stamp)
+        message = decode_tick(data)
+        self._tick_ns = message.stamp_ns
         if self._recording is None:
             start_ns = self._tick_ns - message.first_cycle * self._cycle_ns
             self._free_run = not message.scheduled_monotonic_ns
@@ -140,32 +144,26 @@ class RecorderNode(Node):
                 record()
             self._early.clear()
         if message.count:
-            tick = convert.message_to_tick(message)
-            self._recording.tick(tick, message.scheduled_monotonic_ns)
+            self._recording.tick(CycleTick(message.first_cycle, message.count), message.scheduled_monotonic_ns)
 
-    def _on_block(self, unit: str, block_type: Any, data: bytes) -> None:
+    def _on_block(self, unit: str, block_class: type, data: bytes) -> None:
         self._heard = time.monotonic()
-        message = deserialize_message(data, block_type)
-        recording = self._recording
-        if recording is None:
-            self._early.append(lambda: self._on_block(unit, block_type, data))
+        if self._recording is None:
+            self._early.append(lambda: self._on_block(unit, block_class, data))
             return
-        if not self._is_new(unit, message):
-            return
-        stamp_ns = convert.nanoseconds(message.header.stamp)
-        recording.raw(recorded_topic(block_topic(unit)), f"cnc_ptp/msg/{block_type.__name__}", data, stamp_ns)
-        if block_type is not msg.PlcBlock:
-            recording.states(unit, convert.message_to_block(message))
-        self._note_complete(message.first_cycle)
+        stamp_ns, first_cycle, count = head_of(data)
+        if self._is_new(unit, stamp_ns, first_cycle, count):
+            self._recording.encoded_block(unit, block_class, data)
+            self._note_complete(first_cycle)
 
-    def _is_new(self, unit: str, message: Any) -> bool:
+    def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""
-        cycle, expected = message.first_cycle, self._next_cycle[unit]
+        expected = self._next_cycle[unit]
         if cycle > expected:
             text = f"recorder: blocks of '{unit}' from cycle {expected} to {cycle - 1} are missing in the recording"
             event = Event(cycle, RECORDER, Severity.ERROR, BLOCKS_MISSING, text)
-            self._event_publisher.publish(convert.event_to_message(event, message.header.stamp))
-        self._next_cycle[unit] = max(expected, cycle + message.count)
+            self._event_publisher.publish(convert.event_to_message(event, convert.time_message(stamp_ns)))
+        self._next_cycle[unit] = max(expected, cycle + count)
         return bool(cycle >= expected)
 
     def _note_complete(self, first_cycle: int) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 from cnc_ptp import msg, srv
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, PlcBlock, SpindleBlock
 
 BLOCKS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 """Numbered blocks: nothing is lost while a reader stalls for up to 1000 blocks (10 s at 100 blocks per second)."""
@@ -45,6 +46,8 @@ BLOCK_TYPES: dict[str, Any] = {
     "axis": msg.AxisBlock,
     "spindle": msg.SpindleBlock,
 }
+
+BLOCK_CLASSES: dict[str, type] = {"plc": PlcBlock, "channel": ChannelBlock, "axis": AxisBlock, "spindle": SpindleBlock}
 
 STATE_TYPES: dict[str, Any] = {"channel": msg.ChannelState, "axis": msg.AxisState, "spindle": msg.SpindleState}
 

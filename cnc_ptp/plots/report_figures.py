@@ -20,10 +20,10 @@ from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.recording.columns import packed
 from cnc_ptp.recording.command_words import command_words, shortened
 from cnc_ptp.recording.decimate import line_points, path_points
-from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
 from cnc_ptp.recording.rows import OTHER, SET, PlotRow, standing
 from cnc_ptp.recording.statistics import axis_units
+from cnc_ptp.wire.layout import Records
 
 SET_COLOUR, ACTUAL_COLOUR = "#5b93d6", "#d9480f"
 """No two of the figures' colours are as easy to tell apart, the thin actual value above the wide set value."""

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import SPINDLE_STATE, Recorded
 from cnc_ptp.recording.rows import ACTUAL, OTHER, SET, USUAL, Line, PlotRow, axis_label, standing, time_rows
 from cnc_ptp.recording.selection import NOT_RECORDED, nearest
 from cnc_ptp.recording.units import unit_of, without_role, without_unit
+from cnc_ptp.wire.layout import Records
 
 BY_PREFIX = {"set_": SET, "actual_": ACTUAL}
 

@@ -24,8 +24,8 @@ from mcap.stream_reader import get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.layout import Bytes
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, MESSAGE_HEAD, RECORD_PREFIX
+from cnc_ptp.wire.layout import Bytes
 
 UNREADABLE = 26001
 NOT_MCAP = 26002

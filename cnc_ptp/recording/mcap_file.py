@@ -41,7 +41,7 @@ from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.recording.bag import RECORD, bag_information, forget_beside, metadata_text, write_beside
-from cnc_ptp.recording.layout import Bytes
+from cnc_ptp.wire.layout import Bytes
 
 NOT_WRITTEN = 26007
 

@@ -16,10 +16,10 @@ from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue
 from cnc_ptp.recording.bag import QOS
-from cnc_ptp.recording.layout import Layout, Records, fixed_layout
 from cnc_ptp.recording.mcap_chunks import McapRecords, MessageRun, RawRecord
-from cnc_ptp.recording.schemas import full_name, parse_schema
 from cnc_ptp.recording.writer import MACHINE_FILE, METADATA, MISSING
+from cnc_ptp.wire.layout import Layout, Records, fixed_layout
+from cnc_ptp.wire.schemas import full_name, parse_schema
 
 AXIS_STATE = "cnc_ptp/msg/AxisState"
 SPINDLE_STATE = "cnc_ptp/msg/SpindleState"

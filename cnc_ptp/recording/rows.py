@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
 from cnc_ptp.recording.units import unit_of
+from cnc_ptp.wire.layout import Records
 
 SET, ACTUAL, OTHER = "set", "actual", ""
 USUAL = ("position", "velocity", "acceleration", "following error", "speed")

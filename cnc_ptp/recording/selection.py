@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.layout import Records
 from cnc_ptp.recording.reader import AXIS_STATE, SPINDLE_STATE, Recorded
+from cnc_ptp.wire.layout import Records
 
 NOT_RECORDED = 26011
 

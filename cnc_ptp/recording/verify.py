@@ -16,10 +16,12 @@ import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CycleBlock, PlcBlock
-from cnc_ptp.recording.blocks import Cycles, Packer, StateBlock, StateKind, cycles_of, fill_states, kind_of
-from cnc_ptp.recording.layout import Records
+from cnc_ptp.recording.blocks import Cycles, StateBlock, StateKind, block_rows, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.reader import Recorded
-from cnc_ptp.recording.writer import Stamps, topic_of
+from cnc_ptp.recording.writer import topic_of
+from cnc_ptp.wire.block_codec import codec_of
+from cnc_ptp.wire.layout import Layout, Records
+from cnc_ptp.wire.stamps import Stamps
 
 NOT_VERIFIABLE = 26004
 Replay = Callable[[Recorded], Iterable[tuple[str, CycleBlock]]]
@@ -173,15 +175,17 @@ class _Check:
             self.result.duplicated = np.unique(self.cycles[1:][self.cycles[1:] == self.cycles[:-1]]).tolist()
         self.seen = np.zeros(len(self.cycles), dtype=bool)
         self.batch: list[bytes] = []
-        self.form: tuple[StateKind, int, Packer] | None = None
+        self.form: tuple[StateKind, Layout] | None = None
 
     def add(self, block: StateBlock) -> None:
-        if self.form is None or self.form[1] != block.count:
+        codec = codec_of(type(block))
+        data = codec.encode(block, self.stamps)
+        layout = codec.layout(data)
+        if self.form is None or self.form[1] is not layout:
             self.compare_batch()
-            kind = kind_of(block)
-            self.form = kind, block.count, kind.packer(block.count)
-            self.require_fields(kind)
-        self.batch.append(self.form[2].pack(block))
+            self.form = kind_of(type(block)), layout
+            self.require_fields(self.form[0])
+        self.batch.append(data)
         if len(self.batch) >= BATCH_BLOCKS:
             self.compare_batch()
 
@@ -206,12 +210,12 @@ class _Check:
     def compare_batch(self) -> None:
         if self.form is None or not self.batch:
             return
-        kind, count, packer = self.form
-        packed, self.batch = packer.rows(self.batch), []
-        cycles = cycles_of(packed, count)
+        kind, layout = self.form
+        rows, self.batch = block_rows(self.batch, layout), []
+        cycles = cycles_of(rows)
         computed = np.zeros(len(cycles), dtype=kind.layout.dtype)
         computed["cycle"] = cycles
-        fill_states(kind, computed, packed, cycles, self.stamps.at_all(cycles))
+        fill_states(kind, computed, rows, cycles, self.stamps.at_all(cycles))
         self.compare(computed[np.argsort(cycles, kind="stable")])
 
     def compare(self, computed: Records) -> None:

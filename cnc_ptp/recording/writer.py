@@ -6,9 +6,6 @@ passed.
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-from copy import copy
-from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from types import TracebackType
@@ -17,32 +14,16 @@ from typing import Any, Protocol
 import numpy as np
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import (
-    AxisBlock,
-    ChannelBlock,
-    CommandRecord,
-    CycleBlock,
-    CycleTick,
-    Event,
-    PlcBlock,
-    SpindleBlock,
-)
+from cnc_ptp.protocol.blocks import ChannelBlock, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock
 from cnc_ptp.recording.bag import QOS, TYPE_HASH
-from cnc_ptp.recording.blocks import (
-    BlockLayout,
-    Packer,
-    StateBlock,
-    StateKind,
-    Times,
-    cycles_of,
-    fill_states,
-    kind_of,
-    require_shape,
-)
-from cnc_ptp.recording.layout import Bytes, Header, encode, header_at, repeat
+from cnc_ptp.recording.blocks import StateKind, block_rows, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
-from cnc_ptp.recording.schemas import full_name, load_schema, type_hash
+from cnc_ptp.wire.block_codec import codec_of, has_plain_header, head_of
+from cnc_ptp.wire.layout import Bytes, Layout, encode, repeat
+from cnc_ptp.wire.schemas import full_name, load_schema, type_hash
+from cnc_ptp.wire.stamps import Stamps, Times
+from cnc_ptp.wire.ticks import encode_tick
 
 TWO_TYPES = 26008
 CLOSED = 26009
@@ -54,33 +35,6 @@ MISSING = "missing"
 BEFORE_ALL = -1  # end of the chunk before the first block
 
 
-@dataclass(frozen=True, slots=True)
-class TickMessage:
-    """A CycleTick with the field that only a paced clock has."""
-
-    first_cycle: int
-    count: int
-    scheduled_monotonic_ns: int = 0
-
-
-class Stamps:
-    """Cycle number -> ns since the epoch."""
-
-    def __init__(self, start_ns: int, cycle_time_ns: int) -> None:
-        self.start_ns = start_ns
-        self.cycle_time_ns = cycle_time_ns
-
-    def at(self, cycle: int) -> int:
-        return self.start_ns + cycle * self.cycle_time_ns
-
-    def at_all(self, cycles: Times) -> Times:
-        return np.uint64(self.start_ns) + cycles * np.uint64(self.cycle_time_ns)
-
-    def header_of(self, value: Any) -> Header:
-        """The header of an event, command or handshake (cycle) or of a block (first_cycle)."""
-        return header_at(self.at(value.cycle if hasattr(value, "cycle") else value.first_cycle))
-
-
 class _Encoder(Protocol):
     """Turns the items of a topic into messages: rows (n, HEAD_SIZE + size) and times (n,) for each size."""
 
@@ -88,36 +42,19 @@ class _Encoder(Protocol):
 
 
 class _States:
-    """Packed blocks of one length -> state messages, one per cycle."""
+    """Messages of blocks of one layout -> state messages, one per cycle."""
 
-    def __init__(self, kind: StateKind, count: int, packer: Packer) -> None:
+    def __init__(self, kind: StateKind, layout: Layout) -> None:
         self.kind = kind
-        self.count = count
-        self.packer = packer
+        self.layout = layout
 
     def messages(self, collected: list[bytes], stamps: Stamps) -> list[tuple[Bytes, Times]]:
-        layout = self.kind.layout
-        rows = self.packer.rows(collected)
-        cycles = cycles_of(rows, self.count)
+        states = self.kind.layout
+        rows = block_rows(collected, self.layout)
+        cycles = cycles_of(rows)
         times = stamps.at_all(cycles)
-        raw = repeat(ROOM + layout.template, len(cycles))
-        fill_states(self.kind, raw[:, HEAD_SIZE:].view(layout.dtype)[:, 0], rows, cycles, times)
-        return [(raw, times)]
-
-
-class _Blocks:
-    """Packed blocks of one shape -> block messages."""
-
-    def __init__(self, shape: BlockLayout) -> None:
-        self.shape = shape
-        self.packer = shape.packer
-
-    def messages(self, collected: list[bytes], stamps: Stamps) -> list[tuple[Bytes, Times]]:
-        layout = self.shape.layout
-        rows = self.packer.rows(collected)
-        times = stamps.at_all(rows["first_cycle"].astype(np.uint64))
-        raw = repeat(ROOM + layout.template, len(rows))
-        self.shape.fill(raw[:, HEAD_SIZE:].view(layout.dtype)[:, 0], rows, times)
+        raw = repeat(ROOM + states.template, len(cycles))
+        fill_states(self.kind, raw[:, HEAD_SIZE:].view(states.dtype)[:, 0], rows, cycles, times)
         return [(raw, times)]
 
 
@@ -160,30 +97,35 @@ class _Topic:
 
 
 class _Unit:
-    """Where the blocks of a unit go, and how blocks of each shape are encoded."""
+    """Where the blocks of a unit go, and those of its states that come from blocks of the newest layout."""
 
-    def __init__(self, kind: StateKind, blocks: _Topic, states: _Topic) -> None:
-        self.kind = kind
-        self.blocks = blocks
-        self.states = states
-        self._encoders: dict[Hashable, tuple[_Blocks, _States]] = {}
+    def __init__(self, block_class: type, blocks: _Topic, states: _Topic | None) -> None:
+        self._codec = codec_of(block_class)
+        self._blocks = blocks
+        self._states = states
+        self._kind = kind_of(block_class) if states else None
+        self._encoder: _States | None = None
 
-    def encoders(self, key: Hashable, block: StateBlock) -> tuple[_Blocks, _States]:
-        known = self._encoders.get(key)
-        if known is None:
-            require_shape(self.kind, block)
-            blocks = _Blocks(BlockLayout(self.kind.block, block))
-            known = self._encoders[key] = blocks, _States(self.kind, block.count, blocks.packer)
-        return known
+    def add(self, stamp_ns: int, data: bytes) -> None:
+        """Takes a block for both topics, without the bytes that DDS has filled it up with."""
+        if self._states is None or self._kind is None:
+            self._blocks.add(READY, (stamp_ns, data))
+            return
+        layout = self._codec.layout(data)
+        data = data[: layout.dtype.itemsize]
+        self._blocks.add(READY, (stamp_ns, data))
+        if self._encoder is None or self._encoder.layout is not layout:
+            self._encoder = _States(self._kind, layout)
+        self._states.add(self._encoder, data)
 
 
 class Recording:
     """A recording being written.
 
-    Offline, `axis_block`, `spindle_block` and `channel_block` record a unit's block with its per-cycle states. In the
-    graph the block itself arrives as bytes and goes to `raw`, and `states` records the states alone. A chunk is
-    closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees `flush_seconds` of wall time passed;
-    then the operating system gets it. A killed process loses only what came after its last chunk.
+    `block` records a unit's block with its per-cycle states; in the graph the block arrives as bytes, for
+    `encoded_block`. A chunk is closed every `chunk_seconds` of recorded time and whenever `flush_if_due` sees
+    `flush_seconds` of wall time passed; then the operating system gets it. A killed process loses only what came after
+    its last chunk.
 
     Errors (CncError): 26005 unknown message type, 26006 a block that does not fit its message, 26007 the file cannot be
     written, 26008 a topic with two types, 26009 the recording is closed. What was refused is not in the file; the rest
@@ -209,76 +151,32 @@ class Recording:
         self._flushed_at: float | None = None
         self._topics: dict[str, _Topic] = {}
         self._units: dict[tuple[str, type], _Unit] = {}
-        self._encoders: dict[Hashable, _Blocks | _States] = {}
         self._closed = False
         self._file = McapFile(self.path, level)
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
         self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
 
     def block(self, name: str, block: CycleBlock) -> None:
-        """A block of any unit, and its per-cycle states if it has any."""
-        if isinstance(block, AxisBlock):
-            self.axis_block(name, block)
-        elif isinstance(block, SpindleBlock):
-            self.spindle_block(name, block)
-        elif isinstance(block, ChannelBlock):
-            self.channel_block(name, block)
-        else:
-            self.plc_block(block, name)
+        """`/<name>/block` and, per cycle, `/<name>/state`; `/<name>/handshake` for each request of a channel."""
+        self._block(name, type(block), codec_of(type(block)).encode(block, self.stamps))
+        if isinstance(block, ChannelBlock):
+            for request in block.requests:
+                self._single(topic_of(name, "handshake"), "cnc_ptp/msg/HandshakeRequest", request)
 
-    # whole blocks with their states (offline)
-
-    def axis_block(self, name: str, block: AxisBlock) -> None:
-        """`/<name>/block` and, per cycle, `/<name>/state`."""
-        self._block_and_states(name, block, (block.count, block.master))
-
-    def spindle_block(self, name: str, block: SpindleBlock) -> None:
-        if block.commands or block.refused:
-            self.spindle_block_message(name, block)
-            self.states(name, block)
-        else:
-            self._block_and_states(name, block, (block.count, block.master, block.master_wanted, block.source))
-
-    def channel_block(self, name: str, block: ChannelBlock) -> None:
-        """`/<name>/block`, per cycle `/<name>/state`, and `/<name>/handshake` for each request in it."""
-        if block.commands or block.requests:
-            self.channel_block_message(name, block)
-            self.states(name, block)
-        else:
-            self._block_and_states(name, block, _channel_shape(block))
-        for request in block.requests:
-            self._single(topic_of(name, "handshake"), "cnc_ptp/msg/HandshakeRequest", request)
-
-    # states alone, blocks alone
-
-    def states(self, name: str, block: StateBlock) -> None:
-        """`/<name>/state` alone, a message per cycle of the block (graph)."""
-        kind = kind_of(block)
-        encoder = self._encoders.get((kind, block.count))
-        if encoder is None:
-            encoder = self._encoders[kind, block.count] = _States(kind, block.count, kind.packer(block.count))
-        self._add_packed(topic_of(name, "state"), kind.state.name, encoder, block)
-
-    def _block_alone(self, name: str, block: StateBlock) -> None:
-        require_shape(kind_of(block), block)
-        self._block(topic_of(name, "block"), kind_of(block).block.name, block, None)
-
-    def spindle_block_message(self, name: str, block: SpindleBlock) -> None:
-        """`/<name>/block`."""
-        message: Any = copy(block)
-        message.refused = [refusal.encode() for refusal in block.refused]
-        self._block_alone(name, message)
-
-    def channel_block_message(self, name: str, block: ChannelBlock) -> None:
-        self._block_alone(name, block)
-
-    def plc_block(self, block: PlcBlock, name: str = "plc") -> None:
-        self._block(topic_of(name, "block"), "cnc_ptp/msg/PlcBlock", block, None if block.commands else "plc")
+    def encoded_block(self, name: str, block_class: type, data: bytes) -> None:
+        """`/<name>/block` as it came over DDS and, per cycle, `/<name>/state`."""
+        if not has_plain_header(data):
+            codec = codec_of(block_class)
+            data = codec.encode(codec.decode(data), self.stamps)
+        self._block(name, block_class, data)
 
     def tick(self, tick: CycleTick, scheduled_monotonic_ns: int = 0) -> None:
         """`/clock/tick`."""
-        message = TickMessage(tick.first_cycle, tick.count, scheduled_monotonic_ns)
-        self._block("/clock/tick", "cnc_ptp/msg/CycleTick", message, "tick")
+        if tick.first_cycle >= self._chunk_end:
+            self._begin_chunk(tick.first_cycle)
+        stamp_ns = self.stamps.at(tick.first_cycle)
+        data = encode_tick(tick.first_cycle, tick.count, scheduled_monotonic_ns, stamp_ns)
+        self._topic("/clock/tick", "cnc_ptp/msg/CycleTick").add(READY, (stamp_ns, data))
 
     # single messages
 
@@ -335,41 +233,22 @@ class Recording:
     ) -> None:
         self.close()
 
-    def _block_and_states(self, name: str, block: StateBlock, shape: Hashable) -> None:
-        unit = self._units.get((name, type(block))) or self._unit(name, block)
-        blocks, states = unit.encoders(shape, block)
-        row = blocks.packer.pack(block)
-        if block.first_cycle >= self._chunk_end:
-            self._begin_chunk(block.first_cycle)
-        unit.blocks.add(blocks, row)
-        unit.states.add(states, row)
-
-    def _unit(self, name: str, block: StateBlock) -> _Unit:
-        kind = kind_of(block)
-        blocks = self._topic(topic_of(name, "block"), kind.block.name)
-        states = self._topic(topic_of(name, "state"), kind.state.name)
-        unit = self._units[name, type(block)] = _Unit(kind, blocks, states)
-        return unit
-
-    def _block(self, topic: str, type_name: str, block: Any, shape: Hashable) -> None:
-        """`shape`: None for blocks that hold more than numbers at known places."""
-        if shape is None:
-            if block.first_cycle >= self._chunk_end:
-                self._begin_chunk(block.first_cycle)
-            self._single(topic, type_name, block)
-            return
-        encoder = self._encoders.get((type_name, shape))
-        if encoder is None:
-            encoder = self._encoders[type_name, shape] = _Blocks(BlockLayout(load_schema(type_name), block))
-        self._add_packed(topic, type_name, encoder, block)
-
-    def _add_packed(self, topic: str, type_name: str, encoder: _Blocks | _States, block: Any) -> None:
+    def _block(self, name: str, block_class: type, data: bytes) -> None:
+        stamp_ns, first_cycle, _count = head_of(data)
         if self._file.chunk_ready:
             self._file.finish_chunk()
-        row = encoder.packer.pack(block)
-        if block.first_cycle >= self._chunk_end:
-            self._begin_chunk(block.first_cycle)
-        self._topic(topic, type_name).add(encoder, row)
+        if first_cycle >= self._chunk_end:
+            self._begin_chunk(first_cycle)
+        unit = self._units.get((name, block_class)) or self._unit(name, block_class)
+        unit.add(stamp_ns, data)
+
+    def _unit(self, name: str, block_class: type) -> _Unit:
+        blocks = self._topic(topic_of(name, "block"), f"cnc_ptp/msg/{block_class.__name__}")
+        states = None
+        if block_class is not PlcBlock:
+            states = self._topic(topic_of(name, "state"), kind_of(block_class).state.name)
+        unit = self._units[name, block_class] = _Unit(block_class, blocks, states)
+        return unit
 
     def _single(self, topic: str, type_name: str, value: Any) -> None:
         self._require_open(topic)
@@ -424,7 +303,3 @@ def offer(type_name: str) -> dict[str, str]:
 
 def topic_of(name: str, leaf: str) -> str:
     return f"/{name.strip('/')}/{leaf}"
-
-
-def _channel_shape(block: ChannelBlock) -> Hashable:
-    return block.count, tuple(block.axes), len(block.set_position)

@@ -1,24 +1,9 @@
-"""Blocks and commands as ROS messages, and back."""
+"""Command records as ROS messages, and back."""
 
 from builtin_interfaces.msg import Time
-from recording_support import Blocks
 
 from cnc_ptp.nodes import convert
-from cnc_ptp.protocol.blocks import CommandRecord, Refusal
-
-
-def test_the_refusals_of_a_spindle_travel_as_texts():
-    block = Blocks(10).spindle(0)
-    block.refused = [
-        Refusal("channel", 24012, "spindle s: orient refused: busy; nothing was changed"),
-        Refusal("a", 1, ""),
-    ]
-    message = convert.block_to_message(block, Time())
-    assert message.refused == [
-        "channel: P-ERR-24012 spindle s: orient refused: busy; nothing was changed",
-        "a: P-ERR-1 ",
-    ]
-    assert convert.message_to_block(message).refused == block.refused
+from cnc_ptp.protocol.blocks import CommandRecord
 
 
 def test_a_record_travels_without_its_values():

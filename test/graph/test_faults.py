@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.nodes import convert, process, supervisor
+from cnc_ptp.nodes import process, supervisor
 from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.recorder import RecorderNode, require_writable
@@ -15,7 +15,10 @@ from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
 from cnc_ptp.nodes.topics import BLOCKS, EVENT, EVENTS, REPORT, TICK, block_topic
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import PlcBlock, Severity
+from cnc_ptp.wire.block_codec import encode_block
+from cnc_ptp.wire.stamps import Stamps
 
+STAMPS = Stamps(0, 1_000_000)
 UNITS = ("plc", "x", "y", "z", "c")
 """Of ptp.yaml."""
 
@@ -33,7 +36,7 @@ class Outside(Node):
 
     def plc_block(self, first_cycle):
         block = PlcBlock(first_cycle, 10)
-        self.plc.publish(convert.block_to_message(block, convert.time_message(0)))
+        self.plc.publish(encode_block(block, STAMPS))
 
 
 @pytest.fixture

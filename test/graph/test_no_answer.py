@@ -4,19 +4,20 @@ from contextlib import nullcontext
 
 import pytest
 import rclpy
-from builtin_interfaces.msg import Time
 from graph_support import MILL, run
 from live_support import call
 
 from cnc_ptp import msg
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.nodes import convert, player, process
+from cnc_ptp.nodes import player, process
 from cnc_ptp.nodes.bridge.coupling_services import PATIENCE as COUPLING_PATIENCE
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, integer_range
 from cnc_ptp.nodes.topics import REMEMBERED_BLOCKS
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import CycleTick
+from cnc_ptp.wire.block_codec import encode_block
+from cnc_ptp.wire.stamps import Stamps
 
 
 @pytest.fixture
@@ -75,12 +76,12 @@ def test_a_late_reader_sees_no_old_blocks(client):
     axis = build_units(read_machine(MILL))["x"]
     publisher = client.create_publisher(msg.AxisBlock, "x/block", REMEMBERED_BLOCKS)
     for first_cycle in range(0, 200, 10):
-        publisher.publish(convert.block_to_message(axis.step(CycleTick(first_cycle, 10), {}), Time()))
+        publisher.publish(encode_block(axis.step(CycleTick(first_cycle, 10), {}), Stamps(0, 1_000_000)))
     blocks = LatestBlocks(client, client.kinds, rotary=())
     assert client.spin_until(lambda: publisher.get_subscription_count() == 1, 5.0)
     client.spin_for(0.2)
     assert blocks.views() == []
-    publisher.publish(convert.block_to_message(axis.step(CycleTick(200, 10), {}), Time()))
+    publisher.publish(encode_block(axis.step(CycleTick(200, 10), {}), Stamps(0, 1_000_000)))
     assert client.spin_until(blocks.views, 5.0) and blocks.views()[0].cycle == 210
 
 

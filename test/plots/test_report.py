@@ -14,12 +14,12 @@ from cnc_ptp.plots.report_figures import path_axes, path_figures, state_bands
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording import statistics
-from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, read_recording
-from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.selection import selected
 from cnc_ptp.recording.statistics import Extreme, axis_units, in_machine_order, last_diagnostics, summary, torque_units
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.layout import Header, encode
+from cnc_ptp.wire.schemas import load_schema
 
 EVIL = '</script><script>alert("1")</script><img src=x onerror=alert(2)>'
 PROJECT = Path(__file__).parents[2]

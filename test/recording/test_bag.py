@@ -18,8 +18,8 @@ from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.recording.mcap_chunks import McapRecords
 from cnc_ptp.recording.qos import Qos, parse_profiles, profiles_text
 from cnc_ptp.recording.reader import iter_messages, read_recording
-from cnc_ptp.recording.schemas import schema_text, type_hash
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.schemas import schema_text, type_hash
 
 REMEMBERED = {"/x/block", "/s/block", "/events", "/commands", "/channel/handshake"}
 
@@ -100,7 +100,7 @@ def test_hashes_are_those_that_the_definitions_give(name):
 
 
 def test_hash_of_a_type_that_is_not_installed_is_empty(tmp_path, monkeypatch):
-    monkeypatch.setattr("cnc_ptp.recording.schemas.message_file", lambda _: tmp_path / "Nothing.msg")
+    monkeypatch.setattr("cnc_ptp.wire.schemas.message_file", lambda _: tmp_path / "Nothing.msg")
     assert type_hash.__wrapped__("cnc_ptp/msg/AxisState") == ""
 
 

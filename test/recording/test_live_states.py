@@ -15,10 +15,12 @@ from cnc_ptp.nodes.unit.live_state import LiveState, period_cycles
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import Command, CycleTick
 from cnc_ptp.recording.blocks import state_messages
+from cnc_ptp.wire.stamps import Stamps
 
 CONFIG = Path(__file__).parents[2] / "config"
 PTP, MILL = CONFIG / "ptp.yaml", CONFIG / "mill.yaml"
 START = 1_700_000_000_123_456_789
+STAMPS = Stamps(START, 1_000_000)
 
 
 def blocks_of(name, count, *commands, machine=PTP, blocks=20):
@@ -36,7 +38,7 @@ def test_states_are_the_cycles_of_the_block(seed):
     begin, length = Fraction(0), Fraction(360)
     for block in blocks_of("c", count, move, blocks=10):
         assert (block.modulo_begin, block.modulo_length) == (0.0, 360.0)
-        for index, data in enumerate(state_messages(block, START, 1_000_000)):
+        for index, data in enumerate(state_messages(block, STAMPS)):
             state, cycle = deserialize_message(data, msg.AxisState), block.first_cycle + index
             assert state.cycle == cycle
             assert state.header.stamp.sec * 10**9 + state.header.stamp.nanosec == START + cycle * 10**6
@@ -53,11 +55,11 @@ def test_states_are_the_cycles_of_the_block(seed):
 
 def test_spindles_and_channels_have_states_too():
     (block, *_) = blocks_of("s", 10, ("start", {"direction": "ccw", "speed_rpm": 300.0}), machine=MILL)
-    states = [deserialize_message(data, msg.SpindleState) for data in state_messages(block, START, 1_000_000)]
+    states = [deserialize_message(data, msg.SpindleState) for data in state_messages(block, STAMPS)]
     assert [state.set_speed_rpm for state in states] == block.set_speed_rpm
     assert [state.speed_zero for state in states] == block.speed_zero
     (block, *_) = blocks_of("channel", 10, machine=MILL)
-    states = [deserialize_message(data, msg.ChannelState) for data in state_messages(block, START, 1_000_000)]
+    states = [deserialize_message(data, msg.ChannelState) for data in state_messages(block, STAMPS)]
     assert [state.state for state in states] == block.state
 
 
@@ -83,7 +85,7 @@ def test_the_last_cycle_of_each_period(period, count):
     publisher = Publisher(readers=1)
     live = LiveState(publisher, "x", "axis", period)
     for block in blocks_of("x", count, blocks=40):
-        live.publish(block, START, 1_000_000)
+        live.publish(block, STAMPS)
     assert publisher.topic == "x/state"
     assert publisher.cycles == list(range(period - 1, 40 * count, period))
 
@@ -92,7 +94,7 @@ def test_nobody_subscribes():
     publisher = Publisher(readers=0)
     live = LiveState(publisher, "x", "axis", 1)
     for block in blocks_of("x", 10):
-        live.publish(block, START, 1_000_000)
+        live.publish(block, STAMPS)
     assert publisher.cycles == []
 
 

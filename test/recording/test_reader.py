@@ -13,10 +13,10 @@ from recording_support import MACHINE, Blocks, record
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CommandRecord, Event
-from cnc_ptp.recording.layout import Header, encode
 from cnc_ptp.recording.reader import Diagnostic, iter_messages, read_recording
-from cnc_ptp.recording.schemas import load_schema, parse_schema, schema_text
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.layout import Header, encode
+from cnc_ptp.wire.schemas import load_schema, parse_schema, schema_text
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import pytest
 from cnc_ptp.protocol.commands import COMMANDS
 from cnc_ptp.recording.command_words import argument_words
 from cnc_ptp.recording.reader import STATE_TYPES
-from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.units import BY_NAME, BY_SUFFIX, MODULO, unit_of, without_role
+from cnc_ptp.wire.schemas import load_schema
 
 NUMBERS = {
     name

@@ -13,11 +13,11 @@ from mcap_ros2.decoder import DecoderFactory
 from recording_support import MACHINE, record
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleTick, Event, PlcBlock, Refusal
-from cnc_ptp.recording.layout import Header, encode
+from cnc_ptp.protocol.blocks import AxisBlock, Command, CommandRecord, CycleTick, Event, PlcBlock, Refusal
 from cnc_ptp.recording.reader import read_recording
-from cnc_ptp.recording.schemas import load_schema
 from cnc_ptp.recording.writer import Recording
+from cnc_ptp.wire.layout import Header, encode
+from cnc_ptp.wire.schemas import load_schema
 
 
 @pytest.fixture
@@ -110,7 +110,7 @@ def test_rosbags_reads_the_file(path, blocks):
 
 def test_stamps_follow_start_and_cycle_time(path, blocks):
     with Recording(path, MACHINE, start_ns=1_700_000_000_999_000_000, cycle_time_ns=500_000) as recording:
-        recording.axis_block("x", blocks.axis(4, count=3))
+        recording.block("x", blocks.axis(4, count=3))
         recording.event(Event(5, "x", 0, 0, "text"))
     found = [
         (message.log_time, decoded.header.stamp.sec, decoded.header.stamp.nanosec)
@@ -130,23 +130,6 @@ def test_attachment_comes_first_and_is_there_before_the_first_chunk(path):
     recording.close()
 
 
-def test_states_alone_and_block_messages_alone(path, blocks):
-    with Recording(path, MACHINE) as recording:
-        recording.states("x", blocks.axis(0))
-        recording.states("s", blocks.spindle(0))
-        recording.states("channel", blocks.channel_with_commands(0))
-        recording.spindle_block_message("s2", blocks.spindle(0))
-        recording.channel_block_message("channel2", blocks.channel_with_commands(0))
-    topics = {topic: info.count for topic, info in read_recording(path).topics.items()}
-    assert topics == {
-        "/x/state": 10,
-        "/s/state": 10,
-        "/channel/state": 10,
-        "/s2/block": 1,
-        "/channel2/block": 1,
-    }
-
-
 def test_blocks_of_changing_shape_keep_their_order(path, blocks):
     run = [
         blocks.channel(0),
@@ -157,7 +140,7 @@ def test_blocks_of_changing_shape_keep_their_order(path, blocks):
     ]
     with Recording(path, MACHINE) as recording:
         for block in run:
-            recording.channel_block("/channel/", block)
+            recording.block("/channel/", block)
     read = [decoded for _, _, _, decoded in messages(path, topics=["/channel/block"])]
     assert [(block.first_cycle, block.count, list(block.axes), len(block.commands)) for block in read] == [
         (block.first_cycle, block.count, block.axes, len(block.commands)) for block in run
@@ -168,15 +151,12 @@ def test_blocks_of_changing_shape_keep_their_order(path, blocks):
     assert cycles == list(range(44))
 
 
-def test_messages_of_ros_are_taken_as_blocks(path, blocks):
-    ros = pytest.importorskip("cnc_ptp.msg", reason="the interfaces are not built (make setup)")
-    serialization = pytest.importorskip("rclpy.serialization")
+def test_blocks_are_taken_as_messages(path, blocks):
     schema = load_schema("cnc_ptp/msg/AxisBlock")
     block = blocks.axis(50)
     data = encode(schema, block, lambda value: Header(0, 50_000_000))
     with Recording(path, MACHINE) as recording:
-        recording.raw("/x/block", "cnc_ptp/msg/AxisBlock", data, 50_000_000)
-        recording.states("x", serialization.deserialize_message(data, ros.AxisBlock))
+        recording.encoded_block("x", AxisBlock, data)
     recorded = read_recording(path)
     assert recorded.states["/x/state"]["status_bits"].tolist() == block.status_bits
     assert recorded.topics["/x/block"].count == 1
@@ -184,13 +164,13 @@ def test_messages_of_ros_are_taken_as_blocks(path, blocks):
 
 def test_flush_is_due_after_half_a_second_of_wall_time(path, blocks):
     with Recording(path, MACHINE) as recording:
-        recording.axis_block("x", blocks.axis(0))
+        recording.block("x", blocks.axis(0))
         assert not recording.flush_if_due(100.0)
         assert not recording.flush_if_due(100.49)
         assert read_recording(path).topics == {}
         assert recording.flush_if_due(100.5)
         assert read_recording(path).topics["/x/state"].count == 10
-        recording.axis_block("x", blocks.axis(10))
+        recording.block("x", blocks.axis(10))
         assert not recording.flush_if_due(100.9)
         assert recording.flush_if_due(101.0)
         assert read_recording(path).topics["/x/state"].count == 20
@@ -231,7 +211,7 @@ def test_chunks_are_written_on_the_way_without_a_flush(path, blocks):
         closed = recording._file._closed_chunk
         if closed is not None:  # else it has been compressed and written already
             closed[1].result()
-        recording.plc_block(PlcBlock(350, 10))
+        recording.block("plc", PlcBlock(350, 10))
         assert len(read_recording(path).states["/x/state"]) == 300
     assert len(read_recording(path).states["/x/state"]) == 350
 
@@ -240,16 +220,15 @@ def test_block_with_another_number_of_values_is_refused_and_the_rest_kept(path, 
     bad = blocks.axis(10)
     bad.set_velocity.append(1.0)
     with Recording(path, MACHINE) as recording:
-        recording.axis_block("x", blocks.axis(0))
+        recording.block("x", blocks.axis(0))
         with pytest.raises(CncError) as error:
-            recording.axis_block("x", bad)
+            recording.block("x", bad)
         with pytest.raises(CncError):
-            recording.states("x", bad)
-        recording.axis_block("x", blocks.axis(20))
+            recording.block("x", bad)
+        recording.block("x", blocks.axis(20))
     assert str(error.value) == (
-        "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: pack expected "
-        "187 items for "
-        "packing (got 188); it was not recorded"
+        "P-ERR-26006 recording: AxisBlock with first cycle 10, count 10 does not fit its message: set_velocity "
+        "holds 11 values; it was not recorded"
     )
     assert read_recording(path).states["/x/state"]["cycle"].tolist() == [*range(10), *range(20, 30)]
 
@@ -295,7 +274,7 @@ def test_channel_setpoints_of_different_length_are_refused(path, blocks):
     bad = blocks.channel(0)
     bad.set_velocity.pop()
     with Recording(path, MACHINE) as recording, pytest.raises(CncError) as error:
-        recording.channel_block("channel", bad)
+        recording.block("channel", bad)
     assert str(error.value) == (
         "P-ERR-26006 recording: ChannelBlock with first cycle 0, count 10 does not fit its message: set_velocity "
         "holds 29 values; "
@@ -308,17 +287,17 @@ def test_value_beyond_its_field_is_refused(path, blocks, field, value):
     bad = blocks.axis(0)
     getattr(bad, field)[3] = value
     with Recording(path, MACHINE) as recording:
-        recording.axis_block("x", blocks.axis(0))
+        recording.block("x", blocks.axis(0))
         with pytest.raises(CncError, match="does not fit its message") as error:
-            recording.axis_block("x", bad)
+            recording.block("x", bad)
     assert error.value.number == 26006
 
 
 def test_topic_with_two_types_is_refused(path, blocks):
     with Recording(path, MACHINE) as recording:
-        recording.axis_block("x", blocks.axis(0))
+        recording.block("x", blocks.axis(0))
         with pytest.raises(CncError) as error:
-            recording.spindle_block("x", blocks.spindle(0))
+            recording.block("x", blocks.spindle(0))
         recording.raw("/x/block", "cnc_ptp/AxisBlock", b"\0\1\0\0", 0)
     assert str(error.value) == (
         f"P-ERR-26008 recording {path}: topic /x/block holds cnc_ptp/msg/AxisBlock, a message of "
@@ -330,13 +309,12 @@ def test_topic_with_two_types_is_refused(path, blocks):
 @pytest.mark.parametrize(
     ("call", "what"),
     [
-        (lambda recording, blocks: recording.axis_block("x", blocks.axis(10)), "the block with first cycle 10"),
-        (lambda recording, blocks: recording.states("x", blocks.axis(10)), "the block with first cycle 10"),
+        (lambda recording, blocks: recording.block("x", blocks.axis(10)), "the block with first cycle 10"),
         (
-            lambda recording, blocks: recording.channel_block_message("c", blocks.channel_with_commands(10)),
+            lambda recording, blocks: recording.block("c", blocks.channel_with_commands(10)),
             "the block with first cycle 10",
         ),
-        (lambda recording, blocks: recording.plc_block(PlcBlock(10, 10)), "the block with first cycle 10"),
+        (lambda recording, blocks: recording.block("plc", PlcBlock(10, 10)), "the block with first cycle 10"),
         (lambda recording, blocks: recording.tick(CycleTick(10, 10)), "the block with first cycle 10"),
         (lambda recording, blocks: recording.event(Event(1, "x", 0, 0, "")), "/events"),
         (lambda recording, blocks: recording.command(CommandRecord(1, "x", "stop", "{}", True, 0, "")), "/commands"),
@@ -347,7 +325,7 @@ def test_topic_with_two_types_is_refused(path, blocks):
 )
 def test_nothing_is_taken_after_close(path, blocks, call, what):
     recording = Recording(path, MACHINE)
-    recording.axis_block("x", blocks.axis(0))
+    recording.block("x", blocks.axis(0))
     recording.close()
     recording.close()
     with pytest.raises(CncError) as error:
@@ -378,13 +356,13 @@ def test_full_disk():
 
 def test_disk_that_gets_full_keeps_what_was_written(path, blocks):
     recording = Recording(path, MACHINE)
-    recording.axis_block("x", blocks.axis(0))
+    recording.block("x", blocks.axis(0))
     recording.flush()
     whole = path.stat().st_size
     full = open("/dev/full", "wb")  # noqa: SIM115
     recording._file._stream, kept = full, recording._file._stream
     for first in (10, 20):
-        recording.axis_block("x", blocks.axis(first))
+        recording.block("x", blocks.axis(first))
         with pytest.raises(CncError, match="No space left on device"):
             recording.flush()
     with pytest.raises(CncError, match="No space left on device"):

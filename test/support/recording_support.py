@@ -115,11 +115,11 @@ def smooth_run(path: Path, seconds: float = 2.0, *, axes: tuple[str, ...] = ("x"
         for index in range(count):
             first = 10 * index
             recording.tick(CycleTick(first, 10))
-            recording.plc_block(PlcBlock(first, 10, index))
-            recording.channel_block("channel", _channel(first, count * 10))
+            recording.block("plc", PlcBlock(first, 10, index))
+            recording.block("channel", _channel(first, count * 10))
             for number, axis in enumerate(axes):
-                recording.axis_block(axis, _axis(first, number))
-            recording.spindle_block("s", _spindle(first))
+                recording.block(axis, _axis(first, number))
+            recording.block("s", _spindle(first))
         for event in _events(text):
             recording.event(event)
         recording.command(CommandRecord(0, "channel", "load", '{"program": "bracket.nc"}', True, 0, ""))

@@ -7,6 +7,7 @@ from rclpy.node import Node
 from cnc_ptp.nodes.topics import BLOCKS, STATE_TYPES, state_topic
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.recording.blocks import StateBlock, state_messages
+from cnc_ptp.wire.stamps import Stamps
 
 
 def period_cycles(machine: MachineParameters, rate_hz: float | None) -> int:
@@ -25,9 +26,8 @@ class LiveState:
         self._period = period
         self._publisher = node.create_publisher(STATE_TYPES[kind], state_topic(unit), BLOCKS)
 
-    def publish(self, block: StateBlock, start_ns: int, cycle_ns: int) -> None:
-        """`start_ns`: stamp of cycle 0."""
+    def publish(self, block: StateBlock, stamps: Stamps) -> None:
         first = -(block.first_cycle + 1) % self._period
         if first < block.count and self._publisher.get_subscription_count():
-            for message in state_messages(block, start_ns, cycle_ns, slice(first, None, self._period)):
+            for message in state_messages(block, stamps, slice(first, None, self._period)):
                 self._publisher.publish(message)

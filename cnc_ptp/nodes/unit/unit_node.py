@@ -22,6 +22,7 @@ from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.topics import (
+    BLOCK_CLASSES,
     BLOCK_TYPES,
     BLOCKS,
     COMMAND,
@@ -48,6 +49,9 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import PLC, Unit
+from cnc_ptp.wire.block_codec import BlockCodec, codec_of, encode_block
+from cnc_ptp.wire.stamps import Stamps
+from cnc_ptp.wire.ticks import decode_tick
 
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
@@ -88,7 +92,7 @@ class UnitNode(Node):
         self._gate = BlockGate(self._inputs)
         self._cycle_ns = machine.cycle_time_us * 1000
         self._count = machine.block_cycles
-        self._start_ns = 0
+        self._stamps = Stamps(0, self._cycle_ns)
         rotary = unit.kind == "spindle" or (unit.kind == "axis" and machine.axes[unit.name].rotary)
         block_ms = machine.block_cycles * machine.cycle_time_us / 1000.0
         self.diagnostics = UnitDiagnostics(unit, block_ms=block_ms, length_unit="deg" if rotary else "mm")
@@ -150,11 +154,13 @@ class UnitNode(Node):
             self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
 
     def _make_subscriptions(self) -> None:
-        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS)]
+        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS, raw=True)]
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         for source in self._gate.sources:
-            block_type, received = BLOCK_TYPES[self._kinds[source]], partial(self._on_block, source)
-            self._needed.append(self.create_subscription(block_type, block_topic(source), received, BLOCKS))
+            kind = self._kinds[source]
+            received = partial(self._on_block, source, codec_of(BLOCK_CLASSES[kind]))
+            topic = block_topic(source)
+            self._needed.append(self.create_subscription(BLOCK_TYPES[kind], topic, received, BLOCKS, raw=True))
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
         """Refuses: all parameters are read-only; some with a special reason."""
@@ -177,9 +183,10 @@ class UnitNode(Node):
 
     # what arrives
 
-    def _on_tick(self, message: msg.CycleTick) -> None:
+    def _on_tick(self, data: bytes) -> None:
         if self._alone:
             return
+        message = decode_tick(data)
         if not self._running and message.first_cycle:
             self.failure = CncError(
                 TOO_LATE,
@@ -191,7 +198,7 @@ class UnitNode(Node):
             process.take_priority()
         self._running, self.paced = True, bool(message.scheduled_monotonic_ns)
         self._watchdog.heard(CLOCK)
-        self._start_ns = convert.nanoseconds(message.header.stamp) - message.first_cycle * self._cycle_ns
+        self._stamps.start_ns = message.stamp_ns - message.first_cycle * self._cycle_ns
         if self.paced:
             self._scheduled_ns[message.first_cycle] = message.scheduled_monotonic_ns
         before = self._gate.duplicates
@@ -201,9 +208,9 @@ class UnitNode(Node):
         self._compute_ready_blocks()
         self._end_if_over()
 
-    def _on_block(self, source: str, message: Any) -> None:
+    def _on_block(self, source: str, codec: BlockCodec, data: bytes) -> None:
         self._watchdog.heard(source)
-        block = convert.message_to_block(message)
+        block = codec.decode(data)
         if isinstance(block, PlcBlock):
             self.complete_commands(block)
         before = self._gate.duplicates
@@ -288,14 +295,15 @@ class UnitNode(Node):
         self._gate.follow(master)
         if master is not None and master not in self._masters:
             self._watchdog.watch(master)
-            received = partial(self._on_master_block, master)
+            kind = self._kinds[master]
+            received = partial(self._on_master_block, master, codec_of(BLOCK_CLASSES[kind]))
             self._masters[master] = self.create_subscription(
-                BLOCK_TYPES[self._kinds[master]], block_topic(master), received, REMEMBERED_BLOCKS
+                BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True
             )
 
-    def _on_master_block(self, master: str, message: Any) -> None:
+    def _on_master_block(self, master: str, codec: BlockCodec, data: bytes) -> None:
         self._watchdog.heard(master)
-        self._gate.add_master_block(master, convert.message_to_block(message))
+        self._gate.add_master_block(master, codec.decode(data))
         self._compute_ready_blocks()
 
     def _compute(self, tick: CycleTick, inputs: dict[str, CycleBlock]) -> None:
@@ -314,7 +322,7 @@ class UnitNode(Node):
             self._gate.close()
         self.after_block(block)
         if self._live_state is not None and not isinstance(block, PlcBlock):
-            self._live_state.publish(block, self._start_ns, self._cycle_ns)
+            self._live_state.publish(block, self._stamps)
         self._end_if_over()
 
     def _end_if_over(self) -> None:
@@ -333,10 +341,10 @@ class UnitNode(Node):
         """For subclasses: publishes more of a block."""
 
     def stamp(self, cycle: int) -> Time:
-        return convert.time_message(self._start_ns + cycle * self._cycle_ns)
+        return convert.time_message(self._stamps.at(cycle))
 
     def _publish_block(self, block: CycleBlock) -> None:
-        self._block_publisher.publish(convert.block_to_message(block, self.stamp(block.first_cycle)))
+        self._block_publisher.publish(encode_block(block, self._stamps))
         self._heartbeat_at = time.monotonic()
 
     def _publish_records(self) -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.schemas import DIVIDER, Field, full_name, load_schema, parse_schema, schema_text, short_name
+from cnc_ptp.wire.schemas import DIVIDER, Field, full_name, load_schema, parse_schema, schema_text, short_name
 
 
 def test_names():

@@ -12,8 +12,8 @@ from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import CommandRecord, Event
-from cnc_ptp.recording.layout import Header, Layout, encode, fixed_layout, header_at, zero
-from cnc_ptp.recording.schemas import load_schema, parse_schema
+from cnc_ptp.wire.layout import Header, Layout, encode, fixed_layout, header_at, zero
+from cnc_ptp.wire.schemas import load_schema, parse_schema
 
 STATE_TYPES = ["AxisState", "SpindleState", "ChannelState"]
 BLOCK_TYPES = {

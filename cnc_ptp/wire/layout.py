@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.recording.schemas import PRIMITIVES, Field, Schema, full_name
+from cnc_ptp.wire.schemas import PRIMITIVES, Field, Schema, full_name
 
 Records = npt.NDArray[np.void]
 Bytes = npt.NDArray[np.uint8]

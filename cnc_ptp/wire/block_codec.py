@@ -1,0 +1,186 @@
+"""Blocks of units as messages (CDR) and back: what goes over a topic is what a recording holds.
+
+Blocks are numbers of a shape that seldom changes: they are packed by a form, found once for each shape. Blocks that
+carry commands, requests or refusals are encoded field by field.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable, Hashable
+from typing import Any
+
+from mcap.records import Schema as McapSchema
+from mcap_ros2.decoder import DecoderFactory
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.protocol.blocks import (
+    AxisBlock,
+    ChannelBlock,
+    Command,
+    CycleBlock,
+    HandshakeRequest,
+    PlcBlock,
+    Refusal,
+    SpindleBlock,
+)
+from cnc_ptp.wire.form import Form
+from cnc_ptp.wire.layout import NOT_ENCODED, Layout, encode, header_at
+from cnc_ptp.wire.schemas import PRIMITIVES, load_schema
+from cnc_ptp.wire.stamps import Stamps
+
+HEAD = struct.Struct("<4xiIIx3xQI")
+"""Encapsulation, stamp, length of the empty frame_id, first cycle, count: the begin of every block."""
+FORMS_KEPT = 1000
+
+_SHAPES: dict[type, Callable[[Any], Hashable]] = {
+    PlcBlock: lambda block: None if block.commands else True,
+    AxisBlock: lambda block: (block.count, block.master),
+    SpindleBlock: lambda block: (
+        None if block.commands or block.refused else (block.count, block.master, block.master_wanted, block.source)
+    ),
+    ChannelBlock: lambda block: (
+        None if block.commands or block.requests else (block.count, *block.axes, len(block.set_position))
+    ),
+}
+"""By class: what blocks with the same form have in common; None for a block without one."""
+
+_NESTED: dict[str, Callable[[Any], Any]] = {
+    "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
+    "refused": lambda text: Refusal.decode(text),
+    "requests": lambda sent: HandshakeRequest(
+        **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}
+    ),
+}
+"""Elements of sequences that are more than numbers: as a message has them -> as a block has them."""
+
+
+class BlockCodec:
+    """Encodes and decodes the blocks of one class."""
+
+    def __init__(self, block_class: Any) -> None:
+        self._class = block_class
+        self.schema = load_schema(f"cnc_ptp/msg/{block_class.__name__}")
+        text = McapSchema(0, self.schema.text.encode(), "ros2msg", self.schema.name)
+        self._decode: Any = DecoderFactory().decoder_for("cdr", text)
+        self._shape = _SHAPES[block_class]
+        self._forms: dict[Hashable, Form] = {}
+        self._of_words: dict[int, Form] = {}
+        """By size in words of four bytes: DDS fills the last one up."""
+
+    def encode(self, block: Any, stamps: Stamps) -> bytes:
+        """CDR of a block. Raises CncError 26006 when a column holds another number of values than the block has cycles,
+        or a value is beyond the range of its field."""
+        header = header_at(stamps.at(block.first_cycle))
+        shape = self._shape(block)
+        if shape is None:
+            self._require_columns(block)
+            fields = {field.name: getattr(block, field.name, header) for field in self.schema.fields}
+            if isinstance(block, SpindleBlock):
+                fields["refused"] = [refusal.encode() for refusal in block.refused]
+            return encode(self.schema, fields, stamps.header_of)
+        try:
+            return (self._forms.get(shape) or self._new_form(shape, block)).pack(block, header)
+        except (struct.error, TypeError) as error:
+            self._require_columns(block)
+            raise misfit(block, str(error)) from error
+
+    def decode(self, data: bytes) -> Any:
+        """The block of a message."""
+        form = self._of_words.get(words(len(data)))
+        fields = form.unpack(data) if form else None
+        if fields is None:
+            block = self._class(**self._fields(self._decode(data)))
+            self._learn(block)
+            return block
+        return self._class(**fields)
+
+    def layout(self, data: bytes) -> Layout:
+        """Where the numbers of a message lie; the same object for messages of the same form."""
+        form = self._of_words.get(words(len(data)))
+        if form is not None and form.fits(data):
+            return form.layout
+        message = self._decode(data)
+        self._require_columns(message)
+        self._learn(self._class(**self._fields(message)))
+        form = self._of_words.get(words(len(data)))
+        return form.layout if form is not None and form.fits(data) else Layout(self.schema, message)
+
+    def _fields(self, message: Any) -> dict[str, Any]:
+        fields = {field.name: getattr(message, field.name) for field in self.schema.fields if field.name != "header"}
+        for field in self.schema.fields:
+            if field.name in _NESTED:
+                fields[field.name] = [_NESTED[field.name](element) for element in fields[field.name]]
+            elif field.length is not None:
+                fields[field.name] = list(fields[field.name])
+        return fields
+
+    def _learn(self, block: Any) -> None:
+        """Keeps the form of a block that has come, if it has one."""
+        shape = self._shape(block)
+        if shape is not None and not self._wrong_column(block):
+            form = self._forms.get(shape) or self._new_form(shape, block)
+            self._of_words[words(form.size)] = form
+
+    def _new_form(self, shape: Hashable, block: Any) -> Form:
+        self._require_columns(block)
+        if len(self._forms) >= FORMS_KEPT:
+            self._forms.clear()
+            self._of_words.clear()
+        form = self._forms[shape] = Form(self.schema, block)
+        self._of_words[words(form.size)] = form
+        return form
+
+    def _require_columns(self, block: Any) -> None:
+        if name := self._wrong_column(block):
+            raise misfit(block, f"{name} holds {len(getattr(block, name))} values")
+
+    def _wrong_column(self, block: Any) -> str:
+        """The first column that does not hold `count` values, or not as many setpoints as the first one."""
+        setpoints = len(block.set_position) if self._class is ChannelBlock else block.count
+        for field in self.schema.fields:
+            if field.length is not None and field.type in PRIMITIVES:
+                expected = setpoints if field.name.startswith("set_") else block.count
+                if len(getattr(block, field.name)) != expected:
+                    return field.name
+        return ""
+
+
+def words(size: int) -> int:
+    return (size + 3) // 4
+
+
+_CODECS: dict[type, BlockCodec] = {}
+
+
+def codec_of(block_class: type) -> BlockCodec:
+    codec = _CODECS.get(block_class)
+    if codec is None:
+        codec = _CODECS[block_class] = BlockCodec(block_class)
+    return codec
+
+
+def encode_block(block: CycleBlock, stamps: Stamps) -> bytes:
+    """CDR of a block with the stamp of its first cycle. Raises CncError 26006 for one that does not fit its message."""
+    return codec_of(type(block)).encode(block, stamps)
+
+
+def head_of(data: bytes) -> tuple[int, int, int]:
+    """Stamp in ns, first cycle and count of a block's message whose header has no frame_id, as all of ours."""
+    seconds, nanoseconds, _empty, first_cycle, count = HEAD.unpack_from(data)
+    return seconds * 1_000_000_000 + nanoseconds, first_cycle, count
+
+
+def has_plain_header(data: bytes) -> bool:
+    """False for a message of somebody who has given its header a frame_id."""
+    return bool(HEAD.unpack_from(data)[2] == 1)
+
+
+def misfit(block: Any, reason: str) -> CncError:
+    return CncError(
+        NOT_ENCODED,
+        f"recording: {type(block).__name__} with first cycle {block.first_cycle}, count {block.count} does not fit its "
+        f"message: {reason}",
+        "it was not recorded",
+    )
