@@ -87,6 +87,12 @@ class BlockGate:
             missing += [name for name in self._feedback if before not in self._blocks[name]]
         return missing
 
+    def waits_for_more(self) -> bool:
+        """Something of the next tick has come, and something is missing."""
+        if self._closed or self._open is not None:
+            return not self._closed
+        return (bool(self._ticks) or any(self._blocks[name] for name in self._upstream)) and bool(self.missing())
+
     def skipped(self) -> list[str]:
         """Of the missing sources, those that have sent a later block already: the needed one is lost."""
         if self._open is not None:

@@ -7,18 +7,20 @@ import time
 from collections.abc import Iterable
 
 import click
-from rclpy.node import Node
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
+from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.number_range import DURATION
 from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.ticks import encode_tick
 
 POLL = 0.02
@@ -30,7 +32,7 @@ FAREWELL = 0.3
 """Seconds between the last tick and the end of the clock, so that the last messages arrive."""
 
 
-class ClockNode(Node):
+class ClockNode(PollingNode):
     """The clock of the graph.
 
     Publishes /clock/tick (CycleTick). Subscriptions: /clock/report, /heartbeat (BlockReport), /plc/block (PlcBlock, for
@@ -72,7 +74,7 @@ class ClockNode(Node):
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, REPORT, self._on_report, BLOCKS)
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
-        self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+        self._plc = self.poll(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
 
     @property
     def done(self) -> bool:
@@ -86,6 +88,7 @@ class ClockNode(Node):
 
     def advance(self) -> None:
         """Issues the ticks that are due."""
+        self.take_polled()
         if self._ended_at is not None:
             return
         if self._started_at is None:
@@ -167,8 +170,8 @@ class ClockNode(Node):
         self._reporting -= silent
         self._open -= silent
 
-    def _on_plc(self, message: msg.PlcBlock) -> None:
-        if message.run_done:
+    def _on_plc(self, data: bytes) -> None:
+        if codec_of(PlcBlock).decode(data).run_done:
             self._end()
 
     def _end(self) -> None:

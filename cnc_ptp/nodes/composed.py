@@ -52,13 +52,13 @@ def _run(
     )
     nodes: list[Node] = [
         monitor,
-        *unit_nodes(machine, options, recorders=recorders, state_rate=options.state_rate),
+        *unit_nodes(machine, options, recorders=recorders, state_rate=options.state_rate, free_run=True),
         clock,
     ]
     recorder = None
     if options.record:
         machine_yaml = read_file("machine file", options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml)
+        recorder = RecorderNode(machine, options.record, machine_yaml, free_run=True)
         nodes.append(recorder)
     next_show = 0.0
 
@@ -67,6 +67,7 @@ def _run(
         clock.advance()
         if time.monotonic() >= next_show:
             next_show = time.monotonic() + 0.05
+            monitor.take_polled()
             show(monitor)
 
     def done() -> bool:

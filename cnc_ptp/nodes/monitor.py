@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.node import Node
 from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
@@ -13,6 +13,7 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
+from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
@@ -27,16 +28,17 @@ from cnc_ptp.nodes.topics import (
 )
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.parameters import MachineParameters
-from cnc_ptp.protocol.blocks import Severity
+from cnc_ptp.protocol.blocks import ChannelBlock, PlcBlock, Severity
 from cnc_ptp.protocol.notes import Note, Notes, error_text
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.protocol.unit_view import UnitView
+from cnc_ptp.wire.block_codec import codec_of
 
 SUPERVISOR = "supervisor"
 """Source of events about node processes, which the supervisor prints itself."""
 
 
-class RunMonitor(Node):
+class RunMonitor(PollingNode):
     """Subscriptions: /<channel>/block, /plc/block, /events, /commands, /diagnostics, /lateness.
 
     With `watch_units` the blocks of all units as well.
@@ -65,8 +67,8 @@ class RunMonitor(Node):
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         for channel, program in self.programs.items():
-            self._need(msg.ChannelBlock, block_topic(channel), program.add)
-        self._need(msg.PlcBlock, block_topic(PLC), self._on_plc)
+            self._need(ChannelBlock, msg.ChannelBlock, channel, program.add)
+        self._need(PlcBlock, msg.PlcBlock, PLC, self._on_plc)
         self.create_subscription(msg.Event, EVENT, self._on_event, EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._on_command, EVENTS)
         self.create_subscription(DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, PLC_INPUT)
@@ -77,8 +79,12 @@ class RunMonitor(Node):
         """The PLC knows of a fault one block later, and that block may no longer come."""
         return self._plc_knows_failure or self._last_fault >= self._plc_block
 
-    def _need(self, block_type: Any, topic: str, received: Any) -> None:
-        self._needed.append(self.create_subscription(block_type, topic, received, BLOCKS))
+    def _need(self, block_class: type, message_type: Any, unit: str, received: Callable[[Any], None]) -> None:
+        """Blocks that come when `take_polled` is called, many times per second."""
+        codec = codec_of(block_class)
+        self._needed.append(
+            self.poll(message_type, block_topic(unit), lambda data: received(codec.decode(data)), BLOCKS)
+        )
 
     def _report_ready(self) -> None:
         if self.cycle:
@@ -129,7 +135,7 @@ class RunMonitor(Node):
             total.merge(histogram)
         return total
 
-    def _on_plc(self, message: msg.PlcBlock) -> None:
+    def _on_plc(self, message: PlcBlock) -> None:
         self.cycle = max(self.cycle, message.first_cycle + message.count)
         self.run_done, self._plc_knows_failure = message.run_done, message.run_failed
         self._plc_block = message.first_cycle

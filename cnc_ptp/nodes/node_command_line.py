@@ -24,6 +24,8 @@ STATE_RATE = click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second, instead of P-MACH-00070."
 )
 
+FREE_RUN = click.option("--free-run", is_flag=True, help="The clock runs free: every message wakes the node.")
+
 
 def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter) -> Callable[[], None]:
     """The `main` of the node of one unit: `<executable> MACHINE.yaml NAME`, with `more` options for its class."""
@@ -33,13 +35,14 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @NAME
     @RECORDERS
     @STATE_RATE
+    @FREE_RUN
     def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
             node = node_class(read_machine(machine), name, **options)
             node.setup()
             return node
 
-        sys.exit(process.run_node(make, name=name))
+        sys.exit(process.run_unit(make, name=name))
 
     command.params.extend(more)
     return lambda: call(command)

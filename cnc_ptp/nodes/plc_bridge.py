@@ -248,9 +248,8 @@ def without_text(entry: Entry) -> Entry:
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
 @node_command_line.RECORDERS
 @node_command_line.STATE_RATE
-def command(
-    machine: str, program: str | None, scenario: str | None, stay: bool, recorders: int, state_rate: float | None
-) -> None:
+@node_command_line.FREE_RUN
+def command(machine: str, program: str | None, scenario: str | None, stay: bool, **options: Any) -> None:
     """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
 
     def make() -> PlcBridgeNode:
@@ -259,13 +258,12 @@ def command(
             parameters,
             scenario=read_entries(parameters, program=program, scenario=scenario),
             end_when_idle=not stay,
-            recorders=recorders,
-            state_rate=state_rate,
+            **options,
         )
         node.setup()
         return node
 
-    sys.exit(process.run_node(make, name=PLC))
+    sys.exit(process.run_unit(make, name=PLC))
 
 
 def main() -> None:

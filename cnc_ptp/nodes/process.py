@@ -155,6 +155,11 @@ def spin(
         rclpy.try_shutdown()
 
 
+def run_unit(make: Callable[[], Any], *, name: str) -> int:
+    """As run_node, for the node of a unit."""
+    return run_node(make, name=name, wait=lambda node: node.wait_time(), after=lambda node: node.after_wait())
+
+
 def run_node(
     make: Callable[[], Any],
     *,

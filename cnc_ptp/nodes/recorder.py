@@ -13,9 +13,9 @@ from typing import Any
 import click
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.msg import Log
-from rclpy.node import Node
 from rclpy.qos import qos_profile_rosout_default
 from rclpy.serialization import deserialize_message
+from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -24,6 +24,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
+from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
@@ -50,10 +51,11 @@ NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
 QUIET = 0.2
 """Seconds without a message after which a recorder that is to end has seen everything."""
-FLUSH_PERIOD = 0.25
+LOOK_PERIOD = 0.05
+"""Seconds between two looks for ticks and blocks."""
 
 
-class RecorderNode(Node):
+class RecorderNode(PollingNode):
     """Writes the recording of a run.
 
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
@@ -63,7 +65,8 @@ class RecorderNode(Node):
     arrive. A block that comes twice is recorded once.
     """
 
-    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str) -> None:
+    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
+        """`free_run`: every tick and block wakes the node; otherwise it looks for them."""
         super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
         self._machine_yaml = machine_yaml
@@ -81,11 +84,11 @@ class RecorderNode(Node):
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
         """The error that ended the writing."""
-        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._guarded(self._on_tick), BLOCKS, raw=True)]
+        self._wakes_for_all = free_run
+        self._needed = [self._subscribe(msg.CycleTick, TICK, self._on_tick)]
         for unit, kind in self._units.items():
-            block_type = BLOCK_TYPES[kind]
-            received = self._guarded(partial(self._on_block, unit, BLOCK_CLASSES[kind]))
-            self._needed.append(self.create_subscription(block_type, block_topic(unit), received, BLOCKS, raw=True))
+            take = partial(self._on_block, unit, BLOCK_CLASSES[kind])
+            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(unit), take))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
         for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
@@ -97,7 +100,13 @@ class RecorderNode(Node):
         received = self._guarded(self._on_log)
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
-        self.create_timer(FLUSH_PERIOD, self._guarded(self._flush))
+        self.create_timer(LOOK_PERIOD, self._guarded(self._look))
+
+    def _subscribe(self, message_type: Any, topic: str, received: Callable[[bytes], None]) -> Subscription[Any]:
+        received = self._guarded(received)
+        if self._wakes_for_all:
+            return self.create_subscription(message_type, topic, received, BLOCKS, raw=True)
+        return self.poll(message_type, topic, received, BLOCKS)
 
     def _guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """The callback, whose CncError ends the node."""
@@ -212,7 +221,9 @@ class RecorderNode(Node):
         assert self._recording is not None
         return self._recording
 
-    def _flush(self) -> None:
+    def _look(self) -> None:
+        """Takes the ticks and blocks that have come, and writes when it is time."""
+        self.take_polled()
         if self._recording is not None:
             self._recording.flush_if_due(time.monotonic())
 
@@ -239,11 +250,12 @@ def _namespace(logger: str) -> str:
 @click.command()
 @node_command_line.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
-def command(machine: str, output: str) -> None:
+@node_command_line.FREE_RUN
+def command(machine: str, output: str, free_run: bool) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, read_file("machine file", machine))
+        return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -102,13 +102,17 @@ class Supervisor:
         self._started_at = time.monotonic()
         try:
             self._start_all()
-            process.spin([monitor], done=self._over, wait=lambda: POLL, after=lambda: self._show(monitor))
+            process.spin([monitor], done=self._over, wait=lambda: POLL, after=self._look)
         finally:
             self._end_all()
             self._close_recording()
             for number, handler in previous.items():
                 signal.signal(number, handler)
         return monitor
+
+    def _look(self) -> None:
+        self._monitor.take_polled()
+        self._show(self._monitor)
 
     # processes
 
@@ -224,11 +228,12 @@ def command_lines(
     machine: MachineParameters, options: RunOptions, observers: Iterable[str]
 ) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
-    units = ["--recorders", "1"] if options.record else []
-    units += ["--state-rate", str(options.state_rate)] if options.state_rate is not None else []
+    free_run = ["--free-run"] if options.free_run else []
+    units = [*free_run, "--recorders", "1"] if options.record else free_run
+    units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     if options.record:
-        yield RECORDER, ["recorder", options.machine, options.record]
+        yield RECORDER, ["recorder", options.machine, options.record, *free_run]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if name == next(iter(machine.channels), None) else []
@@ -238,7 +243,6 @@ def command_lines(
     yield PLC, ["plc_bridge", options.machine, *program, *scenario, *stay, *units]
     duration = ["--duration", str(options.duration)] if options.duration is not None else []
     wait_for = [word for name in observers for word in ("--wait-for", name)]
-    free_run = ["--free-run"] if options.free_run else []
     yield CLOCK, ["clock", options.machine, *duration, *free_run, *wait_for]
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.node import Node
+from rclpy.subscription import Subscription
+from rclpy.timer import Timer
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
@@ -21,6 +22,7 @@ from cnc_ptp.machine.runner import CLOCK, UnitRunner
 from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
@@ -58,12 +60,16 @@ MACHINE = "machine"
 BLOCK_SKIPPED = 26102
 CAME_TWICE = 26142
 TOO_LATE = 26116
+SOON = 0.0005
+"""Seconds between two looks of a node that waits for the rest of a block."""
+LOOK_PERIOD = 0.005
+"""Seconds between two looks of a node that has lost a source."""
 LONGEST_COMMAND = 2.0
 """Seconds that a command or block may take; after that the node counts as silent."""
 DIAGNOSTICS_PERIOD = 1.0
 
 
-class UnitNode(Node):
+class UnitNode(PollingNode):
     """Runs one unit of the machine as a ROS node of the unit's name.
 
     Subscriptions: /clock/tick (CycleTick), /heartbeat (BlockReport), /<unit>/block of every upstream and feedback unit
@@ -75,12 +81,19 @@ class UnitNode(Node):
     """
 
     def __init__(
-        self, machine: MachineParameters, unit: Unit, *, recorders: int = 0, state_rate: float | None = None
+        self,
+        machine: MachineParameters,
+        unit: Unit,
+        *,
+        recorders: int = 0,
+        state_rate: float | None = None,
+        free_run: bool = False,
     ) -> None:
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
-        states per second, None = as the machine file says.
+        states per second, None = as the machine file says. `free_run`: every message wakes the node, not only the last
+        one of a block.
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
@@ -100,6 +113,8 @@ class UnitNode(Node):
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
         self._masters: dict[str, Any] = {}
+        self._looking: Timer | None = None
+        self._wakes_for_all = free_run
         self._running = False
         self.paced = False
         """The clock runs in real time."""
@@ -154,13 +169,21 @@ class UnitNode(Node):
             self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
 
     def _make_subscriptions(self) -> None:
-        self._needed = [self.create_subscription(msg.CycleTick, TICK, self._on_tick, BLOCKS, raw=True)]
+        """The last source of a block wakes the node, which then looks for those of the others."""
+        last = self._inputs.upstream[-1] if self._inputs.upstream else CLOCK
+        self._needed = [self._subscribe(msg.CycleTick, TICK, self._take_tick, wakes=last == CLOCK)]
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         for source in self._gate.sources:
             kind = self._kinds[source]
-            received = partial(self._on_block, source, codec_of(BLOCK_CLASSES[kind]))
-            topic = block_topic(source)
-            self._needed.append(self.create_subscription(BLOCK_TYPES[kind], topic, received, BLOCKS, raw=True))
+            take = partial(self._take_block, source, codec_of(BLOCK_CLASSES[kind]))
+            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(source), take, wakes=source == last))
+
+    def _subscribe(
+        self, message_type: Any, topic: str, take: Callable[[bytes], None], *, wakes: bool
+    ) -> Subscription[Any]:
+        if wakes or self._wakes_for_all:
+            return self.create_subscription(message_type, topic, partial(self._on_message, take), BLOCKS, raw=True)
+        return self.poll(message_type, topic, take, BLOCKS)
 
     def set_parameters_atomically(self, parameter_list: Any) -> Any:
         """Refuses: all parameters are read-only; some with a special reason."""
@@ -183,7 +206,26 @@ class UnitNode(Node):
 
     # what arrives
 
-    def _on_tick(self, data: bytes) -> None:
+    def _on_message(self, take: Callable[[bytes], None], data: bytes) -> None:
+        """A message that wakes the node."""
+        take(data)
+        self.look()
+
+    def look(self) -> None:
+        """Takes what has come without waking the node, and computes what can be computed."""
+        self.take_polled()
+        self._compute_ready_blocks()
+        self._end_if_over()
+
+    def wait_time(self) -> float:
+        """Seconds until the node looks by itself: it was woken, and another message of the block is still to come."""
+        return SOON if not self._wakes_for_all and self._gate.waits_for_more() else process.SPIN_TIMEOUT
+
+    def after_wait(self) -> None:
+        if not self._wakes_for_all and self._gate.waits_for_more():
+            self.look()
+
+    def _take_tick(self, data: bytes) -> None:
         if self._alone:
             return
         message = decode_tick(data)
@@ -205,10 +247,8 @@ class UnitNode(Node):
         if not self._gate.add_tick(CycleTick(message.first_cycle, message.count)):
             self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
         self._tell_twice(CLOCK, message.first_cycle, before)
-        self._compute_ready_blocks()
-        self._end_if_over()
 
-    def _on_block(self, source: str, codec: BlockCodec, data: bytes) -> None:
+    def _take_block(self, source: str, codec: BlockCodec, data: bytes) -> None:
         self._watchdog.heard(source)
         block = codec.decode(data)
         if isinstance(block, PlcBlock):
@@ -216,7 +256,6 @@ class UnitNode(Node):
         before = self._gate.duplicates
         self._gate.add_block(source, block)
         self._tell_twice(source, block.first_cycle, before)
-        self._compute_ready_blocks()
 
     def _tell_twice(self, source: str, cycle: int, before: int) -> None:
         """An event for each source of which more came twice than `before`: perhaps two nodes have the same unit."""
@@ -358,6 +397,7 @@ class UnitNode(Node):
 
     def _watch(self) -> None:
         """Reports that this node is alive while it waits, and drops sources silent for the watchdog time."""
+        self.look()
         if self._watchdog.was_suspended() or self._gate.closed or not self._running:
             self._watchdog.restart()
             return
@@ -376,6 +416,8 @@ class UnitNode(Node):
             self.diagnostics.lost_blocks += 1
             self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
+        if not self._wakes_for_all and not self._looking:
+            self._looking = self.create_timer(LOOK_PERIOD, self.look)  # what has woken this node may be what is lost
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
         if source == CLOCK:
             self._alone = True
