@@ -138,8 +138,12 @@ class Watch:
 
     def _find_processes(self) -> dict[str, psutil.Process]:
         own = psutil.Process()
-        nodes = [child for child in own.children() if "cnc_ptp.nodes" in " ".join(child.cmdline())]
-        return {node_name(child.cmdline()): child for child in nodes} | {self._own: own}
+        nodes = [child for child in own.children(recursive=True) if "cnc_ptp.nodes" in " ".join(child.cmdline())]
+        return {node_name(words_of(child)): child for child in nodes} | {self._own: own}
+
+
+def words_of(process: psutil.Process) -> list[str]:
+    return " ".join(process.cmdline()).split()
 
 
 def process_seconds(process: psutil.Process) -> float:

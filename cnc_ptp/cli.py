@@ -95,6 +95,10 @@ def simulate_command(**options: Any) -> None:
 )
 def run_command(**options: Any) -> None:
     """Run a machine as a ROS graph, one process per node."""
+    if not options["composed"]:
+        from cnc_ptp.nodes.forked import start_server
+
+        start_server()  # first: it imports for all nodes, which takes as long as what comes now
     from cnc_ptp.commands.run.run import run
 
     if options["stay"] and options["duration"] is not None:

@@ -8,7 +8,6 @@ from math import floor
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
 from cnc_ptp.axis.coupling import Coupling
 from cnc_ptp.axis.faults import BAD_CAM_TABLE, CAM_POSITION
@@ -70,6 +69,8 @@ def _cyclic_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 
     The deviation from the mean slope is periodic.
     """
+    from scipy.interpolate import CubicSpline  # takes longer to load than all else, and few need it
+
     slope = (y[-1] - y[0]) / (x[-1] - x[0])
     rest = y - y[0] - slope * (x - x[0])
     rest[-1] = rest[0]
@@ -85,6 +86,8 @@ def _single_pieces(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     Slope and curvature 0 at both ends are two conditions more than a cubic spline can meet; an additional knot in the
     middle of the first and of the last interval makes room for them.
     """
+    from scipy.interpolate import PPoly, make_interp_spline  # takes longer to load than all else, and few need it
+
     middles = 0.5 * (x[[0, -2]] + x[[1, -1]])
     knots = np.concatenate([[x[0]] * 4, np.sort(np.concatenate([x[1:-1], middles])), [x[-1]] * 4])
     ends = [(1, 0.0), (2, 0.0)]

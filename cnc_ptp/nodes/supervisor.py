@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing.process import BaseProcess
 from typing import Any
 
 import rclpy
@@ -22,6 +20,7 @@ from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
+from cnc_ptp.nodes.forked import start_node, start_server
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
@@ -39,8 +38,6 @@ START_TIMEOUT = 60.0
 STOP_TIMEOUT = 15.0
 """Seconds for all ramps after a fault or an interrupt."""
 END_TIMEOUT = 5.0
-LIBC = ctypes.CDLL(None)
-"""Loaded here: between fork and exec, while other threads may hold the loader's lock, nothing may be loaded."""
 MODULES = {"axis": "axis", "spindle": "spindle", "channel": "nc_channel", "plc": "plc_bridge"}
 
 
@@ -77,7 +74,7 @@ class Supervisor:
         self._options = options
         self._show = show
         self._watched = watched or options.stay
-        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+        self._processes: dict[str, BaseProcess] = {}
         self._stop_deadline: float | None = None
         self._settled_at = 0.0
         self._dead: set[str] = set()
@@ -87,6 +84,7 @@ class Supervisor:
 
     def run(self) -> RunMonitor:
         """Runs it to its end; `failures` then lists what went wrong with processes."""
+        start_server()
         with only_run(self._options):
             return self._run()
 
@@ -118,16 +116,11 @@ class Supervisor:
 
     def _start_all(self) -> None:
         for name, arguments in command_lines(self._machine, self._options, observers_of(self._options)):
-            self._processes[name] = subprocess.Popen(
-                [sys.executable, "-m", f"cnc_ptp.nodes.{arguments[0]}", *arguments[1:], *ros_arguments().words],
-                stdin=subprocess.DEVNULL,
-                start_new_session=True,
-                preexec_fn=die_with_parent,
-            )
+            self._processes[name] = start_node(arguments[0], [*arguments[1:], *ros_arguments().words])
 
     def _over(self) -> bool:
         """True when the run has come to its end, in order or after a fault."""
-        if self._processes[CLOCK].poll() == 0:
+        if self._processes[CLOCK].exitcode == 0:
             return True
         self._note_interrupt()
         self._note_deaths()
@@ -135,7 +128,7 @@ class Supervisor:
             return self._not_started_in_time()
         if not self._monitor.cycle:
             return True
-        living = [name for name in self._moving_units if self._processes[name].poll() is None]
+        living = [name for name in self._moving_units if self._processes[name].exitcode is None]
         standing = self._monitor.standing
         settled = time.monotonic() > self._settled_at and all(standing.get(name, True) for name in living)
         return settled or time.monotonic() > self._stop_deadline
@@ -154,7 +147,7 @@ class Supervisor:
 
     def _note_deaths(self) -> None:
         for name, child in self._processes.items():
-            status = child.poll()
+            status = child.exitcode
             if status is None or name in self._dead or (name == CLOCK and status == 0):
                 continue
             self._dead.add(name)
@@ -202,20 +195,19 @@ class Supervisor:
         recorder = [child for name, child in self._processes.items() if name == RECORDER]
         for group in (others, recorder):
             for child in group:
-                if child.poll() is None:
+                if child.exitcode is None:
                     child.terminate()  # SIGINT would be a KeyboardInterrupt while Python still starts
             deadline = time.monotonic() + END_TIMEOUT
             for child in group:
-                try:
-                    child.wait(max(0.0, deadline - time.monotonic()))
-                except subprocess.TimeoutExpired:
+                child.join(max(0.0, deadline - time.monotonic()))
+                if child.exitcode is None:
                     child.kill()
-                    child.wait()
+                    child.join()
 
     def _close_recording(self) -> None:
         """Closes the recording of a recorder that was killed, so that every reader opens it."""
         recorder = self._processes.get(RECORDER)
-        closed = recorder is None or recorder.returncode in (0, process.SIGNALLED + signal.SIGTERM)
+        closed = recorder is None or recorder.exitcode in (0, process.SIGNALLED + signal.SIGTERM)
         if self._options.record is None or closed or not self._monitor.cycle:
             return
         try:
@@ -265,11 +257,6 @@ def only_run(options: RunOptions) -> Iterator[None]:
 def observers_of(options: RunOptions) -> list[str]:
     """Nodes besides the units that the clock waits for."""
     return [MONITOR, *([RECORDER] if options.record else [])]
-
-
-def die_with_parent() -> None:
-    """In the child: the kernel sends SIGTERM when the supervisor dies, however it dies (PR_SET_PDEATHSIG)."""
-    LIBC.prctl(1, signal.SIGTERM)
 
 
 def how_ended(status: int) -> str:

@@ -153,15 +153,19 @@ class Running:
             self.process.wait()
 
 
+def parent_of(pid):
+    return int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
+
+
 def nodes_of(parent):
-    """Node processes of a supervisor: module (and unit) -> pid."""
+    """Node processes of a supervisor, forked by a server of its own: module (and unit) -> pid."""
     found = {}
     for entry in Path("/proc").iterdir():
         if not entry.name.isdigit():
             continue
         try:
-            words = (entry / "cmdline").read_bytes().decode().split("\0")
-            ppid = int((entry / "stat").read_text().rsplit(")", 1)[1].split()[1])
+            words = (entry / "cmdline").read_bytes().decode().replace("\0", " ").split()
+            ppid = parent_of(parent_of(int(entry.name)))
         except (OSError, ValueError):
             continue
         modules = [word.removeprefix("cnc_ptp.nodes.") for word in words if word.startswith("cnc_ptp.nodes.")]

@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from cnc_ptp.parameters.view.control_view import PlantParameters
 from cnc_ptp.parameters.view.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
@@ -63,6 +62,8 @@ def transition(plant: PlantParameters, *, gain: float, duration: float) -> Trans
 
 def changes(plant: PlantParameters, gain: float, duration: float, *, stands: bool) -> tuple[Matrix, Matrix]:
     """How the states change in a step: free, and at the torque limit."""
+    from scipy.linalg import expm  # takes longer to load than all else, and few need it
+
     free, held = (
         expm(velocity_controlled(plant, gain=gain, held=held, stands=stands) * duration) - np.eye(7)
         for held in (False, True)
