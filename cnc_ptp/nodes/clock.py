@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterable
+from typing import Any
 
 import click
 
@@ -13,7 +14,8 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
-from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
 from cnc_ptp.nodes.watchdog import Watchdog
 from cnc_ptp.number_range import DURATION
@@ -21,9 +23,11 @@ from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import PlcBlock
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.wire.block_codec import codec_of
-from cnc_ptp.wire.ticks import encode_tick
+from cnc_ptp.wire.ticks import Tick, encode_tick
 
 POLL = 0.02
+SLICE = 0.005
+"""Seconds of a free run in one process between two turns of the executor."""
 START_DELAY = 0.1
 """Seconds between the last ready node and the first tick: writers and readers find each other in both directions."""
 SECOND_CLOCK = 26109
@@ -51,8 +55,12 @@ class ClockNode(PollingNode):
         wait_for: Iterable[str] = (),
         free_run: bool = False,
         cycles: int | None = None,
+        handover: Handover | None = None,
     ) -> None:
-        """`wait_for`: nodes besides the units that must be ready first. `cycles`: None = the PLC ends the run."""
+        """`wait_for`: nodes besides the units that must be ready first. `cycles`: None = the PLC ends the run.
+
+        `handover`: to and from the other nodes of this process.
+        """
         super().__init__(CLOCK, enable_rosout=False)
         self._units = {*unit_kinds(machine)}
         self._expected = {*self._units, *wait_for}
@@ -74,7 +82,14 @@ class ClockNode(PollingNode):
         self._heartbeat_publisher = self.create_publisher(msg.BlockReport, HEARTBEAT, BLOCKS)
         self.create_subscription(msg.BlockReport, REPORT, self._on_report, BLOCKS)
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
-        self._plc = self.poll(msg.PlcBlock, block_topic(PLC), self._on_plc, BLOCKS)
+        self._handover = handover
+        self._plc = None
+        if handover is None:
+            self._plc = self.poll(
+                msg.PlcBlock, block_topic(PLC), chain(codec_of(PlcBlock).decode, self._on_plc), BLOCKS
+            )
+        else:
+            handover.on_block(PLC, self._on_plc)
 
     @property
     def done(self) -> bool:
@@ -82,8 +97,10 @@ class ClockNode(PollingNode):
 
     def wait_time(self) -> float:
         """Seconds until there is something to do without a message."""
-        if self._started_at is None or self._ended_at is not None or self._free_run:
+        if self._started_at is None or self._ended_at is not None:
             return POLL
+        if self._free_run:
+            return POLL if self._handover is None else 0.0
         return max(0.0, self._due_at() - time.monotonic())
 
     def advance(self) -> None:
@@ -95,6 +112,8 @@ class ClockNode(PollingNode):
             self._start_when_ready()
         elif time.monotonic() < self._started_at:
             return
+        elif self._free_run and self._handover is not None:
+            self._run_freely(self._handover)
         elif self._free_run:
             self._drop_silent_nodes()
             if not self._open:
@@ -105,6 +124,14 @@ class ClockNode(PollingNode):
             while self._ended_at is None and time.monotonic() >= self._due_at():
                 self._tick(int(self._due_at() * 1e9))
 
+    def _run_freely(self, handover: Handover) -> None:
+        """Ticks for a while; then the executor has its turn."""
+        end = time.monotonic() + SLICE
+        while self._ended_at is None and time.monotonic() < end:
+            if not handover.has_computed(self._first_cycle - self._count):
+                return
+            self._tick(0)
+
     def _due_at(self) -> float:
         return (self._started_at or 0.0) + self._first_cycle // self._count * self._block_time
 
@@ -114,7 +141,9 @@ class ClockNode(PollingNode):
         if self.count_publishers(self._publisher.topic_name) > 1:
             raise CncError(SECOND_CLOCK, "another clock is on this ROS domain", "this one ends, nothing was started")
         self._require_one_node_each()
-        if self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR}):
+        if self._plc is None or (
+            self._plc.get_publisher_count() and process.is_read(self, self._publisher, self._expected - {MONITOR})
+        ):
             if not self._free_run:
                 process.take_priority()
             self._start_ns = time.time_ns() + round(START_DELAY * 1e9)
@@ -142,7 +171,10 @@ class ClockNode(PollingNode):
 
     def _publish_tick(self, count: int, scheduled_ns: int) -> None:
         stamp_ns = self._start_ns + self._first_cycle * self._cycle_ns
-        self._publisher.publish(encode_tick(self._first_cycle, count, scheduled_ns, stamp_ns))
+        if self._handover is None or self._publisher.get_subscription_count():
+            self._publisher.publish(encode_tick(self._first_cycle, count, scheduled_ns, stamp_ns))
+        if self._handover is not None:
+            self._handover.tick(Tick(self._first_cycle, count, scheduled_ns, stamp_ns))
         self._heartbeat_at = time.monotonic()
 
     def _publish_heartbeat(self) -> None:
@@ -170,8 +202,8 @@ class ClockNode(PollingNode):
         self._reporting -= silent
         self._open -= silent
 
-    def _on_plc(self, data: bytes) -> None:
-        if codec_of(PlcBlock).decode(data).run_done:
+    def _on_plc(self, block: Any) -> None:
+        if block.run_done:
             self._end()
 
     def _end(self) -> None:

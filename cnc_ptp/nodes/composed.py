@@ -16,6 +16,7 @@ from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode
 from cnc_ptp.nodes.clock import ClockNode, cycles_of
+from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.nc_channel import ChannelNode
 from cnc_ptp.nodes.plc_bridge import PlcBridgeNode
@@ -43,22 +44,27 @@ def run_composed(
 def _run(
     machine: MachineParameters, options: RunOptions, show: Callable[[RunMonitor], None], watched: bool = False
 ) -> tuple[RunMonitor, list[str]]:
-    monitor = RunMonitor(machine)
+    handover = Handover()
+    monitor = RunMonitor(machine, handover=handover)
     if watched or options.stay:
         monitor.watch_units()
-    recorders = 1 if options.record else 0
+    recorder = None
+    if options.record:  # before the units: it takes each block first
+        machine_yaml = read_file("machine file", options.machine)
+        recorder = RecorderNode(machine, options.record, machine_yaml, handover=handover)
     clock = ClockNode(
-        machine, wait_for=observers_of(options), free_run=options.free_run, cycles=cycles_of(machine, options.duration)
+        machine,
+        wait_for=observers_of(options),
+        free_run=options.free_run,
+        cycles=cycles_of(machine, options.duration),
+        handover=handover,
     )
     nodes: list[Node] = [
         monitor,
-        *unit_nodes(machine, options, recorders=recorders, state_rate=options.state_rate, free_run=True),
+        *unit_nodes(machine, options, state_rate=options.state_rate, handover=handover),
         clock,
     ]
-    recorder = None
-    if options.record:
-        machine_yaml = read_file("machine file", options.machine)
-        recorder = RecorderNode(machine, options.record, machine_yaml, free_run=True)
+    if recorder is not None:
         nodes.append(recorder)
     next_show = 0.0
 
@@ -67,7 +73,6 @@ def _run(
         clock.advance()
         if time.monotonic() >= next_show:
             next_show = time.monotonic() + 0.05
-            monitor.take_polled()
             show(monitor)
 
     def done() -> bool:

@@ -6,14 +6,14 @@ signal handlers, threads and locks of the process that runs the graph, so that n
 
 from __future__ import annotations
 
-import ctypes
+import fcntl
 import importlib
 import os
 import signal
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from multiprocessing import forkserver, get_context
+from multiprocessing import forkserver, get_context, parent_process
 from multiprocessing.process import BaseProcess
 from types import ModuleType
 
@@ -21,8 +21,6 @@ from setproctitle import setproctitle
 
 PRELOAD = "cnc_ptp.nodes.preload"
 CONTEXT = get_context("forkserver")
-LIBC = ctypes.CDLL(None)
-"""Loaded here: in a process just forked nothing may be loaded before it is told to die with its parent."""
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """Without it NumPy starts threads; nodes have no use for them."""
 
@@ -62,7 +60,7 @@ def without_main_module() -> Iterator[None]:
 def run_node(module: str, words: Sequence[str], environment: Mapping[str, str], folder: str) -> None:
     """In the new process: what `python -m cnc_ptp.nodes.<module> WORDS` does."""
     os.setsid()
-    die_with_parent()
+    end_with_supervisor()
     setproctitle(" ".join(["python -m", f"cnc_ptp.nodes.{module}", *words]))
     os.chdir(folder)
     os.environ.clear()
@@ -71,6 +69,12 @@ def run_node(module: str, words: Sequence[str], environment: Mapping[str, str], 
     importlib.import_module(f"cnc_ptp.nodes.{module}").main()
 
 
-def die_with_parent() -> None:
-    """SIGTERM comes when the server ends, and that ends when the supervisor does, however (PR_SET_PDEATHSIG)."""
-    LIBC.prctl(1, signal.SIGTERM)
+def end_with_supervisor() -> None:
+    """SIGTERM comes when the process that has started this one ends, however: its end of a pipe is closed then."""
+    parent = parent_process()
+    assert parent is not None
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETSIG, signal.SIGTERM)
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+    if not parent.is_alive():  # before the signal was ordered
+        sys.exit(128 + signal.SIGTERM)

@@ -13,7 +13,8 @@ from cnc_ptp.channel.program_report import ProgramReport
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.client.latest_blocks import LatestBlocks
-from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
     BLOCKS,
     COMMAND,
@@ -44,7 +45,8 @@ class RunMonitor(PollingNode):
     With `watch_units` the blocks of all units as well.
     """
 
-    def __init__(self, machine: MachineParameters) -> None:
+    def __init__(self, machine: MachineParameters, *, handover: Handover | None = None) -> None:
+        """`handover`: from the other nodes of this process."""
         super().__init__(MONITOR, enable_rosout=False, start_parameter_services=False)
         self.cycle = 0
         """The last cycle of the run so far."""
@@ -64,6 +66,7 @@ class RunMonitor(PollingNode):
         self._histograms: dict[str, msg.LatenessHistogram] = {}
         self.standing: dict[str, bool] = {}
         self._needed: list[Subscription[Any]] = []
+        self._handover = handover
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         for channel, program in self.programs.items():
@@ -81,10 +84,11 @@ class RunMonitor(PollingNode):
 
     def _need(self, block_class: type, message_type: Any, unit: str, received: Callable[[Any], None]) -> None:
         """Blocks that come when `take_polled` is called, many times per second."""
-        codec = codec_of(block_class)
-        self._needed.append(
-            self.poll(message_type, block_topic(unit), lambda data: received(codec.decode(data)), BLOCKS)
-        )
+        if self._handover is not None:
+            self._handover.on_block(unit, received)
+            return
+        take = chain(codec_of(block_class).decode, received)
+        self._needed.append(self.poll(message_type, block_topic(unit), take, BLOCKS))
 
     def _report_ready(self) -> None:
         if self.cycle:
@@ -102,7 +106,8 @@ class RunMonitor(PollingNode):
     def watch_units(self) -> None:
         """Keeps the newest view of all units from now on."""
         rotary = [name for name, axis in self._machine.axes.items() if axis.rotary]
-        self._latest = LatestBlocks(self, unit_kinds(self._machine), rotary=rotary, from_the_start=True)
+        kinds = unit_kinds(self._machine)
+        self._latest = LatestBlocks(self, kinds, rotary=rotary, from_the_start=True, handover=self._handover)
 
     def views(self) -> list[UnitView]:
         """The newest view of each unit, while they are watched."""

@@ -44,3 +44,8 @@ class PollingNode(Node):
                 if taken is None:
                     break
                 received(taken[0])
+
+
+def chain(decode: Callable[[bytes], Any], take: Callable[[Any], None]) -> Callable[[bytes], None]:
+    """Takes what bytes stand for."""
+    return lambda data: take(decode(data))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial, wraps
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,9 @@ from cnc_ptp.machine.run_entries import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
+from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.observed_topics import observed_topics, type_name
-from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
@@ -42,10 +43,10 @@ from cnc_ptp.nodes.topics import (
     recorded_topic,
 )
 from cnc_ptp.parameters import MachineParameters, read_machine
-from cnc_ptp.protocol.blocks import CycleTick, Event, Severity
+from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
 from cnc_ptp.recording.writer import Recording
-from cnc_ptp.wire.block_codec import head_of
-from cnc_ptp.wire.ticks import decode_tick
+from cnc_ptp.wire.block_codec import encode_block, head_of
+from cnc_ptp.wire.ticks import Tick, decode_tick
 
 NOT_WRITABLE = 26113
 BLOCKS_MISSING = 26114
@@ -65,8 +66,19 @@ class RecorderNode(PollingNode):
     arrive. A block that comes twice is recorded once.
     """
 
-    def __init__(self, machine: MachineParameters, path: str, machine_yaml: str, *, free_run: bool = False) -> None:
-        """`free_run`: every tick and block wakes the node; otherwise it looks for them."""
+    def __init__(
+        self,
+        machine: MachineParameters,
+        path: str,
+        machine_yaml: str,
+        *,
+        free_run: bool = False,
+        handover: Handover | None = None,
+    ) -> None:
+        """`free_run`: every tick and block wakes the node; otherwise it looks for them.
+
+        `handover`: from the other nodes of this process.
+        """
         super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
         self._machine_yaml = machine_yaml
@@ -85,10 +97,12 @@ class RecorderNode(PollingNode):
         self.failure: CncError | None = None
         """The error that ended the writing."""
         self._wakes_for_all = free_run
-        self._needed = [self._subscribe(msg.CycleTick, TICK, self._on_tick)]
-        for unit, kind in self._units.items():
-            take = partial(self._on_block, unit, BLOCK_CLASSES[kind])
-            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(unit), take))
+        self._handover = handover
+        self._needed = [] if handover else [*self._subscribe_to_blocks()]
+        if handover:
+            handover.on_tick(self._guarded(self._on_tick), self._look)
+            for unit in self._units:
+                handover.on_block(unit, self._guarded(partial(self._take_block, unit)))
         self.create_subscription(msg.Event, EVENT, self._guarded(self._on_event), EVENTS)
         self.create_subscription(msg.CommandRecord, COMMAND, self._guarded(self._on_command), EVENTS)
         for topic, message_type in ((DIAGNOSTICS, DiagnosticArray), (LATENESS, msg.LatenessHistogram)):
@@ -101,6 +115,12 @@ class RecorderNode(PollingNode):
         self.create_subscription(Log, ROSOUT, received, qos_profile_rosout_default, raw=True)
         self._ready_timer = self.create_timer(process.READY_PERIOD, self._report_ready)
         self.create_timer(LOOK_PERIOD, self._guarded(self._look))
+
+    def _subscribe_to_blocks(self) -> Iterator[Subscription[Any]]:
+        yield self._subscribe(msg.CycleTick, TICK, chain(decode_tick, self._on_tick))
+        for unit, kind in self._units.items():
+            take = partial(self._on_block, unit, BLOCK_CLASSES[kind])
+            yield self._subscribe(BLOCK_TYPES[kind], block_topic(unit), take)
 
     def _subscribe(self, message_type: Any, topic: str, received: Callable[[bytes], None]) -> Subscription[Any]:
         received = self._guarded(received)
@@ -139,9 +159,8 @@ class RecorderNode(PollingNode):
     def _report(self, first_cycle: int) -> None:
         self._report_publisher.publish(msg.BlockReport(source=RECORDER, first_cycle=first_cycle))
 
-    def _on_tick(self, data: bytes) -> None:
+    def _on_tick(self, message: Tick) -> None:
         self._heard = time.monotonic()
-        message = decode_tick(data)
         self._tick_ns = message.stamp_ns
         if self._recording is None:
             start_ns = self._tick_ns - message.first_cycle * self._cycle_ns
@@ -164,6 +183,11 @@ class RecorderNode(PollingNode):
         if self._is_new(unit, stamp_ns, first_cycle, count):
             self._recording.encoded_block(unit, block_class, data)
             self._note_complete(first_cycle)
+
+    def _take_block(self, unit: str, block: CycleBlock) -> None:
+        """Of a node of this process; now, because the commands in it get more arguments on their way."""
+        self._heard = time.monotonic()
+        self._recorded.encoded_block(unit, type(block), encode_block(block, self._recorded.stamps))
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""

@@ -10,7 +10,9 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
 
+from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.topics import BLOCK_TYPES, block_topic
+from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.protocol.unit_view import VIEWS, UnitView, view_of
 
 GONE = 5.0
@@ -26,20 +28,32 @@ class LatestBlocks:
     """Keeps the newest block of units; only those that are shown are deserialised: some hundred come per second."""
 
     def __init__(
-        self, node: Node, kinds: Mapping[str, str], *, rotary: Collection[str], from_the_start: bool = False
+        self,
+        node: Node,
+        kinds: Mapping[str, str],
+        *,
+        rotary: Collection[str],
+        from_the_start: bool = False,
+        handover: Handover | None = None,
     ) -> None:
-        """`kinds`: unit -> kind; the plc is left out. `rotary`: axes in degrees."""
+        """`kinds`: unit -> kind; the plc is left out. `rotary`: axes in degrees.
+
+        `handover`: from units of this process.
+        """
         self._kinds = {unit: kind for shown in VIEWS for unit, kind in kinds.items() if kind == shown}
         self._rotary = rotary
-        self._serialised: dict[str, bytes] = {}
+        self._newest: dict[str, bytes | CycleBlock] = {}
         self._heard = time.monotonic()
         for unit, kind in self._kinds.items():
+            if handover is not None:
+                handover.on_block(unit, self._keeper(unit))
+                continue
             quality = REMEMBERED if from_the_start and kind in ("axis", "spindle") else NEWEST
             node.create_subscription(BLOCK_TYPES[kind], block_topic(unit), self._keeper(unit), quality, raw=True)
 
     def _keeper(self, unit: str) -> Any:
-        def received(serialised: bytes) -> None:
-            self._serialised[unit] = serialised
+        def received(newest: bytes | CycleBlock) -> None:
+            self._newest[unit] = newest
             self._heard = time.monotonic()
 
         return received
@@ -51,10 +65,11 @@ class LatestBlocks:
 
     def view(self, unit: str) -> UnitView | None:
         """None before the first block."""
-        if unit not in self._serialised:
+        newest = self._newest.get(unit)
+        if newest is None:
             return None
         kind = self._kinds[unit]
-        block = deserialize_message(self._serialised[unit], BLOCK_TYPES[kind])
+        block = deserialize_message(newest, BLOCK_TYPES[kind]) if isinstance(newest, bytes) else newest
         return view_of(unit, kind, block, rotary=unit in self._rotary)
 
     def views(self) -> list[UnitView]:

@@ -22,7 +22,8 @@ from cnc_ptp.machine.runner import CLOCK, UnitRunner
 from cnc_ptp.machine.wiring import Inputs, unit_kinds, wiring
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
-from cnc_ptp.nodes.polling_node import PollingNode
+from cnc_ptp.nodes.handover import Handover
+from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import (
     BLOCK_CLASSES,
     BLOCK_TYPES,
@@ -51,9 +52,9 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import PLC, Unit
-from cnc_ptp.wire.block_codec import BlockCodec, codec_of, encode_block
+from cnc_ptp.wire.block_codec import codec_of, encode_block
 from cnc_ptp.wire.stamps import Stamps
-from cnc_ptp.wire.ticks import decode_tick
+from cnc_ptp.wire.ticks import Tick, decode_tick
 
 MACHINE = "machine"
 """The PLC node shows the parameters of the machine."""
@@ -88,12 +89,13 @@ class UnitNode(PollingNode):
         recorders: int = 0,
         state_rate: float | None = None,
         free_run: bool = False,
+        handover: Handover | None = None,
     ) -> None:
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
         states per second, None = as the machine file says. `free_run`: every message wakes the node, not only the last
-        one of a block.
+        one of a block. `handover`: to and from the other nodes of this process.
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
@@ -112,9 +114,10 @@ class UnitNode(PollingNode):
         self._state_period = period_cycles(machine, state_rate)
         self._scheduled_ns: dict[int, int] = {}
         self._told_twice: set[str] = set()
-        self._masters: dict[str, Any] = {}
+        self._masters: set[str] = set()
         self._looking: Timer | None = None
-        self._wakes_for_all = free_run
+        self._wakes_for_all = free_run or handover is not None
+        self._handover = handover
         self._running = False
         self.paced = False
         """The clock runs in real time."""
@@ -170,12 +173,19 @@ class UnitNode(PollingNode):
 
     def _make_subscriptions(self) -> None:
         """The last source of a block wakes the node, which then looks for those of the others."""
-        last = self._inputs.upstream[-1] if self._inputs.upstream else CLOCK
-        self._needed = [self._subscribe(msg.CycleTick, TICK, self._take_tick, wakes=last == CLOCK)]
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
+        if self._handover is not None:
+            self._needed: list[Subscription[Any]] = []
+            self._handover.on_tick(self._take_tick, self.look)
+            for source in self._gate.sources:
+                self._handover.on_block(source, partial(self._take_block, source), self.look)
+            return
+        last = self._inputs.upstream[-1] if self._inputs.upstream else CLOCK
+        take_tick = chain(decode_tick, self._take_tick)
+        self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=last == CLOCK)]
         for source in self._gate.sources:
             kind = self._kinds[source]
-            take = partial(self._take_block, source, codec_of(BLOCK_CLASSES[kind]))
+            take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, source))
             self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(source), take, wakes=source == last))
 
     def _subscribe(
@@ -200,7 +210,7 @@ class UnitNode(PollingNode):
         if self._running:
             self._ready_timer.cancel()
             return
-        found = process.is_read(self, self._block_publisher, self._readers)
+        found = self._handover is not None or process.is_read(self, self._block_publisher, self._readers)
         if found and all(subscription.get_publisher_count() for subscription in self._needed):
             self._report(-1)
 
@@ -225,10 +235,9 @@ class UnitNode(PollingNode):
         if not self._wakes_for_all and self._gate.waits_for_more():
             self.look()
 
-    def _take_tick(self, data: bytes) -> None:
+    def _take_tick(self, message: Tick) -> None:
         if self._alone:
             return
-        message = decode_tick(data)
         if not self._running and message.first_cycle:
             self.failure = CncError(
                 TOO_LATE,
@@ -248,9 +257,8 @@ class UnitNode(PollingNode):
             self._lose(CLOCK, f"tick {self._gate.next_cycle} of the clock is missing, {message.first_cycle} came")
         self._tell_twice(CLOCK, message.first_cycle, before)
 
-    def _take_block(self, source: str, codec: BlockCodec, data: bytes) -> None:
+    def _take_block(self, source: str, block: CycleBlock) -> None:
         self._watchdog.heard(source)
-        block = codec.decode(data)
         if isinstance(block, PlcBlock):
             self.complete_commands(block)
         before = self._gate.duplicates
@@ -334,16 +342,18 @@ class UnitNode(PollingNode):
         self._gate.follow(master)
         if master is not None and master not in self._masters:
             self._watchdog.watch(master)
+            self._masters.add(master)
+            take = partial(self._take_master_block, master)
+            if self._handover is not None:
+                self._handover.on_block(master, take, self.look)
+                return
             kind = self._kinds[master]
-            received = partial(self._on_master_block, master, codec_of(BLOCK_CLASSES[kind]))
-            self._masters[master] = self.create_subscription(
-                BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True
-            )
+            received = partial(self._on_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
+            self.create_subscription(BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True)
 
-    def _on_master_block(self, master: str, codec: BlockCodec, data: bytes) -> None:
+    def _take_master_block(self, master: str, block: CycleBlock) -> None:
         self._watchdog.heard(master)
-        self._gate.add_master_block(master, codec.decode(data))
-        self._compute_ready_blocks()
+        self._gate.add_master_block(master, block)
 
     def _compute(self, tick: CycleTick, inputs: dict[str, CycleBlock]) -> None:
         with self._working():
@@ -354,7 +364,7 @@ class UnitNode(PollingNode):
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
             self.diagnostics.add_lateness((time.monotonic_ns() - scheduled) // 1000)
-        else:
+        elif self._handover is None:
             self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
         if isinstance(plc, PlcBlock) and plc.run_done:
@@ -383,7 +393,10 @@ class UnitNode(PollingNode):
         return convert.time_message(self._stamps.at(cycle))
 
     def _publish_block(self, block: CycleBlock) -> None:
-        self._block_publisher.publish(encode_block(block, self._stamps))
+        if self._handover is None or self._block_publisher.get_subscription_count():
+            self._block_publisher.publish(encode_block(block, self._stamps))
+        if self._handover is not None:
+            self._handover.block(self.unit.name, block)
         self._heartbeat_at = time.monotonic()
 
     def _publish_records(self) -> None:
