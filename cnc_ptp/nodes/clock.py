@@ -14,6 +14,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import node_command_line, process
+from cnc_ptp.nodes.free_run import FreeRunPace
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode, chain
 from cnc_ptp.nodes.topics import BLOCKS, HEARTBEAT, MONITOR, REPORT, TICK, block_topic
@@ -64,7 +65,6 @@ class ClockNode(PollingNode):
         super().__init__(CLOCK, enable_rosout=False)
         self._units = {*unit_kinds(machine)}
         self._expected = {*self._units, *wait_for}
-        self._reporting = self._expected - {MONITOR}
         self._free_run = free_run
         self._cycles = cycles
         self._count = machine.block_cycles
@@ -72,8 +72,10 @@ class ClockNode(PollingNode):
         self._block_time = machine.block_cycles * machine.cycle_time_us * 1e-6
         self._first_cycle = 0
         self._ready: set[str] = set()
-        self._open: set[str] = set()
-        self._watchdog = Watchdog(self._reporting, seconds=machine.watchdog_ms / 1000.0)
+        self._watchdog = Watchdog(self._expected - {MONITOR}, seconds=machine.watchdog_ms / 1000.0)
+        self._pace = FreeRunPace(
+            self._expected, block_cycles=self._count, block_time=self._block_time, watchdog=self._watchdog
+        )
         self._started_at: float | None = None
         self._start_ns = 0
         self._ended_at: float | None = None
@@ -84,12 +86,13 @@ class ClockNode(PollingNode):
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         self._handover = handover
         self._plc = None
-        if handover is None:
-            self._plc = self.poll(
-                msg.PlcBlock, block_topic(PLC), chain(codec_of(PlcBlock).decode, self._on_plc), BLOCKS
-            )
-        else:
+        take = chain(codec_of(PlcBlock).decode, self._on_plc)
+        if handover is not None:
             handover.on_block(PLC, self._on_plc)
+        elif free_run:
+            self._plc = self.create_subscription(msg.PlcBlock, block_topic(PLC), take, BLOCKS, raw=True)
+        else:
+            self._plc = self.poll(msg.PlcBlock, block_topic(PLC), take, BLOCKS)
 
     @property
     def done(self) -> bool:
@@ -115,8 +118,7 @@ class ClockNode(PollingNode):
         elif self._free_run and self._handover is not None:
             self._run_freely(self._handover)
         elif self._free_run:
-            self._drop_silent_nodes()
-            if not self._open:
+            if self._pace.may_tick(self._first_cycle):
                 self._tick(0)
             elif time.monotonic() - self._heartbeat_at > self._watchdog.seconds / 4.0:
                 self._publish_heartbeat()
@@ -165,9 +167,7 @@ class ClockNode(PollingNode):
             return
         self._publish_tick(self._count, scheduled_ns)
         self._first_cycle += self._count
-        if self._free_run:
-            self._open = set(self._reporting)
-            self._watchdog.restart()
+        self._pace.ticked()
 
     def _publish_tick(self, count: int, scheduled_ns: int) -> None:
         stamp_ns = self._start_ns + self._first_cycle * self._cycle_ns
@@ -185,24 +185,14 @@ class ClockNode(PollingNode):
         if message.first_cycle < 0:
             self._ready.add(message.source)
         elif self._watchdog.heard(message.source):
-            self._reporting.add(message.source)
-            if message.first_cycle == self._first_cycle - self._count:
-                self._open.discard(message.source)
-                self.advance()
+            self._pace.heard(message.source, message.first_cycle)
 
     def _on_heartbeat(self, message: msg.BlockReport) -> None:
         self._watchdog.heard(message.source)
 
-    def _drop_silent_nodes(self) -> None:
-        units = self._open & self._units
-        silent = {
-            *self._watchdog.silent(units, begun=self._first_cycle > self._count),
-            *self._watchdog.silent(self._open - units, begun=False),
-        }
-        self._reporting -= silent
-        self._open -= silent
-
     def _on_plc(self, block: Any) -> None:
+        self._watchdog.heard(PLC)
+        self._pace.heard(PLC, block.first_cycle)
         if block.run_done:
             self._end()
 

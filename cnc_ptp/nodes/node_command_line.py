@@ -24,7 +24,7 @@ STATE_RATE = click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second, instead of P-MACH-00070."
 )
 
-FREE_RUN = click.option("--free-run", is_flag=True, help="The clock runs free: every message wakes the node.")
+FREE_RUN = click.option("--free-run", is_flag=True, help="The clock runs free: the node waits for blocks, not ticks.")
 
 
 def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter) -> Callable[[], None]:
@@ -35,7 +35,6 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
     @NAME
     @RECORDERS
     @STATE_RATE
-    @FREE_RUN
     def command(machine: str, name: str, **options: Any) -> None:
         def make() -> Any:
             node = node_class(read_machine(machine), name, **options)

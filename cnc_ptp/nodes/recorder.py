@@ -72,13 +72,9 @@ class RecorderNode(PollingNode):
         path: str,
         machine_yaml: str,
         *,
-        free_run: bool = False,
         handover: Handover | None = None,
     ) -> None:
-        """`free_run`: every tick and block wakes the node; otherwise it looks for them.
-
-        `handover`: from the other nodes of this process.
-        """
+        """`handover`: from the other nodes of this process."""
         super().__init__(RECORDER, enable_rosout=False)
         require_writable(path)
         self._machine_yaml = machine_yaml
@@ -89,14 +85,12 @@ class RecorderNode(PollingNode):
         self._recording: Recording | None = None
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
-        self._received: dict[int, int] = {}
         self._next_cycle = dict.fromkeys(self._units, 0)
         self._heard = time.monotonic()
         self._report_publisher = self.create_publisher(msg.BlockReport, REPORT, BLOCKS)
         self._event_publisher = EventPublisher(self)
         self.failure: CncError | None = None
         """The error that ended the writing."""
-        self._wakes_for_all = free_run
         self._handover = handover
         self._needed = [] if handover else [*self._subscribe_to_blocks()]
         if handover:
@@ -123,10 +117,7 @@ class RecorderNode(PollingNode):
             yield self._subscribe(BLOCK_TYPES[kind], block_topic(unit), take)
 
     def _subscribe(self, message_type: Any, topic: str, received: Callable[[bytes], None]) -> Subscription[Any]:
-        received = self._guarded(received)
-        if self._wakes_for_all:
-            return self.create_subscription(message_type, topic, received, BLOCKS, raw=True)
-        return self.poll(message_type, topic, received, BLOCKS)
+        return self.poll(message_type, topic, self._guarded(received), BLOCKS)
 
     def _guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """The callback, whose CncError ends the node."""
@@ -182,7 +173,6 @@ class RecorderNode(PollingNode):
         stamp_ns, first_cycle, count = head_of(data)
         if self._is_new(unit, stamp_ns, first_cycle, count):
             self._recording.encoded_block(unit, block_class, data)
-            self._note_complete(first_cycle)
 
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         """Of a node of this process; now, because the commands in it get more arguments on their way."""
@@ -198,15 +188,6 @@ class RecorderNode(PollingNode):
             self._event_publisher.publish(convert.event_to_message(event, convert.time_message(stamp_ns)))
         self._next_cycle[unit] = max(expected, cycle + count)
         return bool(cycle >= expected)
-
-    def _note_complete(self, first_cycle: int) -> None:
-        if not self._free_run:
-            return
-        received = self._received.get(first_cycle, 0) + 1
-        self._received[first_cycle] = received
-        if received == len(self._units):
-            del self._received[first_cycle]
-            self._report(first_cycle)
 
     def _on_event(self, message: msg.Event) -> None:
         self._single(lambda: self._recorded.event(convert.message_to_event(message)))
@@ -248,6 +229,8 @@ class RecorderNode(PollingNode):
     def _look(self) -> None:
         """Takes the ticks and blocks that have come, and writes when it is time."""
         self.take_polled()
+        if self._free_run and self._handover is None:
+            self._report(min(self._next_cycle.values()) - 1)
         if self._recording is not None:
             self._recording.flush_if_due(time.monotonic())
 
@@ -274,12 +257,11 @@ def _namespace(logger: str) -> str:
 @click.command()
 @node_command_line.MACHINE
 @click.argument("output", type=click.Path(dir_okay=False))
-@node_command_line.FREE_RUN
-def command(machine: str, output: str, free_run: bool) -> None:
+def command(machine: str, output: str) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, read_file("machine file", machine), free_run=free_run)
+        return RecorderNode(read_machine(machine), output, read_file("machine file", machine))
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -221,18 +221,18 @@ def command_lines(
 ) -> Iterator[tuple[str, list[str]]]:
     """Name and command line (executable first) of every node of a run; the clock waits for `observers` as well."""
     free_run = ["--free-run"] if options.free_run else []
-    units = [*free_run, "--recorders", "1"] if options.record else free_run
+    units = ["--recorders", "1"] if options.record else []
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     if options.record:
-        yield RECORDER, ["recorder", options.machine, options.record, *free_run]
+        yield RECORDER, ["recorder", options.machine, options.record]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
             first = program if name == next(iter(machine.channels), None) else []
             yield name, [MODULES[kind], options.machine, name, *first, *units]
     scenario = ["--scenario", options.scenario] if options.scenario else []
     stay = ["--stay"] if options.stay or options.duration is not None else []
-    yield PLC, ["plc_bridge", options.machine, *program, *scenario, *stay, *units]
+    yield PLC, ["plc_bridge", options.machine, *program, *scenario, *stay, *free_run, *units]
     duration = ["--duration", str(options.duration)] if options.duration is not None else []
     wait_for = [word for name in observers for word in ("--wait-for", name)]
     yield CLOCK, ["clock", options.machine, *duration, *free_run, *wait_for]

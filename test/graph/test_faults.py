@@ -143,7 +143,7 @@ def test_nodes_that_do_not_find_each_other_end_the_run(tmp_path, monkeypatch):
     assert run_of.failures == [
         "P-ERR-26105 the nodes did not find each other within 0.1 s (not there: x, plc, clock); the run ends"
     ]
-    assert all(child.poll() is not None for child in run_of._processes.values())
+    assert all(child.exitcode is not None for child in run_of._processes.values())
 
 
 def test_looking_whether_a_recording_can_be_written_changes_nothing(tmp_path):

@@ -94,8 +94,8 @@ class UnitNode(PollingNode):
         """Only a name in the graph; it takes part after `setup`.
 
         `recorders`: with 1, a recorder must have found the blocks too before the node is ready. `state_rate`: live
-        states per second, None = as the machine file says. `free_run`: every message wakes the node, not only the last
-        one of a block. `handover`: to and from the other nodes of this process.
+        states per second, None = as the machine file says. `free_run`: the clock does not wait for the wall clock.
+        `handover`: to and from the other nodes of this process.
         """
         super().__init__(unit.name, enable_rosout=False)
         self._kinds = unit_kinds(machine)
@@ -116,7 +116,7 @@ class UnitNode(PollingNode):
         self._told_twice: set[str] = set()
         self._masters: set[str] = set()
         self._looking: Timer | None = None
-        self._wakes_for_all = free_run or handover is not None
+        self._free_run = free_run
         self._handover = handover
         self._running = False
         self.paced = False
@@ -172,7 +172,10 @@ class UnitNode(PollingNode):
             self._live_state = LiveState(self, name, self.unit.kind, self._state_period)
 
     def _make_subscriptions(self) -> None:
-        """The last source of a block wakes the node, which then looks for those of the others."""
+        """The last source of a block wakes the node, which then looks for those of the others.
+
+        In a free run the tick of the PLC comes before the blocks that it needs.
+        """
         self.create_subscription(msg.BlockReport, HEARTBEAT, self._on_heartbeat, BLOCKS)
         if self._handover is not None:
             self._needed: list[Subscription[Any]] = []
@@ -180,18 +183,20 @@ class UnitNode(PollingNode):
             for source in self._gate.sources:
                 self._handover.on_block(source, partial(self._take_block, source), self.look)
             return
-        last = self._inputs.upstream[-1] if self._inputs.upstream else CLOCK
+        waking = {self._inputs.upstream[-1] if self._inputs.upstream else CLOCK}
+        if self._free_run and not self._inputs.upstream:
+            waking = {*self._inputs.feedback} or {CLOCK}
         take_tick = chain(decode_tick, self._take_tick)
-        self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=last == CLOCK)]
+        self._needed = [self._subscribe(msg.CycleTick, TICK, take_tick, wakes=CLOCK in waking)]
         for source in self._gate.sources:
             kind = self._kinds[source]
             take = chain(codec_of(BLOCK_CLASSES[kind]).decode, partial(self._take_block, source))
-            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(source), take, wakes=source == last))
+            self._needed.append(self._subscribe(BLOCK_TYPES[kind], block_topic(source), take, wakes=source in waking))
 
     def _subscribe(
         self, message_type: Any, topic: str, take: Callable[[bytes], None], *, wakes: bool
     ) -> Subscription[Any]:
-        if wakes or self._wakes_for_all:
+        if wakes:
             return self.create_subscription(message_type, topic, partial(self._on_message, take), BLOCKS, raw=True)
         return self.poll(message_type, topic, take, BLOCKS)
 
@@ -212,7 +217,7 @@ class UnitNode(PollingNode):
             return
         found = self._handover is not None or process.is_read(self, self._block_publisher, self._readers)
         if found and all(subscription.get_publisher_count() for subscription in self._needed):
-            self._report(-1)
+            self._report()
 
     # what arrives
 
@@ -229,10 +234,10 @@ class UnitNode(PollingNode):
 
     def wait_time(self) -> float:
         """Seconds until the node looks by itself: it was woken, and another message of the block is still to come."""
-        return SOON if not self._wakes_for_all and self._gate.waits_for_more() else process.SPIN_TIMEOUT
+        return SOON if self._handover is None and self._gate.waits_for_more() else process.SPIN_TIMEOUT
 
     def after_wait(self) -> None:
-        if not self._wakes_for_all and self._gate.waits_for_more():
+        if self._handover is None and self._gate.waits_for_more():
             self.look()
 
     def _take_tick(self, message: Tick) -> None:
@@ -364,8 +369,6 @@ class UnitNode(PollingNode):
         scheduled = self._scheduled_ns.pop(tick.first_cycle, 0)
         if scheduled:
             self.diagnostics.add_lateness((time.monotonic_ns() - scheduled) // 1000)
-        elif self._handover is None:
-            self._report(tick.first_cycle)
         plc = block if isinstance(block, PlcBlock) else inputs.get(PLC)
         if isinstance(plc, PlcBlock) and plc.run_done:
             self._gate.close()
@@ -429,7 +432,7 @@ class UnitNode(PollingNode):
             self.diagnostics.lost_blocks += 1
             self.tell(Severity.ERROR, BLOCK_SKIPPED, f"{self.unit.name}: {reason}")
         self._gate.drop(source)
-        if not self._wakes_for_all and not self._looking:
+        if self._handover is None and not self._looking:
             self._looking = self.create_timer(LOOK_PERIOD, self.look)  # what has woken this node may be what is lost
         self.command(Command(self.unit.name, "upstream_lost", {"source": source}))
         if source == CLOCK:
@@ -444,9 +447,9 @@ class UnitNode(PollingNode):
             self._gate.add_tick(CycleTick(self._gate.next_cycle, self._count))
             self._compute_ready_blocks()
 
-    def _report(self, first_cycle: int) -> None:
-        """To the clock: ready (-1), or in free run a block that is computed."""
-        self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=first_cycle))
+    def _report(self) -> None:
+        """To the clock: ready."""
+        self._report_publisher.publish(msg.BlockReport(source=self.unit.name, first_cycle=-1))
 
     def _publish_heartbeat(self) -> None:
         """To all: this node is alive."""
