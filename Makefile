@@ -52,6 +52,7 @@ lint: setup
 
 bench: setup
 	$(BIN)/python -m bench
+	$(BIN)/python -m bench.against
 
 figures: setup
 	$(BIN)/python -m figures

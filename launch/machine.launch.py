@@ -20,6 +20,7 @@ OPTIONS = {
 }
 SWITCHES = {
     "free_run": "as fast as all nodes follow, instead of in real time",
+    "composed": "all nodes in one process",
     "stay": "continue when everything is at a standstill, for commands",
     "separate": "a Node action for every node, instead of one for cnc_ptp run",
 }
@@ -30,11 +31,14 @@ def start(context):
     switches = {name: given.pop(name).lower() in ("true", "1", "yes", "on") for name in SWITCHES}
     given = {name: value for name, value in given.items() if value}
     namespace = given.pop("namespace", None)
+    if switches["separate"] and switches["composed"]:
+        raise ValueError("separate:=true and composed:=true exclude each other; nothing was started")
     if switches["separate"]:
         return separate_nodes(given, switches, namespace)
     arguments = [given.pop("machine")]
     for option, value in given.items():
         arguments += [f"--{option.replace('_', '-')}", value]
+    arguments += ["--composed"] if switches["composed"] else []
     arguments += ["--free-run"] if switches["free_run"] else []
     arguments += ["--stay"] if switches["stay"] else []
     return [node("run", arguments, namespace=namespace, on_exit=Shutdown())]

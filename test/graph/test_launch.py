@@ -95,6 +95,11 @@ def test_one_process_starts_the_whole_machine(launched):
     assert node.command_line()[1:] == [str(MILL), "--state-rate", "200", "--stay", "--ros-args"]
     (*_, plc, _clock) = launched(machine=MILL, stay="true", state_rate="200", separate="true")
     assert plc.command_line()[1:] == [str(MILL), "--stay", "--state-rate", "200.0", "--ros-args", "-r", "__node:=plc"]
+    (node,) = launched(machine=MILL, composed="true")
+    assert node.command_line()[1:] == [str(MILL), "--composed", "--ros-args"]
+    with pytest.raises(ValueError) as refused:
+        launched(machine=MILL, composed="true", separate="true")
+    assert str(refused.value) == "separate:=true and composed:=true exclude each other; nothing was started"
     (node,) = launched(machine=MILL, namespace="cell")
     assert node.command_line()[1:] == [str(MILL), "--ros-args", "-r", "__ns:=/cell"]
 
