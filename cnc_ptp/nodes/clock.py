@@ -27,6 +27,8 @@ from cnc_ptp.wire.block_codec import codec_of
 from cnc_ptp.wire.ticks import Tick, encode_tick
 
 POLL = 0.02
+TURN = 0.05
+"""Seconds between two turns of the executor of a clock in real time."""
 SLICE = 0.005
 """Seconds of a free run in one process between two turns of the executor."""
 START_DELAY = 0.1
@@ -123,8 +125,19 @@ class ClockNode(PollingNode):
             elif time.monotonic() - self._heartbeat_at > self._watchdog.seconds / 4.0:
                 self._publish_heartbeat()
         else:
-            while self._ended_at is None and time.monotonic() >= self._due_at():
+            self._tick_in_time()
+
+    def _tick_in_time(self) -> None:
+        """Issues what is due; a clock in its own process sleeps between ticks: its executor has few turns."""
+        turn = time.monotonic() + (TURN if self._handover is None else 0.0)
+        while self._ended_at is None:
+            if time.monotonic() >= self._due_at():
                 self._tick(int(self._due_at() * 1e9))
+            elif self._due_at() < turn:
+                time.sleep(max(0.0, self._due_at() - time.monotonic()))
+                self.take_polled()
+            else:
+                return
 
     def _run_freely(self, handover: Handover) -> None:
         """Ticks for a while; then the executor has its turn."""

@@ -26,7 +26,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 def start_server() -> None:
-    """Starts the server, unless it is there; it imports while its caller goes on."""
+    """Starts the server, unless it is there; it imports while its caller continues."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(ONE_THREAD)
     CONTEXT.set_forkserver_preload([PRELOAD])

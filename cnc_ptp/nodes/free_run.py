@@ -17,7 +17,7 @@ class FreeRunPace:
     """A tick comes when the PLC has computed the one before: that needs the blocks of all units before that.
 
     A PLC or recorder that is silent for the watchdog time no longer counts, until it is heard again; without the PLC
-    the run goes on in real time.
+    the run continues in real time.
     """
 
     def __init__(self, names: Iterable[str], *, block_cycles: int, block_time: float, watchdog: Watchdog) -> None:

@@ -31,7 +31,7 @@ from cnc_ptp.wire.schemas import PRIMITIVES, load_schema
 from cnc_ptp.wire.stamps import Stamps
 
 HEAD = struct.Struct("<4xiIIx3xQI")
-"""Encapsulation, stamp, length of the empty frame_id, first cycle, count: the begin of every block."""
+"""Encapsulation, stamp, length of the empty frame_id, first cycle, count: the start of every block."""
 FORMS_KEPT = 1000
 
 _SHAPES: dict[type, Callable[[Any], Hashable]] = {

@@ -233,7 +233,7 @@ class UnitNode(PollingNode):
         self._end_if_over()
 
     def wait_time(self) -> float:
-        """Seconds until the node looks by itself: it was woken, and another message of the block is still to come."""
+        """Seconds until the node looks on its own: it was woken, and another message of the block is still to come."""
         return SOON if self._handover is None and self._gate.waits_for_more() else process.SPIN_TIMEOUT
 
     def after_wait(self) -> None:
