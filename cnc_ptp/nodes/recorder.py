@@ -45,7 +45,7 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
 from cnc_ptp.recording.writer import Recording
-from cnc_ptp.wire.block_codec import encode_block, head_of
+from cnc_ptp.wire.block_codec import head_of
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
 NOT_WRITABLE = 26113
@@ -177,7 +177,7 @@ class RecorderNode(PollingNode):
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         """Of a node of this process; now, because the commands in it get more arguments on their way."""
         self._heard = time.monotonic()
-        self._recorded.encoded_block(unit, type(block), encode_block(block, self._recorded.stamps))
+        self._recorded.block(unit, block, handshakes=False)
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""

@@ -106,13 +106,17 @@ class _Unit:
         self._kind = kind_of(block_class) if states else None
         self._encoder: _States | None = None
 
-    def add(self, stamp_ns: int, data: bytes) -> None:
-        """Takes a block for both topics, without the bytes that DDS has filled it up with."""
+    def add(self, stamp_ns: int, data: bytes, layout: Layout | None) -> None:
+        """Takes a block for both topics, without the bytes that DDS has filled it up with.
+
+        `layout`: where its numbers lie, if that is known.
+        """
         if self._states is None or self._kind is None:
             self._blocks.add(READY, (stamp_ns, data))
             return
-        layout = self._codec.layout(data)
-        data = data[: layout.dtype.itemsize]
+        if layout is None:
+            layout = self._codec.layout(data)
+            data = data[: layout.dtype.itemsize]
         self._blocks.add(READY, (stamp_ns, data))
         if self._encoder is None or self._encoder.layout is not layout:
             self._encoder = _States(self._kind, layout)
@@ -156,10 +160,14 @@ class Recording:
         self.attachment(MACHINE_FILE, "application/yaml", machine_yaml)
         self._file.metadata(METADATA, {"start_ns": str(start_ns), "cycle_time_ns": str(cycle_time_ns)})
 
-    def block(self, name: str, block: CycleBlock) -> None:
-        """`/<name>/block` and, per cycle, `/<name>/state`; `/<name>/handshake` for each request of a channel."""
-        self._block(name, type(block), codec_of(type(block)).encode(block, self.stamps))
-        if isinstance(block, ChannelBlock):
+    def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
+        """`/<name>/block` and, per cycle, `/<name>/state`.
+
+        `handshakes`: `/<name>/handshake` for each request of a channel; in the graph they have a topic.
+        """
+        data, layout = codec_of(type(block)).encode_with_layout(block, self.stamps)
+        self._block(name, type(block), data, layout)
+        if handshakes and isinstance(block, ChannelBlock):
             for request in block.requests:
                 self._single(topic_of(name, "handshake"), "cnc_ptp/msg/HandshakeRequest", request)
 
@@ -233,14 +241,14 @@ class Recording:
     ) -> None:
         self.close()
 
-    def _block(self, name: str, block_class: type, data: bytes) -> None:
+    def _block(self, name: str, block_class: type, data: bytes, layout: Layout | None = None) -> None:
         stamp_ns, first_cycle, _count = head_of(data)
         if self._file.chunk_ready:
             self._file.finish_chunk()
         if first_cycle >= self._chunk_end:
             self._begin_chunk(first_cycle)
         unit = self._units.get((name, block_class)) or self._unit(name, block_class)
-        unit.add(stamp_ns, data)
+        unit.add(stamp_ns, data, layout)
 
     def _unit(self, name: str, block_class: type) -> _Unit:
         blocks = self._topic(topic_of(name, "block"), f"cnc_ptp/msg/{block_class.__name__}")

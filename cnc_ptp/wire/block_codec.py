@@ -70,8 +70,15 @@ class BlockCodec:
         """By size in words of four bytes: DDS fills the last one up."""
 
     def encode(self, block: Any, stamps: Stamps) -> bytes:
-        """CDR of a block. Raises CncError 26006 when a column holds another number of values than the block has cycles,
-        or a value is beyond the range of its field."""
+        """CDR of a block; raises as `encode_with_layout`."""
+        return self.encode_with_layout(block, stamps)[0]
+
+    def encode_with_layout(self, block: Any, stamps: Stamps) -> tuple[bytes, Layout | None]:
+        """CDR of a block, and where its numbers lie if it has a form.
+
+        Raises CncError 26006 when a column holds another number of values than the block has cycles, or a value is
+        beyond the range of its field.
+        """
         header = header_at(stamps.at(block.first_cycle))
         shape = self._shape(block)
         if shape is None:
@@ -79,9 +86,10 @@ class BlockCodec:
             fields = {field.name: getattr(block, field.name, header) for field in self.schema.fields}
             if isinstance(block, SpindleBlock):
                 fields["refused"] = [refusal.encode() for refusal in block.refused]
-            return encode(self.schema, fields, stamps.header_of)
+            return encode(self.schema, fields, stamps.header_of), None
         try:
-            return (self._forms.get(shape) or self._new_form(shape, block)).pack(block, header)
+            form = self._forms.get(shape) or self._new_form(shape, block)
+            return form.pack(block, header), form.layout
         except (struct.error, TypeError) as error:
             self._require_columns(block)
             raise misfit(block, str(error)) from error
