@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from multiprocessing import forkserver, get_context, parent_process
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from types import ModuleType
 
 from setproctitle import setproctitle
@@ -61,7 +62,7 @@ def run_node(module: str, words: Sequence[str], environment: Mapping[str, str], 
     """In the new process: what `python -m cnc_ptp.nodes.<module> WORDS` does."""
     os.setsid()
     end_with_supervisor()
-    setproctitle(" ".join(["python -m", f"cnc_ptp.nodes.{module}", *words]))
+    setproctitle(" ".join([Path(sys.executable).name, "-m", f"cnc_ptp.nodes.{module}", *words]))
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)

@@ -177,7 +177,8 @@ class RecorderNode(PollingNode):
     def _take_block(self, unit: str, block: CycleBlock) -> None:
         """Of a node of this process; now, because the commands in it get more arguments on their way."""
         self._heard = time.monotonic()
-        self._recorded.block(unit, block, handshakes=False)
+        if self._recording is not None:  # None: it could not be opened, and the node fails
+            self._recording.block(unit, block, handshakes=False)
 
     def _is_new(self, unit: str, stamp_ns: int, cycle: int, count: int) -> bool:
         """False for a block that is recorded already; an event when earlier blocks are missing."""

@@ -70,6 +70,7 @@ def _holder(name: str) -> str:
 def _command_line(process: int) -> str:
     with suppress(OSError):
         line = Path(f"/proc/{process}/cmdline").read_bytes().decode(errors="replace")
-        program, *words = line.rstrip("\0").split("\0")
+        line = line.rstrip("\0")
+        program, *words = line.split("\0" if "\0" in line else " ")  # spaces: of a title that a process has chosen
         return f" ({shlex.join([Path(program).name, *words])})"
     return ""
