@@ -6,6 +6,7 @@ worktree and an environment of its own (build/against), which takes minutes the 
 
 from __future__ import annotations
 
+import os
 import re
 import statistics
 import subprocess
@@ -19,11 +20,19 @@ import click
 import psutil
 from rich.console import Console
 
+from bench import jobs
 from bench.figures import Figure, table
-from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
+from bench.jobs import ROOT, long_program
+
+MACHINE, BRACKET, OVERRIDES = (
+    str(Path(file).relative_to(ROOT)) for file in (jobs.MACHINE, jobs.BRACKET, jobs.OVERRIDES)
+)
+"""Each tree has its own."""
 
 BASELINE = "147e025"
 """The commit before the kernel was compiled."""
+OF_THIS_TREE = ("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH", "PYTHONPATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
+"""Environment variables that would lead to its libraries."""
 SAMPLE = 0.05
 SETTLED = 3.0
 """Seconds after the first cycle from which on processor time counts: all nodes run evenly."""
@@ -56,7 +65,10 @@ def call(tree: Path, *words: str, record: Path) -> Run:
     run, seconds = Run(), {}
     begin = time.monotonic()
     command = [tree / ".venv" / "bin" / "cnc_ptp", *words, "--record", record]
-    with subprocess.Popen(command, cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
+    environment = {name: value for name, value in os.environ.items() if name not in OF_THIS_TREE}
+    with subprocess.Popen(
+        command, cwd=tree, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as child:
         process = psutil.Process(child.pid)
         while child.poll() is None:
             now = time.monotonic()
@@ -70,6 +82,8 @@ def call(tree: Path, *words: str, record: Path) -> Run:
                 run.pss_mb = sum(map(proportional_memory, family(process))) / 1e6
             time.sleep(SAMPLE)
         run.output = child.stdout.read() if child.stdout else ""
+    if child.returncode:
+        raise click.ClickException(f"{tree}: cnc_ptp {' '.join(words)} ended with {child.returncode}:\n{run.output}")
     run.wall, run.cpu = time.monotonic() - begin - run.startup, sum(seconds.values())
     even = [(at, cpu) for at, cpu in run.samples if SETTLED < at - begin - run.startup < run.wall - 2.0 * FAREWELL]
     if len(even) > 1:
