@@ -44,7 +44,7 @@ class BuildInterfacesAndKernel(build_ext):
             "-DCMAKE_BUILD_TYPE=Release",
             "-DBUILD_TESTING=OFF",
             f"-DALL_TYPE_SUPPORTS={'OFF' if self.with_pip else 'ON'}",
-            "-DCMAKE_C_FLAGS_RELEASE=-O1",  # -O3 takes longer than it ever saves
+            "-DCMAKE_C_FLAGS_RELEASE=-O1",  # blocks do not pass through this code
             "-DCMAKE_CXX_FLAGS_RELEASE=-O1",
             *(["-GNinja", f"-DCMAKE_MAKE_PROGRAM={ninja}"] if ninja else []),
         ]  # fmt: skip

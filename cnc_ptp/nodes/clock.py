@@ -143,7 +143,7 @@ class ClockNode(PollingNode):
         """Ticks for a while; then the executor has its turn."""
         end = time.monotonic() + SLICE
         while self._ended_at is None and time.monotonic() < end:
-            if not handover.has_computed(self._first_cycle - self._count):
+            if not handover.have_computed(self._units, self._first_cycle - self._count):
                 return
             self._tick(0)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from cnc_ptp.protocol.blocks import CycleBlock
 from cnc_ptp.wire.ticks import Tick
@@ -49,9 +49,11 @@ class Handover:
             self._waiting.append(look)
         self._run()
 
-    def has_computed(self, first_cycle: int) -> bool:
-        """All units have computed the block of this cycle, or a later one."""
-        return all(block.first_cycle >= first_cycle for block in self._newest.values())
+    def have_computed(self, units: Iterable[str], first_cycle: int) -> bool:
+        """Each of the units has computed the block of this cycle, or a later one; no block is from before cycle 0."""
+        if first_cycle < 0:
+            return True
+        return all(unit in self._newest and self._newest[unit].first_cycle >= first_cycle for unit in units)
 
     def _run(self) -> None:
         if self._running:

@@ -41,14 +41,22 @@ def test_nobody_computes_while_another_one_does():
 def test_who_comes_later_gets_the_newest_block():
     """A slave that is coupled to a master which has computed already."""
     handover, taken = Handover(), []
-    assert handover.has_computed(0), "nobody has computed anything that is missing"
     for first_cycle in (0, 10):
         handover.block("x", AxisBlock(first_cycle, 10))
     handover.on_block("x", lambda block: taken.append(block.first_cycle))
     handover.block("x", AxisBlock(20, 10))
     assert taken == [10, 20]
     handover.block("y", AxisBlock(10, 10))
-    assert handover.has_computed(10) and not handover.has_computed(20)
+    assert handover.have_computed(("x", "y"), 10) and not handover.have_computed(("x", "y"), 20)
+
+
+def test_a_unit_without_its_first_block_holds_up_the_run():
+    handover = Handover()
+    assert handover.have_computed((PLC, "x"), -10) and not handover.have_computed((PLC, "x"), 0)
+    handover.block(PLC, PlcBlock(0, 10))
+    assert not handover.have_computed((PLC, "x"), 0)
+    handover.block("x", AxisBlock(0, 10))
+    assert handover.have_computed((PLC, "x"), 0) and not handover.have_computed((PLC, "x"), 10)
 
 
 def test_an_error_of_one_node_does_not_stop_the_others():
@@ -133,9 +141,3 @@ def test_messages_are_taken_in_their_order_when_the_node_looks():
         executor.shutdown()
     finally:
         rclpy.try_shutdown()
-
-
-def test_blocks_of_the_plc_are_counted_like_those_of_others():
-    handover = Handover()
-    handover.block(PLC, PlcBlock(0, 10))
-    assert handover.has_computed(0) and not handover.has_computed(10)
