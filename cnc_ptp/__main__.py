@@ -6,7 +6,7 @@ import signal
 import sys
 from collections.abc import Callable
 
-from cnc_ptp import KERNEL
+from cnc_ptp import KERNEL, one_thread  # noqa: F401 - takes effect when it is imported
 from cnc_ptp.interrupt import end_command
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 
+from cnc_ptp import yaml_text
 from cnc_ptp.axis.external import read_setpoints
 from cnc_ptp.axis.external_commands import SETPOINTS
 from cnc_ptp.errors import CncError
@@ -50,7 +51,7 @@ class Entry:
 
 _Loader: Any = type(
     "ScenarioLoader",
-    (yaml.SafeLoader,),
+    (yaml_text.PARSER,),
     {
         "__doc__": "YAML as people write it: `on` is a word (not true), 1e3 a number.",
         "yaml_implicit_resolvers": {

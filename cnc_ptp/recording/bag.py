@@ -15,6 +15,8 @@ from typing import Any
 import yaml
 from mcap.records import Channel, Schema, Statistics
 
+from cnc_ptp import yaml_text
+
 VERSION = 9
 """Of the metadata, as rosbag2 of Jazzy and Kilted writes it."""
 RECORD = "rosbag2"
@@ -58,7 +60,7 @@ def _topic(channel: Channel, type_name: str) -> dict[str, Any]:
         "name": channel.topic,
         "type": type_name,
         "serialization_format": channel.message_encoding,
-        QOS: yaml.safe_load(channel.metadata.get(QOS, "")) or [],
+        QOS: yaml_text.load(channel.metadata.get(QOS, "")) or [],
         "type_description_hash": channel.metadata.get(TYPE_HASH, ""),
     }
 
@@ -99,13 +101,13 @@ def _may_write(recording: Path) -> bool:
 def _described(beside: Path) -> list[str]:
     """The files that a `metadata.yaml` lists; none if it is not one of rosbag2."""
     try:
-        paths = yaml.safe_load(beside.read_text(encoding="utf-8"))[INFORMATION]["relative_file_paths"]
+        paths = yaml_text.load(beside.read_text(encoding="utf-8"))[INFORMATION]["relative_file_paths"]
         return [str(path) for path in paths]
     except (OSError, UnicodeDecodeError, yaml.YAMLError, TypeError, KeyError):
         return []
 
 
-class _Plain(yaml.SafeDumper):
+class _Plain(yaml_text.WRITER):  # type: ignore[misc]
     """Writes equal parts twice: yaml-cpp does so, and not all readers know aliases."""
 
     def ignore_aliases(self, data: Any) -> bool:

@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from cnc_ptp import yaml_text
+
 INFINITE = {"sec": 9223372036, "nsec": 854775807}
 
 
@@ -64,7 +66,7 @@ def profile(qos: Qos) -> dict[str, Any]:
 
 def profiles_text(qos: Qos) -> str:
     """`offered_qos_profiles` of a channel."""
-    text: str = yaml.safe_dump([profile(qos)], sort_keys=False)
+    text: str = yaml.dump([profile(qos)], Dumper=yaml_text.WRITER, sort_keys=False)
     return text.rstrip("\n")
 
 
@@ -75,7 +77,7 @@ def parse_profiles(text: str, type_name: str) -> Qos:
     """
     usual = offered(type_name)
     try:
-        profiles = yaml.safe_load(text) or []
+        profiles = yaml_text.load(text) or []
         durabilities = {DURABILITIES.get(entry["durability"], "volatile") for entry in profiles}
         reliabilities = {RELIABILITIES.get(entry["reliability"], "reliable") for entry in profiles}
         depth = max((int(entry["depth"]) for entry in profiles), default=0)

@@ -10,8 +10,8 @@ import pytest
 PACKAGE = Path(__file__).parents[2] / "cnc_ptp"
 GENERATED = ("msg", "srv", "action")
 FLOORS = (
-    "compiled", "errors", "motion", "parameters", "protocol", "control", "spindle", "nc", "path", "axis", "channel", "plc",
-    "machine", "wire", "recording", "plots", "commissioning", "interrupt", "ros_arguments", "number_range", "nodes", "commands",
+    "compiled", "one_thread", "errors", "yaml_text", "motion", "parameters", "protocol", "control", "spindle", "nc", "path", "axis", "channel",
+    "plc", "machine", "wire", "recording", "plots", "commissioning", "interrupt", "ros_arguments", "number_range", "nodes", "commands",
     "cli", "__main__",
 )  # fmt: skip
 """From the ground up; docs/architecture.md says what each of them is."""

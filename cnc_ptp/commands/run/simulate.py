@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections import defaultdict
 from contextlib import nullcontext
@@ -80,6 +81,7 @@ def simulate(
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
+    gc.freeze()  # what was loaded stays to the end: nothing to be searched for garbage
     started = time.monotonic()
     recording = None
     if record is not None:

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cnc_ptp.parameters.view.control_view import PlantParameters
+from cnc_ptp.parameters.view.matrix_exponential import exponential
 from cnc_ptp.parameters.view.plant_model import F, I, M, Matrix, U, V, W, X, velocity_controlled
 
 Weights = tuple[float, ...]
@@ -62,10 +63,8 @@ def transition(plant: PlantParameters, *, gain: float, duration: float) -> Trans
 
 def changes(plant: PlantParameters, gain: float, duration: float, *, stands: bool) -> tuple[Matrix, Matrix]:
     """How the states change in a step: free, and at the torque limit."""
-    from scipy.linalg import expm  # takes longer to load than all else, and few need it
-
     free, held = (
-        expm(velocity_controlled(plant, gain=gain, held=held, stands=stands) * duration) - np.eye(7)
+        exponential(velocity_controlled(plant, gain=gain, held=held, stands=stands) * duration) - np.eye(7)
         for held in (False, True)
     )
     return free, held

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cnc_ptp.parameters.view.control_view import ControlParameters, PlantParameters
+from cnc_ptp.parameters.view.matrix_exponential import exponential
 from cnc_ptp.parameters.view.plant_model import I, M, Matrix, U, V, W, X, velocity_controlled
 
 BISECTIONS = 40
@@ -101,9 +102,7 @@ def with_previous_position(loop: Loop) -> Loop:
 
 def part(matrix: Matrix, states: tuple[int, ...], command: int) -> Loop:
     """The rows and columns of some states of a model over a cycle, without states that never change."""
-    from scipy.linalg import expm  # takes longer to load than all else, and few need it
-
-    step = expm(matrix)
+    step = exponential(matrix)
     changing = [state for state in states if matrix[state].any()]
     return Loop(step[np.ix_(changing, changing)], step[changing, command])
 

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import yaml
+from cnc_ptp import yaml_text
 
 Number = int | float
 ParameterValue = bool | int | float | str | tuple[str, ...]
@@ -161,7 +161,7 @@ def split_indexes(ros_name: str) -> tuple[str, tuple[int, ...]]:
 def catalogue() -> Catalogue:
     """The declarations of declarations.yaml."""
     text = Path(__file__).with_name("declarations.yaml").read_text(encoding="utf-8")
-    return make_catalogue(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)))
+    return make_catalogue(yaml_text.load(text))
 
 
 def make_catalogue(data: Mapping[str, Any]) -> Catalogue:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from cnc_ptp import yaml_text
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare.declarations import dotted
 from cnc_ptp.parameters.errors import Place, Problem
@@ -20,7 +21,6 @@ Value = Scalar | tuple[Scalar, ...]
 
 MAX_DEPTH = 20
 TOO_DEEP = f"nested deeper than {MAX_DEPTH} levels"
-PARSER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 INTEGER = re.compile(r"[-+]?[0-9]+|0x[0-9a-fA-F]+")
 NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 BOOLEANS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
@@ -52,7 +52,7 @@ def read_sections(text: str, file: str) -> tuple[list[Section], list[Problem]]:
     """The sections of a ROS parameters file and the problems of its form; names and values are not checked here."""
     reader = Reader(file)
     try:
-        reader.read_file(yaml.parse(text, Loader=PARSER))
+        reader.read_file(yaml.parse(text, Loader=yaml_text.PARSER))
     except Refused as refusal:
         reader.problems.append(refusal.args[0])
     except yaml.MarkedYAMLError as error:
