@@ -64,10 +64,12 @@ class BlockGate:
 
     def add_master_block(self, master: str, block: CycleBlock) -> None:
         """Takes a block of an axis that is, was or will be the master; one of an earlier tick is not used."""
-        if block.first_cycle >= self._needed_of_master():
+        if block.first_cycle >= self.needed_of_master:
             self._master_blocks.setdefault(master, {})[block.first_cycle] = block
 
-    def _needed_of_master(self) -> int:
+    @property
+    def needed_of_master(self) -> int:
+        """First cycle of the oldest block of a master that is still of use."""
         return self._next_cycle if self._open is None else self._open[0].first_cycle
 
     def _of_master(self) -> dict[int, CycleBlock]:
@@ -76,7 +78,7 @@ class BlockGate:
     def missing(self) -> list[str]:
         """Sources that the next tick waits for; [clock] when no tick is there; empty when it can be computed."""
         if self._open is not None:
-            waits = self._master is not None and self._needed_of_master() not in self._of_master()
+            waits = self._master is not None and self.needed_of_master not in self._of_master()
             return [self._master] if waits and self._master is not None else []
         if not self._ticks:
             return [CLOCK]

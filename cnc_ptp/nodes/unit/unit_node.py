@@ -52,7 +52,7 @@ from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, PlcBlock, Severity
 from cnc_ptp.protocol.commands import BAD_ARGUMENT, COMMANDS
 from cnc_ptp.protocol.unit import PLC, Unit
-from cnc_ptp.wire.block_codec import codec_of, encode_block
+from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
 from cnc_ptp.wire.stamps import Stamps
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
@@ -353,8 +353,13 @@ class UnitNode(PollingNode):
                 self._handover.on_block(master, take, self.look)
                 return
             kind = self._kinds[master]
-            received = partial(self._on_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
+            received = partial(self._on_master_message, chain(codec_of(BLOCK_CLASSES[kind]).decode, take))
             self.create_subscription(BLOCK_TYPES[kind], block_topic(master), received, REMEMBERED_BLOCKS, raw=True)
+
+    def _on_master_message(self, take: Callable[[bytes], None], data: bytes) -> None:
+        """The first ones are the history of the topic, up to 10 s: old ones are not even decoded."""
+        if not has_plain_header(data) or head_of(data)[1] >= self._gate.needed_of_master:
+            self._on_message(take, data)
 
     def _take_master_block(self, master: str, block: CycleBlock) -> None:
         self._watchdog.heard(master)
