@@ -47,6 +47,8 @@ class Figure:
     aim: float | None = None
     at_most: bool = False
     """The goal is an upper bound."""
+    of_ratio: bool = False
+    """The goal is one for the ratio to the peer: it holds on any computer."""
     peer: str = ""
     peer_value: float | None = None
 
@@ -60,7 +62,8 @@ class Figure:
         """Whether the goal is reached; None without one."""
         if self.goal is None:
             return None
-        return self.value <= self.goal if self.at_most else self.value >= self.goal
+        value = (self.ratio or 0.0) if self.of_ratio else self.value
+        return value <= self.goal if self.at_most else value >= self.goal
 
 
 def median_of(runs: int, measure: Callable[[], float]) -> float:
@@ -102,7 +105,7 @@ def goal_text(figure: Figure) -> Text:
     if figure.goal is None:
         return Text("")
     aim = f", aim {number(figure.aim)}" if figure.aim is not None else ""
-    sign = "≤" if figure.at_most else "≥"
+    sign = ("ratio " if figure.of_ratio else "") + ("≤" if figure.at_most else "≥")
     word, style = ("met", "green") if figure.met else ("not met", "yellow")
     return Text.assemble(f"{sign} {number(figure.goal)}{aim} ", (word, style))
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
+from gcodeparser import parse_gcode_lines
+
 from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
@@ -40,8 +42,21 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
                 pass
         return watch.wall / blocks
 
+    def peer() -> float:
+        with stopwatch() as watch:
+            list(parse_gcode_lines(text))
+        return watch.wall / blocks
+
     show(f"{blocks:,} blocks")
-    parsing, resolving = medians_of(effort.runs, [parse, resolve])
-    yield Figure("`G1 X Y Z F` blocks", 1.0 / (parsing + resolving), "blocks/s", goal=60_000.0)
+    parsing, resolving, words_only = medians_of(effort.runs, [parse, resolve, peer])
+    yield Figure(
+        "`G1 X Y Z F` blocks, text to end points",
+        1.0 / (parsing + resolving),
+        "blocks/s",
+        goal=2.0,
+        of_ratio=True,
+        peer="gcodeparser, text to words",
+        peer_value=1.0 / words_only,
+    )
     yield Figure("text to words", 1e6 * parsing, "µs/block")
     yield Figure("modal states, end points", 1e6 * resolving, "µs/block")

@@ -24,7 +24,7 @@ from cnc_ptp.recording.writer import Recording
 CHANNELS = {"one": "x", "two": "z"}
 SPINDLES = 16
 SECONDS = 10.0
-GOAL = 10.0
+GOAL = 30.0
 STEADY, RAMPS = (500, 1500, 2500, 3500), (6000, 500)
 """Speeds in rpm; from one to the other of the ramps takes 0.9 s."""
 STROKE, STROKE_TIME = 10, 0.4

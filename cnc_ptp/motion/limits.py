@@ -67,6 +67,11 @@ def check_limit(name: str, value: float) -> None:
         )
 
 
+def usual(p: float, v: float, a: float, end: float) -> bool:
+    """True when all are numbers far within the range of `check_state`, which takes longer."""
+    return abs(p) + abs(v) + abs(a) + abs(end) <= LARGEST_STATE
+
+
 def check_state(**values: float) -> None:
     """Refuse a start state, a target or a time that is NaN, infinite or beyond ±1e12. Raises CncError 23002."""
     for name, value in values.items():

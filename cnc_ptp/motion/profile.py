@@ -11,7 +11,7 @@ The last row of a table is the end state with a = j = 0: after its end a motion 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Final
 
 import numpy as np
@@ -90,35 +90,40 @@ class Profile:
         return f"Profile({len(self.rows) - 1} segments, {self.duration!r} s, end {self.end!r})"
 
 
-def integrate(t: float, p: float, v: float, pieces: Iterable[Piece]) -> tuple[list[Segment], float, float, float]:
+def integrate(
+    t: float, p: float, v: float, pieces: list[Piece], place: float = 0.0, s: float = 1.0
+) -> tuple[list[Segment], float, float, float]:
     """String pieces together from time t, position p and velocity v: the rows, and t, p, v after the last piece.
 
-    Pieces without duration leave no row.
+    Pieces without duration leave no row. The rows are seen from `place` in direction `s` (1 or -1).
     """
     rows: list[Segment] = []
     for d, a, j in pieces:
         if d > 0.0:
-            rows.append((t, p, v, a, j))
+            rows.append((t, place + s * p, s * v, s * a, s * j))
             t += d
             p += d * (v + d * (0.5 * a + d * (j / 6.0)))
             v += d * (a + d * (0.5 * j))
     return rows, t, p, v
 
 
-def integrate_back(t: float, pieces: Sequence[Piece]) -> tuple[list[Segment], float]:
-    """String pieces together from time t so that they end at rest at position 0: the rows, and t after the last piece.
+def integrate_back(t: float, pieces: list[Piece], place: float = 0.0, s: float = 1.0) -> tuple[list[Segment], float]:
+    """String pieces together from time t so that they end at rest at `place`: the rows, and t after the last piece.
 
-    Pieces without duration leave no row.
+    Pieces without duration leave no row. The rows are seen in direction `s` (1 or -1).
     """
-    pieces_back: list[tuple[float, Segment]] = []
+    starts: list[float] = []
+    for d, _, _ in pieces:
+        starts.append(t)
+        if d > 0.0:
+            t += d
+    rows: list[Segment] = []
     p = v = 0.0
-    for d, a, j in reversed(pieces):
+    for index in range(len(pieces) - 1, -1, -1):
+        d, a, j = pieces[index]
         if d > 0.0:
             v -= d * (a + d * (0.5 * j))
             p -= d * (v + d * (0.5 * a + d * (j / 6.0)))
-            pieces_back.append((d, (0.0, p, v, a, j)))
-    rows: list[Segment] = []
-    for d, (_, p, v, a, j) in reversed(pieces_back):
-        rows.append((t, p, v, a, j))
-        t += d
+            rows.append((starts[index], place + s * p, s * v, s * a, s * j))
+    rows.reverse()
     return rows, t

@@ -44,9 +44,8 @@ def step_to_position(p: float, v: float, target: float, limits: Limits) -> Profi
     ramp = _ramp(v, peak, limits)
     cruise = distance - 0.5 * (v + peak) * ramp[0] - step_stopping_distance(peak, deceleration)
     head, t, _, _ = integrate(0.0, p, v, [ramp, (max(0.0, cruise) / peak, 0.0, 0.0)])
-    tail, t = integrate_back(t, [_ramp(peak, 0.0, limits)])
-    rows = [*head, *((t0, target + x, v0, a, j) for t0, x, v0, a, j in tail)]
-    return Profile((*rows, (t, target, 0.0, 0.0, 0.0)))
+    tail, t = integrate_back(t, [_ramp(peak, 0.0, limits)], target)
+    return Profile([*head, *tail, (t, target, 0.0, 0.0, 0.0)])
 
 
 def _ramp(v: float, wanted: float, limits: Limits) -> Piece:

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from math import sqrt
 
-from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limits, check_state
-from cnc_ptp.motion.profile import Piece, Profile, Segment, integrate, integrate_back
+from cnc_ptp.motion.limits import NEGLIGIBLE_DISTANCE, Limits, check_limits, check_state, usual
+from cnc_ptp.motion.profile import Piece, Profile, integrate, integrate_back
 from cnc_ptp.motion.quartic import largest_root
 from cnc_ptp.motion.ramp import brake, brake_term, ramp, stopping_distance
 from cnc_ptp.motion.rest_to_rest import rest_to_rest
@@ -39,7 +39,8 @@ def plan_to_position(p: float, v: float, a: float, target: float, limits: Limits
     standstill in between, which is faster. Raises CncError 23001 (limits) and 23002 (state, target).
     """
     check_limits(limits)
-    check_state(position=p, velocity=v, acceleration=a, target=target)
+    if not usual(p, v, a, target):
+        check_state(position=p, velocity=v, acceleration=a, target=target)
     _, _, deceleration, jerk = limits
     distance = target - p
     stop = stopping_distance(v, a, deceleration, jerk)
@@ -69,9 +70,8 @@ def _stop_and_return(p: float, v: float, a: float, target: float, limits: Limits
 
     Distances are counted from p, so that the return keeps its digits far away from zero.
     """
-    rows, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits))
+    table, t, stop, _ = integrate(0.0, 0.0, v, ramp(v, a, 0.0, limits), p)
     back = rest_to_rest(stop, target - p, limits)
-    table = [(t0, p + x, v0, a0, j0) for t0, x, v0, a0, j0 in rows]
     table += [(t + t0, p + x, v0, a0, j0) for t0, x, v0, a0, j0 in back.rows]
     table[-1] = (t + back.duration, target, 0.0, 0.0, 0.0)
     return Profile(table)
@@ -82,16 +82,11 @@ def _table(p: float, v: float, target: float, s: float, head: list[Piece], tail:
 
     All values seen in direction s. Start and end are exact, the rounding of the whole falls between the two.
     """
-    first, t, _, _ = integrate(0.0, 0.0, v, head)
-    last, t = integrate_back(t, tail)
-    rows: list[Segment]
-    if s > 0.0:
-        rows = [(t0, p + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in first]
-        rows += [(t0, target + x0, v0, a0, j0) for t0, x0, v0, a0, j0 in last]
-    else:
-        rows = [(t0, p - x0, -v0, -a0, -j0) for t0, x0, v0, a0, j0 in first]
-        rows += [(t0, target - x0, -v0, -a0, -j0) for t0, x0, v0, a0, j0 in last]
-    rows[:1] = [(0.0, p, s * v, *rows[0][3:])] if rows else []
+    rows, t, _, _ = integrate(0.0, 0.0, v, head, p, s)
+    last, t = integrate_back(t, tail, target, s)
+    rows += last
+    if rows:
+        rows[0] = (0.0, p, s * v, rows[0][3], rows[0][4])
     rows.append((t, target, 0.0, 0.0, 0.0))
     return Profile(rows)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cnc_ptp.motion.limits import Limits, check_limits, check_state
+from cnc_ptp.motion.limits import Limits, check_limits, check_state, usual
 from cnc_ptp.motion.profile import Profile, integrate
 from cnc_ptp.motion.ramp import ramp
 
@@ -14,7 +14,8 @@ def plan_to_velocity(p: float, v: float, a: float, velocity: float, limits: Limi
     Raises CncError 23001 (limits) and 23002 (state, velocity).
     """
     check_limits(limits)
-    check_state(position=p, start_velocity=v, start_acceleration=a, velocity=velocity)
+    if not usual(p, v, a, velocity):
+        check_state(position=p, start_velocity=v, start_acceleration=a, velocity=velocity)
     rows, t, p, _ = integrate(0.0, p, v, ramp(v, a, velocity, limits))
     rows.append((t, p, velocity, 0.0, 0.0))
     return Profile(rows)

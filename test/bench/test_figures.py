@@ -47,6 +47,13 @@ def test_ratio_to_the_peer() -> None:
     assert Figure("plan", 3.0, "µs").ratio is None
 
 
+def test_goal_of_a_ratio():
+    figure = Figure("plan", 3.0, "µs", goal=1.5, at_most=True, of_ratio=True, peer="other", peer_value=1.5)
+    assert str(goal_text(figure)) == "ratio ≤ 1.50 not met"
+    faster = Figure("plan", 1.5, "µs", goal=1.5, at_most=True, of_ratio=True, peer="other", peer_value=1.5)
+    assert faster.met
+
+
 def test_medians_are_taken_in_turn() -> None:
     order: list[str] = []
     values = iter([5.0, 1.0, 9.0])
