@@ -32,8 +32,7 @@ $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
 
 # Without a C compiler the kernel runs interpreted; the program says why.
 $(VENV)/.kernel: $(SOURCES) pyproject.toml $(VENV)/.package
-	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build >> build/kernel.log || true
-	@touch $@
+	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build >> build/kernel.log && touch $@ || true
 
 demo: setup
 	@mkdir -p runs
@@ -71,4 +70,4 @@ ids: setup
 	$(BIN)/python cnc_ptp/parameters/declare/make_ids.py
 
 clean:
-	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so
+	rm -rf $(VENV) build *.egg-info cnc_ptp/msg cnc_ptp/srv cnc_ptp/action cnc_ptp/*.so cnc_ptp/compiled/library

@@ -50,11 +50,20 @@ class BuildInterfacesAndKernel(build_ext):
         ]  # fmt: skip
         jobs = str(os.cpu_count() or 1)
         kernel = self.compile_kernel()  # meanwhile: generating interfaces takes one processor
-        for command in (configure, ["cmake", "--build", str(build), "-j", jobs], ["cmake", "--install", str(build)]):
-            subprocess.run(
-                command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL
-            )
-        kernel.wait()
+        try:
+            for command in (
+                configure,
+                ["cmake", "--build", str(build), "-j", jobs],
+                ["cmake", "--install", str(build)],
+            ):
+                subprocess.run(
+                    command, check=True, env=environment, stdout=None if self.verbose > 1 else subprocess.DEVNULL
+                )
+        except BaseException:
+            kernel.kill()
+            raise
+        if kernel.wait():
+            print(f"{PACKAGE}: the kernel could not be compiled and runs interpreted; build/kernel.log says why")
         self.take_python_part(stage)
         self.hand_on(prefix_part(stage))
         if self.with_pip:  # colcon puts the scripts there itself

@@ -6,8 +6,9 @@ import signal
 import sys
 from collections.abc import Callable
 
-from cnc_ptp import KERNEL, one_thread  # noqa: F401 - takes effect when it is imported
+from cnc_ptp import KERNEL
 from cnc_ptp.interrupt import end_command
+from cnc_ptp.one_thread import use_one_thread
 
 
 def _entry(*command: str) -> Callable[[], object]:
@@ -15,6 +16,7 @@ def _entry(*command: str) -> Callable[[], object]:
 
     def call() -> object:
         signal.signal(signal.SIGINT, end_command)
+        use_one_thread()
         if KERNEL.edited:
             print(f"{KERNEL}; make setup compiles it again", file=sys.stderr)
         from cnc_ptp.cli import main

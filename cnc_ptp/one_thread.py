@@ -1,8 +1,14 @@
-"""Imported before NumPy in processes of our own: its BLAS starts no threads, which would wait actively.
+"""NumPy without threads: nodes and commands have no use for them, and they wait actively."""
 
-Matrices here are small.
-"""
+from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""Environment in which NumPy is to be imported."""
+
+
+def use_one_thread() -> None:
+    """For this process, before it imports NumPy, and for those that it starts; what the user has set counts."""
+    for name, value in ONE_THREAD.items():
+        os.environ.setdefault(name, value)

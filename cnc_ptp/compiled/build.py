@@ -12,7 +12,18 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, PACKAGE, hashes, read_state, sources, write_state
+from cnc_ptp.compiled.sources import (
+    FAILURE,
+    LIBRARY,
+    NAME,
+    PACKAGE,
+    hashes,
+    library_file,
+    read_state,
+    recipe,
+    sources,
+    write_state,
+)
 
 if TYPE_CHECKING:
     from setuptools import Extension
@@ -24,8 +35,8 @@ OPTIMISATION = "1"
 def build(folder: Path) -> str:
     """Makes the library in `folder`. Returns why it could not be made, empty when it was."""
     files = sources()
-    state = hashes(files)
-    if read_state(folder) == state:
+    state = hashes(files | recipe())
+    if read_state(folder) == state and library_file(folder).is_file():
         return ""
     write_state(folder, {FAILURE: "its compilation was interrupted"})
     work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
@@ -35,7 +46,8 @@ def build(folder: Path) -> str:
     except ImportError as error:
         failure = f"it cannot be compiled without {error.name}"
     except (Exception, SystemExit) as error:  # mypyc ends the process when it does not understand a source
-        failure = f"it could not be compiled: {str(error).splitlines()[0] if str(error) else type(error).__name__}"
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        failure = f"it could not be compiled: {reason}; build/kernel.log has more"
     write_state(folder, {FAILURE: failure} if failure else state)
     return failure
 
@@ -45,7 +57,9 @@ def make_library(files: list[Path], work: Path, folder: Path) -> None:
     os.chdir(PACKAGE.parent)  # tracebacks name files as they are given here
     library = compile_library(translate(files, work), work)
     folder.mkdir(parents=True, exist_ok=True)
-    shutil.copy2(library, folder / library.name)
+    beside = folder / f"{os.getpid()}.new"
+    shutil.copy2(library, beside)
+    os.replace(beside, library_file(folder))  # a node that runs keeps the library that it has
 
 
 def translate(files: list[Path], work: Path) -> Extension:
@@ -66,7 +80,6 @@ def translate(files: list[Path], work: Path) -> Extension:
 
 
 def compile_library(extension: Extension, work: Path) -> Path:
-    from pybind11.setup_helpers import ParallelCompile
     from setuptools import Distribution
     from setuptools.command.build_ext import build_ext
 
@@ -78,7 +91,12 @@ def compile_library(extension: Extension, work: Path) -> Path:
     command = build_ext(Distribution({"name": NAME, "ext_modules": [extension]}))
     command.build_lib, command.build_temp = str(work / "lib"), str(work / "objects")
     command.ensure_finalized()
-    with ParallelCompile(needs_recompile=outdated):
+    try:
+        from pybind11.setup_helpers import ParallelCompile
+
+        with ParallelCompile(needs_recompile=outdated):
+            command.run()
+    except ModuleNotFoundError:  # one file after the other
         command.run()
     return Path(command.get_ext_fullpath(extension.name))
 

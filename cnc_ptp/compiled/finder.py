@@ -8,11 +8,11 @@ import sys
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader, ModuleSpec
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
 from importlib.util import spec_from_loader
 from types import ModuleType
 
-from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, hashes, read_state, sources
+from cnc_ptp.compiled.sources import FAILURE, LIBRARY, NAME, hashes, library_file, read_state, recipe, sources
 
 INTERPRET = "CNC_PTP_PURE"
 """Environment variable: 1 chooses the interpreted kernel."""
@@ -28,7 +28,7 @@ class KernelFinder(MetaPathFinder, Loader):
 
     def __init__(self, modules: Iterable[str]) -> None:
         self._modules = frozenset(modules)
-        self._library = str(LIBRARY / f"{NAME}{EXTENSION_SUFFIXES[0]}")
+        self._library = str(library_file(LIBRARY))
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
         if name in self._modules:
@@ -60,13 +60,21 @@ class Kernel:
         if os.environ.get(INTERPRET, "") not in ("", "0"):
             self.interpreted_because = f"{INTERPRET} is set"
             return
-        built = read_state(LIBRARY)
+        built, present = read_state(LIBRARY), sources()
         if not built or FAILURE in built:
             self.interpreted_because = built.get(FAILURE, "it was not compiled")
-        elif change := changed(built, hashes(sources())):
+        elif change := changed(built, hashes(present | recipe())):
             self.interpreted_because, self.edited = f"{change} since it was compiled", True
         else:
-            sys.meta_path.insert(0, KernelFinder(built))
+            self._load(KernelFinder(present))
+
+    def _load(self, finder: KernelFinder) -> None:
+        sys.meta_path.insert(0, finder)
+        try:
+            import_module(NAME)
+        except ImportError as error:
+            sys.meta_path.remove(finder)
+            self.interpreted_because = f"it cannot be loaded: {error}"
 
     @property
     def kind(self) -> str:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import sys
+import os
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 ROOMS = ("motion", "path", "nc", "axis", "spindle", "control", "channel", "plc", "machine", "protocol")
@@ -27,13 +28,23 @@ def sources() -> dict[str, Path]:
     return {".".join(file.relative_to(PACKAGE.parent).with_suffix("").parts): file for file in chosen}
 
 
+def recipe() -> dict[str, Path]:
+    """What decides how they are compiled."""
+    return {f"cnc_ptp.compiled.{name}": PACKAGE / "compiled" / f"{name}.py" for name in ("build", "sources")}
+
+
 def hashes(files: dict[str, Path]) -> dict[str, str]:
     return {name: hashlib.blake2b(file.read_bytes(), digest_size=16).hexdigest() for name, file in files.items()}
 
 
+def library_file(folder: Path) -> Path:
+    """One for each version of Python and kind of computer."""
+    return folder / f"{NAME}{EXTENSION_SUFFIXES[0]}"
+
+
 def state_file(folder: Path) -> Path:
-    """One for each version of Python."""
-    return folder / f"{sys.implementation.cache_tag}.json"
+    """Beside the library."""
+    return library_file(folder).with_suffix(".json")
 
 
 def read_state(folder: Path) -> dict[str, str]:
@@ -47,4 +58,7 @@ def read_state(folder: Path) -> dict[str, str]:
 
 def write_state(folder: Path, state: dict[str, str]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    state_file(folder).write_text(json.dumps(state, indent=1))
+    file = state_file(folder)
+    beside = file.with_suffix(f".{os.getpid()}")
+    beside.write_text(json.dumps(state, indent=1))
+    os.replace(beside, file)  # whoever reads it has the old or the new one

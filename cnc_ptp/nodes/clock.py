@@ -105,7 +105,7 @@ class ClockNode(PollingNode):
         if self._started_at is None or self._ended_at is not None:
             return POLL
         if self._free_run:
-            return POLL if self._handover is None else 0.0
+            return self._pace.wait_time(POLL) if self._handover is None else 0.0
         return max(0.0, self._due_at() - time.monotonic())
 
     def advance(self) -> None:
@@ -128,7 +128,10 @@ class ClockNode(PollingNode):
             self._tick_in_time()
 
     def _tick_in_time(self) -> None:
-        """Issues what is due; a clock in its own process sleeps between ticks: its executor has few turns."""
+        """Issues what is due; a clock in its own process sleeps between ticks: its executor has few turns.
+
+        Where a tick computes the machine, each one is followed by a turn of the executor, however late the run is.
+        """
         turn = time.monotonic() + (TURN if self._handover is None else 0.0)
         while self._ended_at is None:
             if time.monotonic() >= self._due_at():
@@ -137,6 +140,8 @@ class ClockNode(PollingNode):
                 time.sleep(max(0.0, self._due_at() - time.monotonic()))
                 self.take_polled()
             else:
+                return
+            if time.monotonic() >= turn:
                 return
 
     def _run_freely(self, handover: Handover) -> None:

@@ -11,8 +11,9 @@ import importlib
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import forkserver, get_context, parent_process
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -20,10 +21,12 @@ from types import ModuleType
 
 from setproctitle import setproctitle
 
+from cnc_ptp.one_thread import ONE_THREAD
+
 PRELOAD = "cnc_ptp.nodes.preload"
 CONTEXT = get_context("forkserver")
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""Without it NumPy starts threads; nodes have no use for them."""
+UNKNOWN = 255
+"""Exit status of every process when the server has ended."""
 
 
 def start_server() -> None:
@@ -47,6 +50,36 @@ def start_node(module: str, words: Sequence[str]) -> BaseProcess:
     return process
 
 
+def is_alive(process: BaseProcess) -> bool:
+    """True while a node's process runs, also without the server, which alone learns how a process has ended."""
+    return process.exitcode is None or server_is_gone(process)
+
+
+def server_is_gone(process: BaseProcess) -> bool:
+    """The server has ended and left this process behind."""
+    if process.exitcode != UNKNOWN:
+        return False
+    try:
+        state = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
+
+
+def end(process: BaseProcess, number: signal.Signals) -> None:
+    """Sends a signal to a node's process if it still runs."""
+    if process.pid is not None and is_alive(process):
+        with suppress(ProcessLookupError):
+            os.kill(process.pid, number)
+
+
+def wait_for(process: BaseProcess, deadline: float) -> None:
+    """Returns when it has ended, or at `deadline` of the monotonic clock."""
+    process.join(max(0.0, deadline - time.monotonic()))
+    while server_is_gone(process) and time.monotonic() < deadline:
+        time.sleep(0.01)
+
+
 @contextmanager
 def without_main_module() -> Iterator[None]:
     """multiprocessing would execute the main module of a program again in each process; nodes do not need it."""
@@ -67,6 +100,7 @@ def run_node(module: str, words: Sequence[str], environment: Mapping[str, str], 
     os.environ.clear()
     os.environ.update(environment)
     sys.argv = [module, *words]
+    importlib.import_module(PRELOAD)  # multiprocessing does not tell when the server could not import it
     importlib.import_module(f"cnc_ptp.nodes.{module}").main()
 
 

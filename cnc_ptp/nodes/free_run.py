@@ -32,7 +32,7 @@ class FreeRunPace:
         self._ticked_at = 0.0
 
     def heard(self, name: str, first_cycle: int) -> None:
-        """The PLC has computed, the recorder has written all blocks of this cycle."""
+        """The PLC has computed this cycle, the recorder has taken its tick."""
         if name in self._newest:
             self._newest[name] = max(self._newest[name], first_cycle)
             self._silent.discard(name)
@@ -49,6 +49,12 @@ class FreeRunPace:
             self._silent |= {name for name in waits if self._watchdog.silent([name], begun=begun and name == PLC)}
             return False
         return PLC not in self._silent or time.monotonic() - self._ticked_at >= self._block_time
+
+    def wait_time(self, longest: float) -> float:
+        """Seconds, at most `longest`, until a tick may come without a message."""
+        if PLC not in self._silent:
+            return longest
+        return min(longest, max(0.0, self._ticked_at + self._block_time - time.monotonic()))
 
     def ticked(self) -> None:
         self._ticked_at = time.monotonic()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection
+from multiprocessing import parent_process
 from typing import Any
 
 import click
 
+from cnc_ptp import KERNEL
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.wiring import UNKNOWN_UNIT, unit_kinds
 from cnc_ptp.nodes import process
@@ -49,6 +51,8 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
 
 def call(command: click.Command) -> None:
     """Runs a node's command with the process arguments; those for ROS are its context's object."""
+    if KERNEL.edited and parent_process() is None:  # not one of many nodes of a run
+        print(f"{KERNEL}; make setup compiles it again", file=sys.stderr)
     try:
         own, ros = split(sys.argv[1:])
     except CncError as error:

@@ -45,7 +45,7 @@ from cnc_ptp.nodes.topics import (
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
 from cnc_ptp.recording.writer import Recording
-from cnc_ptp.wire.block_codec import head_of
+from cnc_ptp.wire.block_codec import head_of, with_plain_header
 from cnc_ptp.wire.ticks import Tick, decode_tick
 
 NOT_WRITABLE = 26113
@@ -82,6 +82,8 @@ class RecorderNode(PollingNode):
         self._cycle_ns = machine.cycle_time_us * 1000
         self._free_run = False
         self._tick_ns = 0
+        self._last_tick = -1
+        """First cycle of the newest tick."""
         self._recording: Recording | None = None
         self._early: list[Any] = []
         self._units = unit_kinds(machine)
@@ -162,6 +164,7 @@ class RecorderNode(PollingNode):
             for record in self._early:
                 record()
             self._early.clear()
+        self._last_tick = message.first_cycle
         if message.count:
             self._recording.tick(CycleTick(message.first_cycle, message.count), message.scheduled_monotonic_ns)
 
@@ -170,6 +173,7 @@ class RecorderNode(PollingNode):
         if self._recording is None:
             self._early.append(lambda: self._on_block(unit, block_class, data))
             return
+        data = with_plain_header(block_class, data, self._recording.stamps)
         stamp_ns, first_cycle, count = head_of(data)
         if self._is_new(unit, stamp_ns, first_cycle, count):
             self._recording.encoded_block(unit, block_class, data)
@@ -231,7 +235,7 @@ class RecorderNode(PollingNode):
         """Takes the ticks and blocks that have come, and writes when it is time."""
         self.take_polled()
         if self._free_run and self._handover is None:
-            self._report(min(self._next_cycle.values()) - 1)
+            self._report(self._last_tick)
         if self._recording is not None:
             self._recording.flush_if_due(time.monotonic())
 

@@ -20,7 +20,7 @@ from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
-from cnc_ptp.nodes.forked import start_node, start_server
+from cnc_ptp.nodes.forked import end, is_alive, server_is_gone, start_node, start_server, wait_for
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
@@ -32,6 +32,7 @@ from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
 
 NODE_DIED = 26104
+SERVER = "server of processes"
 NOT_READY = 26105
 POLL = 0.05
 START_TIMEOUT = 60.0
@@ -128,7 +129,7 @@ class Supervisor:
             return self._not_started_in_time()
         if not self._monitor.cycle:
             return True
-        living = [name for name in self._moving_units if self._processes[name].exitcode is None]
+        living = [name for name in self._moving_units if is_alive(self._processes[name])]
         standing = self._monitor.standing
         settled = time.monotonic() > self._settled_at and all(standing.get(name, True) for name in living)
         return settled or time.monotonic() > self._stop_deadline
@@ -149,6 +150,12 @@ class Supervisor:
         for name, child in self._processes.items():
             status = child.exitcode
             if status is None or name in self._dead or (name == CLOCK and status == 0):
+                continue
+            if SERVER in self._dead:  # nobody knows any more how a node has ended
+                continue
+            if server_is_gone(child):
+                self._dead.add(SERVER)
+                self._fail(NODE_DIED, f"the process that nodes are forked from has ended; {self._what_follows()}")
                 continue
             self._dead.add(name)
             text = f"node '{name}' (process {child.pid}) {how_ended(status)} during the run; {self._what_follows()}"
@@ -195,14 +202,12 @@ class Supervisor:
         recorder = [child for name, child in self._processes.items() if name == RECORDER]
         for group in (others, recorder):
             for child in group:
-                if child.exitcode is None:
-                    child.terminate()  # SIGINT would be a KeyboardInterrupt while Python still starts
+                end(child, signal.SIGTERM)  # SIGINT would be a KeyboardInterrupt while Python still starts
             deadline = time.monotonic() + END_TIMEOUT
             for child in group:
-                child.join(max(0.0, deadline - time.monotonic()))
-                if child.exitcode is None:
-                    child.kill()
-                    child.join()
+                wait_for(child, deadline)
+                end(child, signal.SIGKILL)
+                child.join()
 
     def _close_recording(self) -> None:
         """Closes the recording of a recorder that was killed, so that every reader opens it."""
@@ -261,6 +266,7 @@ def observers_of(options: RunOptions) -> list[str]:
 
 def how_ended(status: int) -> str:
     """The return code of a process in words; SIGNALLED + n is how our nodes report signal n."""
-    if status < 0 or status > process.SIGNALLED:
-        return f"was ended by {signal.Signals(-status if status < 0 else status - process.SIGNALLED).name}"
+    number = -status if status < 0 else status - process.SIGNALLED
+    if number in {*signal.Signals}:
+        return f"was ended by {signal.Signals(number).name}"
     return f"ended with exit status {status}"

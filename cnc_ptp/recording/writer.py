@@ -19,7 +19,7 @@ from cnc_ptp.recording.bag import QOS, TYPE_HASH
 from cnc_ptp.recording.blocks import StateKind, block_rows, cycles_of, fill_states, kind_of
 from cnc_ptp.recording.mcap_file import HEAD_SIZE, McapFile
 from cnc_ptp.recording.qos import offered, profiles_text
-from cnc_ptp.wire.block_codec import codec_of, has_plain_header, head_of
+from cnc_ptp.wire.block_codec import codec_of, head_of, with_plain_header
 from cnc_ptp.wire.layout import Bytes, Layout, encode, repeat
 from cnc_ptp.wire.schemas import full_name, load_schema, type_hash
 from cnc_ptp.wire.stamps import Stamps, Times
@@ -173,10 +173,7 @@ class Recording:
 
     def encoded_block(self, name: str, block_class: type, data: bytes) -> None:
         """`/<name>/block` as it came over DDS and, per cycle, `/<name>/state`."""
-        if not has_plain_header(data):
-            codec = codec_of(block_class)
-            data = codec.encode(codec.decode(data), self.stamps)
-        self._block(name, block_class, data)
+        self._block(name, block_class, with_plain_header(block_class, data, self.stamps))
 
     def tick(self, tick: CycleTick, scheduled_monotonic_ns: int = 0) -> None:
         """`/clock/tick`."""

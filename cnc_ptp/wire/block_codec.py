@@ -66,7 +66,7 @@ class BlockCodec:
         self._decode: Any = DecoderFactory().decoder_for("cdr", text)
         self._shape = _SHAPES[block_class]
         self._forms: dict[Hashable, Form] = {}
-        self._of_words: dict[int, Form] = {}
+        self._of_words: dict[int, list[Form]] = {}
         """By size in words of four bytes: DDS fills the last one up."""
 
     def encode(self, block: Any, stamps: Stamps) -> bytes:
@@ -96,24 +96,26 @@ class BlockCodec:
 
     def decode(self, data: bytes) -> Any:
         """The block of a message."""
-        form = self._of_words.get(words(len(data)))
-        fields = form.unpack(data) if form else None
-        if fields is None:
-            block = self._class(**self._fields(self._decode(data)))
-            self._learn(block)
-            return block
-        return self._class(**fields)
+        for form in self._of_words.get(words(len(data)), ()):
+            fields = form.unpack(data)
+            if fields is not None:
+                return self._class(**fields)
+        block = self._class(**self._fields(self._decode(data)))
+        self._learn(block)
+        return block
 
     def layout(self, data: bytes) -> Layout:
         """Where the numbers of a message lie; the same object for messages of the same form."""
-        form = self._of_words.get(words(len(data)))
-        if form is not None and form.fits(data):
-            return form.layout
-        message = self._decode(data)
-        self._require_columns(message)
-        self._learn(self._class(**self._fields(message)))
-        form = self._of_words.get(words(len(data)))
-        return form.layout if form is not None and form.fits(data) else Layout(self.schema, message)
+        known = self._form_of(data)
+        if known is None:
+            message = self._decode(data)
+            self._require_columns(message)
+            self._learn(self._class(**self._fields(message)))
+            known = self._form_of(data)
+        return known.layout if known else Layout(self.schema, message)
+
+    def _form_of(self, data: bytes) -> Form | None:
+        return next((form for form in self._of_words.get(words(len(data)), ()) if form.fits(data)), None)
 
     def _fields(self, message: Any) -> dict[str, Any]:
         fields = {field.name: getattr(message, field.name) for field in self.schema.fields if field.name != "header"}
@@ -129,7 +131,7 @@ class BlockCodec:
         shape = self._shape(block)
         if shape is not None and not self._wrong_column(block):
             form = self._forms.get(shape) or self._new_form(shape, block)
-            self._of_words[words(form.size)] = form
+            self._read_by(form)
 
     def _new_form(self, shape: Hashable, block: Any) -> Form:
         self._require_columns(block)
@@ -137,8 +139,13 @@ class BlockCodec:
             self._forms.clear()
             self._of_words.clear()
         form = self._forms[shape] = Form(self.schema, block)
-        self._of_words[words(form.size)] = form
+        self._read_by(form)
         return form
+
+    def _read_by(self, form: Form) -> None:
+        known = self._of_words.setdefault(words(form.size), [])
+        if form not in known:
+            known.append(form)
 
     def _require_columns(self, block: Any) -> None:
         if name := self._wrong_column(block):
@@ -183,6 +190,14 @@ def head_of(data: bytes) -> tuple[int, int, int]:
 def has_plain_header(data: bytes) -> bool:
     """False for a message of somebody who has given its header a frame_id."""
     return bool(HEAD.unpack_from(data)[2] == 1)
+
+
+def with_plain_header(block_class: type, data: bytes, stamps: Stamps) -> bytes:
+    """The same block without a frame_id, so that `head_of` can read it."""
+    if has_plain_header(data):
+        return data
+    codec = codec_of(block_class)
+    return codec.encode(codec.decode(data), stamps)
 
 
 def misfit(block: Any, reason: str) -> CncError:

@@ -87,7 +87,10 @@ class Form:
         for name, kind, _begin, constants in self._steps:
             values += constants
             if kind == COLUMN:
-                values += getattr(block, name)
+                column = getattr(block, name)
+                if len(column) != constants[0]:
+                    raise struct.error(f"{name} has {len(column)} values")
+                values += column
             elif kind == SCALAR:
                 values.append(getattr(block, name))
         return self._struct.pack(*values)

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+from functools import cache
+from typing import Any, NamedTuple
+
+from mcap.records import Schema as McapSchema
+from mcap_ros2.decoder import DecoderFactory
 
 from cnc_ptp.wire.layout import ENCAPSULATION
+from cnc_ptp.wire.schemas import load_schema
 
 _TICK = struct.Struct("<4siIIs3xQI4xq")
 """Encapsulation, stamp, empty frame_id, first cycle, count, scheduled time: a CycleTick message."""
+
+
+_HEAD = struct.Struct("<4siII")
 
 
 class Tick(NamedTuple):
@@ -26,6 +34,17 @@ def encode_tick(first_cycle: int, count: int, scheduled_monotonic_ns: int, stamp
 
 
 def decode_tick(data: bytes) -> Tick:
-    """Of a clock of ours, whose headers have no frame_id."""
-    _, seconds, nanoseconds, _, _, first_cycle, count, scheduled = _TICK.unpack(data)
+    """Of any clock; headers of ours have no frame_id."""
+    _, seconds, nanoseconds, text_size, *_ = _HEAD.unpack_from(data)
+    if text_size == 1:
+        _, _, _, _, _, first_cycle, count, scheduled = _TICK.unpack_from(data)
+    else:
+        message = _decoder()(data)
+        first_cycle, count, scheduled = message.first_cycle, message.count, message.scheduled_monotonic_ns
     return Tick(first_cycle, count, scheduled, seconds * 1_000_000_000 + nanoseconds)
+
+
+@cache
+def _decoder() -> Any:
+    schema = load_schema("cnc_ptp/msg/CycleTick")
+    return DecoderFactory().decoder_for("cdr", McapSchema(0, schema.text.encode(), "ros2msg", schema.name))

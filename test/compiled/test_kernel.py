@@ -14,7 +14,7 @@ from cnc_ptp import KERNEL
 from cnc_ptp.compiled import build as build_module
 from cnc_ptp.compiled.build import build
 from cnc_ptp.compiled.finder import changed
-from cnc_ptp.compiled.sources import FAILURE, hashes, read_state, sources
+from cnc_ptp.compiled.sources import FAILURE, hashes, library_file, read_state, recipe, sources, state_file
 from cnc_ptp.control.drives import (
     CascadedDrive,
     DelayedDrive,
@@ -108,9 +108,9 @@ def test_what_has_changed(current: dict[str, str], text: str) -> None:
     ("error", "reason"),
     [
         (ImportError("no", name="mypyc"), "it cannot be compiled without mypyc"),
-        (RuntimeError("command 'gcc' failed: No such file\nmore"), "it could not be compiled: command 'gcc' failed: No such file"),
-        (SystemExit(1), "it could not be compiled: 1"),
-        (AssertionError(), "it could not be compiled: AssertionError"),
+        (RuntimeError("command 'gcc' failed: No such file\nmore"), "it could not be compiled: command 'gcc' failed: No such file; build/kernel.log has more"),
+        (SystemExit(1), "it could not be compiled: 1; build/kernel.log has more"),
+        (AssertionError(), "it could not be compiled: AssertionError; build/kernel.log has more"),
     ],
 )  # fmt: skip
 def test_a_kernel_that_cannot_be_compiled_runs_interpreted(
@@ -126,9 +126,29 @@ def test_a_kernel_that_cannot_be_compiled_runs_interpreted(
 
 def test_a_library_of_these_sources_is_not_built_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
-    monkeypatch.setattr(build_module, "make_library", lambda *arguments: calls.append(arguments))
+
+    def make(*arguments: object) -> None:
+        calls.append(arguments)
+        library_file(tmp_path).touch()
+
+    monkeypatch.setattr(build_module, "make_library", make)
     assert [build(tmp_path), build(tmp_path)] == ["", ""]
-    assert len(calls) == 1 and read_state(tmp_path) == hashes(sources())
+    assert len(calls) == 1 and read_state(tmp_path) == hashes(sources() | recipe())
+    library_file(tmp_path).unlink()
+    assert build(tmp_path) == "" and len(calls) == 2
+
+
+@compiled_only
+def test_a_library_that_cannot_be_loaded(tmp_path: Path) -> None:
+    ignored = shutil.ignore_patterns("msg", "srv", "action", "__pycache__")
+    shutil.copytree(ROOT / "cnc_ptp", tmp_path / "cnc_ptp", ignore=ignored)
+    library = library_file(tmp_path / "cnc_ptp" / "compiled" / "library")
+    library.write_bytes(b"of another computer")
+    done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
+    assert f", kernel interpreted (it cannot be loaded: {library}: " in done.stdout and done.stderr == ""
+    library.unlink()
+    done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
+    assert f", kernel interpreted (it cannot be loaded: {library}: " in done.stdout and done.returncode == 0
 
 
 def test_without_a_library_the_kernel_runs_interpreted(tmp_path: Path) -> None:
@@ -137,7 +157,7 @@ def test_without_a_library_the_kernel_runs_interpreted(tmp_path: Path) -> None:
     done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
     assert done.stdout.endswith(", kernel interpreted (it was not compiled)\n") and done.stderr == ""
     (tmp_path / "cnc_ptp" / "compiled" / "library").mkdir()
-    state = tmp_path / "cnc_ptp" / "compiled" / "library" / f"{sys.implementation.cache_tag}.json"
+    state = state_file(tmp_path / "cnc_ptp" / "compiled" / "library")
     state.write_text('{"failure": "it cannot be compiled without mypyc"}')
     done = call("-m", "cnc_ptp", "--version", folder=tmp_path)
     assert done.stdout.endswith(", kernel interpreted (it cannot be compiled without mypyc)\n")

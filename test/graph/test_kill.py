@@ -4,6 +4,7 @@ import signal
 import time
 
 import numpy as np
+import psutil
 import pytest
 from graph_support import (
     LONG_PROGRAM,
@@ -52,6 +53,40 @@ def test_killed_node(running, node):
     lost = {event.source for event in recorded.events if event.error_id == 26101}
     if node != "recorder":
         assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
+
+
+def test_killed_server_of_processes(running):
+    """It alone learns how a node ends; the nodes are there and stop on their ramps."""
+    graph, nodes, recording = running
+    (server,) = (
+        child.pid for child in psutil.Process(graph.process.pid).children() if "forkserver" in " ".join(child.cmdline())
+    )
+    kill(server)
+    output = graph.finish(expect=1)
+    text = "P-ERR-26104 the process that nodes are forked from has ended; everything stops on its ramps"
+    assert output.count("P-ERR-26104") == 1 and text in output
+    assert wait_until_gone(nodes.values()) == []
+    recorded = verified(recording)
+    check_ramps(recorded, skip="", ended=True)
+
+
+def test_killed_node_in_a_free_run_that_is_recorded(tmp_path):
+    """The recorder waits for nobody who is gone, and the clock not for the recorder."""
+    (tmp_path / "long.nc").write_text(LONG_PROGRAM.replace(" Z-20", "").replace("N40 Z0\n", ""))
+    recording = tmp_path / "run.mcap"
+    options = ("--program", tmp_path / "long.nc", "--record", recording, "--free-run")
+    graph = Running(small_machine(tmp_path), *options)
+    try:
+        nodes = dict(graph.wait_for_nodes(7))
+        graph.wait_until_recorded(recording, UNDER_WAY)
+        kill(nodes["x"])
+        output = graph.finish(expect=1)
+        assert f"P-ERR-26104 node 'x' (process {nodes['x']}) was ended by SIGKILL during the run" in output
+        assert wait_until_gone(nodes.values()) == []
+        recorded = verified(recording, whole=False)
+        assert recorded.states["/y/state"]["set_velocity"][-1] == 0.0
+    finally:
+        graph.end()
 
 
 def check_every_reader_opens(recording):

@@ -10,8 +10,21 @@ from pathlib import Path
 import pytest
 from ament_index_python.packages import get_package_prefix
 
+from cnc_ptp.compiled.sources import library_file, state_file
+
 ROOT = Path(__file__).parents[2]
-SOURCES = ("cnc_ptp", "config", "examples", "launch", "resource", "package.xml", "setup.py", "setup.cfg", "LICENSE")
+SOURCES = (
+    "cnc_ptp",
+    "config",
+    "examples",
+    "launch",
+    "resource",
+    "package.xml",
+    "setup.py",
+    "setup.cfg",
+    "pyproject.toml",
+    "LICENSE",
+)
 COMMANDS = {
     "simulate",
     "run",
@@ -51,6 +64,9 @@ def wheel(tmp_path_factory):
             shutil.copytree(ROOT / name, source / name, ignore=generated)
         else:
             shutil.copy2(ROOT / name, source / name)
+    objects = f"build/kernel-{sys.implementation.cache_tag}"
+    if (ROOT / objects).is_dir():  # they need not be compiled again
+        shutil.copytree(ROOT / objects, source / objects)
     build = [sys.executable, "-c", WITHOUT_CMAKE, "bdist_wheel"]
     done = subprocess.run(build, cwd=source, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -63,6 +79,13 @@ def test_wheel_holds_the_executables(wheel):
     folder = "cnc_ptp-0.1.0.data/data/lib/cnc_ptp/"
     assert {name.removeprefix(folder) for name in modes if name.startswith(folder)} == EXECUTABLES
     assert all(modes[folder + name] & 0o111 == 0o111 for name in EXECUTABLES)
+
+
+def test_wheel_holds_the_compiled_kernel(wheel):
+    folder = Path("cnc_ptp", "compiled", "library")
+    with zipfile.ZipFile(wheel) as archive:
+        assert {str(library_file(folder)), str(state_file(folder))} <= {*archive.namelist()}
+        assert "failure" not in archive.read(str(state_file(folder))).decode()
 
 
 def test_installed_executable_runs(wheel, tmp_path, monkeypatch):

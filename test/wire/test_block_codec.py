@@ -11,7 +11,7 @@ from recording_support import Blocks
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, PlcBlock, Refusal, SpindleBlock
-from cnc_ptp.wire.block_codec import codec_of, encode_block, has_plain_header, head_of
+from cnc_ptp.wire.block_codec import BlockCodec, codec_of, encode_block, has_plain_header, head_of, with_plain_header
 from cnc_ptp.wire.layout import encode, header_at
 from cnc_ptp.wire.schemas import load_schema
 from cnc_ptp.wire.stamps import Stamps
@@ -99,6 +99,30 @@ def test_messages_of_equal_size_and_another_form():
         assert codec.layout(data).read(data)["error_id"][0].tolist() == block.error_id
 
 
+def test_forms_of_equal_size_are_kept_beside_each_other(monkeypatch):
+    """A PLC reads axes with masters of names of any length in turn: none of them is decoded field by field again."""
+    codec = BlockCodec(AxisBlock)
+    messages = []
+    for master in ("", "x", "xy", "a1"):
+        block = Blocks(6).axis(0)
+        block.master = master
+        messages.append(encode_block(block, STAMPS))
+    assert len({len(data) for data in messages}) < len(messages)
+    first = [codec.decode(data) for data in messages]
+    monkeypatch.setattr(codec, "_decode", None)
+    assert [encode_block(codec.decode(data), STAMPS) for data in messages] == messages
+    assert [block.master for block in first] == ["", "x", "xy", "a1"]
+
+
+def test_columns_that_make_up_for_each_other_are_refused():
+    block = Blocks(7).axis(0)
+    encode_block(block, STAMPS)
+    block.set_velocity.append(block.set_position.pop())
+    with pytest.raises(CncError) as error:
+        encode_block(block, STAMPS)
+    assert "set_position holds 9 values; it was not recorded" in str(error.value)
+
+
 def test_a_message_with_a_frame_id_is_read_too():
     block = Blocks(4).axis(50)
     message = deserialize_message(encode_block(block, STAMPS), msg.AxisBlock)
@@ -107,6 +131,8 @@ def test_a_message_with_a_frame_id_is_read_too():
     data = encode(schema, message)
     assert not has_plain_header(data) and has_plain_header(encode_block(block, STAMPS))
     assert codec_of(AxisBlock).decode(data).error_id == block.error_id
+    plain = with_plain_header(AxisBlock, data, STAMPS)
+    assert plain == encode_block(block, STAMPS) == with_plain_header(AxisBlock, plain, STAMPS)
 
 
 def test_a_block_with_columns_of_another_length_is_decoded_and_not_recorded():
