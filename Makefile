@@ -26,7 +26,7 @@ $(VENV)/.requirements: requirements-build.txt requirements.txt requirements-test
 	@touch $@
 
 $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
-	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to nine minutes on two cores) ..."
+	@echo "Generating the ROS interfaces, compiling the kernel and installing cnc_ptp into $(VENV) (up to three minutes on two cores) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 

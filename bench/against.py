@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import statistics
 import subprocess
 import tempfile
@@ -63,6 +64,7 @@ def call(tree: Path, *words: str, record: Path) -> Run:
     """Runs `cnc_ptp WORDS --record RECORD` of a tree, and watches its processes."""
     record.unlink(missing_ok=True)
     run, seconds = Run(), {}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     begin = time.monotonic()
     command = [tree / ".venv" / "bin" / "cnc_ptp", *words, "--record", record]
     environment = {name: value for name, value in os.environ.items() if name not in OF_THIS_TREE}
@@ -84,7 +86,9 @@ def call(tree: Path, *words: str, record: Path) -> Run:
         run.output = child.stdout.read() if child.stdout else ""
     if child.returncode:
         raise click.ClickException(f"{tree}: cnc_ptp {' '.join(words)} ended with {child.returncode}:\n{run.output}")
-    run.wall, run.cpu = time.monotonic() - begin - run.startup, sum(seconds.values())
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    waited_for = ended.ru_utime + ended.ru_stime - before.ru_utime - before.ru_stime
+    run.wall, run.cpu = time.monotonic() - begin - run.startup, max(sum(seconds.values()), waited_for)
     even = [(at, cpu) for at, cpu in run.samples if SETTLED < at - begin - run.startup < run.wall - 2.0 * FAREWELL]
     if len(even) > 1:
         run.cores = (even[-1][1] - even[0][1]) / (even[-1][0] - even[0][0])

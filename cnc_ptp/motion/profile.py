@@ -1,4 +1,4 @@
-"""The runtime table: an immutable list of constant-jerk segments, evaluated purely at a time.
+"""The runtime table: a list of constant-jerk segments that never changes, evaluated purely at a time.
 
 Within a segment that starts at t0 with p, v, a and jerk j, with d = t - t0:
 
@@ -27,7 +27,7 @@ Piece = tuple[float, float, float]
 
 
 class Profile:
-    """An immutable table of constant-jerk segments.
+    """A table of constant-jerk segments. Nobody changes one; the compiled kernel refuses it.
 
     rows       (t, p, v, a, j) at the start of each segment; the last row is the end state with a = j = 0
     starts     the start times alone

@@ -1,8 +1,8 @@
 """What nodes need, imported once: processes that are forked from the one that did this share its memory.
 
-Nothing here starts ROS, a thread, or handles a signal: a process that is forked would inherit half of it. Two threads of
-LTTng, which comes with the wheels of ROS, are there as soon as rclpy is loaded; they sleep until somebody traces, hold no
-lock meanwhile, and are not inherited.
+Nothing here starts ROS, a thread, or handles a signal: a process that is forked would inherit half of it. Two threads
+of LTTng, which comes with the wheels of ROS, are there as soon as rclpy is loaded. They sleep until somebody traces,
+hold no lock meanwhile, and are not inherited.
 """
 
 import gc

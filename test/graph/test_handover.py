@@ -2,15 +2,19 @@
 
 import pytest
 import rclpy
+from graph_support import small_machine
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
 from cnc_ptp import msg
+from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import free_run, process
+from cnc_ptp.nodes.clock import ClockNode
 from cnc_ptp.nodes.free_run import RECORDER_BLOCKS, FreeRunPace
 from cnc_ptp.nodes.handover import Handover
 from cnc_ptp.nodes.polling_node import PollingNode
 from cnc_ptp.nodes.topics import BLOCKS, RECORDER
+from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.blocks import AxisBlock, PlcBlock
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.wire.ticks import Tick
@@ -57,6 +61,26 @@ def test_a_unit_without_its_first_block_holds_up_the_run():
     assert not handover.have_computed((PLC, "x"), 0)
     handover.block("x", AxisBlock(0, 10))
     assert handover.have_computed((PLC, "x"), 0) and not handover.have_computed((PLC, "x"), 10)
+
+
+def test_a_late_composed_run_gives_the_executor_a_turn_after_each_tick(tmp_path):
+    """A tick computes the whole machine there: timers, services and signals must not wait until the run is in time."""
+    process.initialise()
+    try:
+        machine = read_machine(str(small_machine(tmp_path)))
+        handover, ticks = Handover(), []
+        handover.on_tick(lambda tick: ticks.append(tick.first_cycle), lambda: None)
+        clock = ClockNode(machine, handover=handover)
+        for unit in unit_kinds(machine):
+            clock._on_report(msg.BlockReport(source=unit, first_cycle=-1))
+        clock.advance()
+        clock._started_at -= 1.0  # a hundred ticks are due
+        for turn in range(1, 4):
+            clock.advance()
+            assert len(ticks) == turn and clock.wait_time() == 0.0
+        clock.destroy_node()
+    finally:
+        rclpy.try_shutdown()
 
 
 def test_an_error_of_one_node_does_not_stop_the_others():
