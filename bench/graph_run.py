@@ -138,7 +138,8 @@ class Watch:
 
     def _find_processes(self) -> dict[str, psutil.Process]:
         own = psutil.Process()
-        nodes = [child for child in own.children(recursive=True) if "cnc_ptp.nodes" in " ".join(child.cmdline())]
+        family = own.children(recursive=True)
+        nodes = [child for child in family if any(word.startswith("cnc_ptp.nodes.") for word in words_of(child))]
         return {node_name(words_of(child)): child for child in nodes} | {self._own: own}
 
 

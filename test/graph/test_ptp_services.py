@@ -8,6 +8,7 @@ from graph_support import PTP
 
 from cnc_ptp import msg
 from cnc_ptp.nodes.topics import COUPLING_SERVICES, SERVICES
+from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.commands import COMMANDS, OF_CHANNELS
 
 NAN = math.nan
@@ -163,7 +164,8 @@ def test_feed_releases_by_service_and_topic(client):
     """Withheld by the service, the axis waits; the topic's last value holds, `valid: false` releases both."""
     withheld = 1 << 17
     client.call("z", "external_disable")
-    begin = client.wait_last("z", lambda block: block.set_velocity[-1] == 0.0, "standstill of z").set_position[-1]
+    standstill = AxisStateCode.STANDSTILL
+    begin = client.wait_last("z", lambda block: block.state[-1] == standstill, "standstill of z").set_position[-1]
     client.done("z", "set_feed_release", forward=False, backward=True)
     client.done("z", "move_relative", distance=20.0, **FROM_THE_AXIS)
     client.wait_last("z", lambda block: block.status_bits[-1] & withheld, "z waits")
