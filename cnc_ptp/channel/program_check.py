@@ -20,7 +20,6 @@ from cnc_ptp.nc.canonical import (
 )
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import check, interpret
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState, Pair, Pairs, Program, Spindle, SpindleTable
 from cnc_ptp.parameters import (
@@ -157,7 +156,7 @@ class ProgramCheck:
         elif function.letter == "M" and function.number not in self._channel.m_functions:
             known = ", ".join(f"M{number}" for number in self._channel.m_functions)
             text = f"M{function.number:02d} does not exist on this machine (P-CHAN-00041). Known: {known}"
-            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, column_of(source, f"M{function.number}"))
+            raise ProgramError(UNKNOWN_M_FUNCTION, text, source, source.column(f"M{function.number}"))
 
     def _compensation(self, function: CompensationSwitch, source: Source) -> None:
         """Raises ProgramError 70495 when friction compensation is switched on for an axis that does not permit it."""
@@ -165,7 +164,7 @@ class ProgramCheck:
         if function.on and not axis.control.friction.permitted:
             reason = "friction compensation is not activated (P-AXIS-00522 lr_param.frict_comp = 0)"
             text = f"axis {function.axis}: {reason}"
-            raise ProgramError(NO_FRICTION_COMPENSATION, text, source, column_of(source, function.axis))
+            raise ProgramError(NO_FRICTION_COMPENSATION, text, source, source.column(function.axis))
 
     def _position_known(self, function: SpindleFunction | SpindleCommand, source: Source) -> None:
         """Vetoes M19 and G74 of a spindle without actual position (TF5200 spindle 2.2.4)."""

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from cnc_ptp.nc import faults, feedforward, friction_switch
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.hash_commands import hash_block
-from cnc_ptp.nc.lexer import PLAIN_WORDS, SKIP, Token, normalise, tokens
+from cnc_ptp.nc.lexer import SKIP, Token, normalise, places, plain_words, tokens
 from cnc_ptp.nc.program import GCode, MCode, NcBlock, SpindleWords
 from cnc_ptp.nc.spindle_words import spindle_bracket
 from cnc_ptp.nc.vocabulary import (
@@ -24,37 +24,38 @@ from cnc_ptp.nc.vocabulary import (
 MAX_BLOCK_NUMBER = 999_999_999
 
 _PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
-_G_BY_TEXT = {
-    text: code for number_, code in G_CODES.items() for text in (f"{number_}", f"{number_:02d}") if not code.spindle
-}
+_PLAIN_CODES = {float(number_): code for number_, code in G_CODES.items() if not code.spindle}
+_PLAIN_NAMES = {code.number: code.name for code in G_CODES.values()}
 
 
 def plain_block(file: str, line: int, text: str) -> NcBlock | None:
     """The fast method, for known letters with numbers and G codes only; None if the line needs the careful one."""
-    parts = PLAIN_WORDS.split(text.upper())
-    if len(parts) == 1 or "".join(parts[::3]) or not text.isascii():
+    names, values, columns = plain_words(text)
+    if not names:
         return None
     codes: tuple[GCode, ...] = ()
     words: dict[str, float] = {}
     functions = False
-    number_text = ""
-    for letter, value in zip(parts[1::3], parts[2::3], strict=True):
+    block_number = 0
+    for index in range(len(names)):
+        letter, value = names[index], values[index]
         if letter in _PLAIN_VALUES:
             if letter in words:
                 return None
-            words[letter] = float(value)
+            words[letter] = value
             if letter in FUNCTION_WORDS:
                 functions = True
         elif letter == "G":
-            code = _G_BY_TEXT.get(value)
+            code = _PLAIN_CODES.get(value)
             if code is None or (codes and any(code.group == other.group for other in codes)):
                 return None
             codes += (code,)
-        elif letter == "N" and not (codes or words or number_text) and value.isdigit():
-            number_text = value
+            names[index] = _PLAIN_NAMES[code.number]
+        elif letter == "N" and index == 0 and value >= 0.0 and value == int(value):
+            block_number = int(value)
         else:
             return None
-    source = Source(file, line, int(number_text) if number_text else 0, text)
+    source = Source(file, line, block_number, text, tuple(names), tuple(columns))
     return NcBlock(source, codes, words, (), (), None, "", "", 0, functions)
 
 
@@ -69,6 +70,8 @@ def careful_block(source: Source) -> NcBlock | None:
     found = tokens(line, source, begin)
     if not found:
         return None
+    names, columns = places(found)
+    source = source._replace(names=names, columns=columns)
     if found[0].kind == "word" and found[0].name == "N":
         source = source._replace(block_number=_integer(found[0], source, MAX_BLOCK_NUMBER))
         found = found[1:]

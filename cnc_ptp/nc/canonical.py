@@ -10,16 +10,36 @@ after it, at the next G01) is decided at run time by their synchronisation type 
 functions have finished.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 
 class Source(NamedTuple):
-    """The source of a block: file, line (1-based), block number (N word, 0 if none) and the line's text."""
+    """The source of a block: file, line (1-based), block number (N word, 0 if none) and the line's text.
+
+    `names`: its words (X, S2, S.POS) and codes (G01, M03), also those in brackets; `columns`: where they begin, from 1.
+    """
 
     file: str
     line: int
     block_number: int
     text: str
+    names: Sequence[str] = ()
+    columns: Sequence[int] = ()
+
+    def column(self, word: str, *, last: bool = False) -> int:
+        """Column of a word or code; of several, the first or the last one; 1 if it is not in the line."""
+        name = code_name(word[0], int(word[1:])) if word[:1] in CODES and word[1:].isdecimal() else word
+        found = [self.columns[index] for index, other in enumerate(self.names) if other == name]
+        return found[-1 if last else 0] if found else 1
+
+
+CODES = ("G", "M")
+
+
+def code_name(letter: str, number: int) -> str:
+    """As printed in programs and errors: G01, M130."""
+    return f"{letter}{number:02d}"
 
 
 STEP, TRAPEZ = "STEP", "TRAPEZ"

@@ -2,7 +2,6 @@
 
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, SpindleCommand, SpindleFeedforward, SpindleFunction
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Spindle
 from cnc_ptp.nc.spindles import names
 
@@ -35,7 +34,7 @@ def _require_unit(block: NcBlock, control: SpindleFeedforward, spindle: Spindle)
     """Raises 21202 for a spindle that the PLC moves: it has no position controller here (P-CHAN-00069)."""
     if spindle.plc_control:
         word = "G136" if control.on is None else "G135" if control.on else "G137"
-        column = column_of(block.source, word)
+        column = block.source.column(word)
         raise spindle_faults.PLC_SPINDLE.at(block.source, column, word=word, spindle=control.spindle)
 
 
@@ -43,9 +42,9 @@ def _check(
     block: NcBlock, name: str, known: tuple[str, ...], used: set[str], unknown: faults.Fault, twice: faults.Fault
 ) -> None:
     """Raises for a name that is not `known` or already `used`; notes it."""
-    column = column_of(block.source, name)
+    column = block.source.column(name)
     if name not in known:
         raise unknown.at(block.source, column, word=name, known=", ".join(known) or "none")
     if name in used:
-        raise twice.at(block.source, column_of(block.source, name, last=True), axis=name, spindle=name)
+        raise twice.at(block.source, block.source.column(name, last=True), axis=name, spindle=name)
     used.add(name)

@@ -10,7 +10,7 @@ from typing import Final
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, motions
 from cnc_ptp.nc.canonical import AxisFeedforward, Function, Source, SpindleFeedforward, number
-from cnc_ptp.nc.lexer import NUMBER, Token, column_of
+from cnc_ptp.nc.lexer import NUMBER, Token
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
 ON: Final = 135
@@ -41,13 +41,13 @@ def block_function(channel: Channel, state: ModalState, block: NcBlock, code: GC
 def _weights(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[tuple[str, float], ...]:
     path = next((other for other in block.codes if other.motion is not None), None)
     if path is not None:
-        raise faults.WEIGHTS_AND_MOTION.at(block.source, column_of(block.source, path.name), g=path.name)
+        raise faults.WEIGHTS_AND_MOTION.at(block.source, block.source.column(path.name), g=path.name)
     if motions.target_of(channel, state, block, code) is None:
-        raise faults.WEIGHTS_WITHOUT_AXIS.at(block.source, column_of(block.source, code.name))
+        raise faults.WEIGHTS_WITHOUT_AXIS.at(block.source, block.source.column(code.name))
     weights = tuple((word, value) for word, value in block.words.items() if word in channel.axis_index)
     for axis, value in weights:
         if value < 0.0:
-            column = column_of(block.source, axis)
+            column = block.source.column(axis)
             raise faults.WEIGHT_RANGE.at(block.source, column, value=number(value), unit=f"axis {axis}")
     return weights
 

@@ -2,7 +2,6 @@
 
 from cnc_ptp.nc import faults, gears
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, number
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, MCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import spindle_functions
 
@@ -24,7 +23,7 @@ def tool_function(block: NcBlock, letter: str) -> AuxiliaryFunction:
     """T or D with its integer number."""
     value = block.words[letter]
     if value < 0 or value > MAX_TOOL or value != int(value):
-        column = column_of(block.source, letter)
+        column = block.source.column(letter)
         raise faults.NOT_AN_INTEGER.at(block.source, column, word=letter, value=number(value), limit=MAX_TOOL)
     return AuxiliaryFunction(letter, int(value))
 

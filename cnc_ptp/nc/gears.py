@@ -2,7 +2,6 @@
 
 from cnc_ptp.nc import spindle_faults
 from cnc_ptp.nc.canonical import number
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import NcBlock, Spindle
 
 FIRST_M = 40
@@ -45,7 +44,7 @@ def stage_for(
     if speed_rpm is None or holds(spindle, active, speed_rpm):
         return active
     found = search(spindle, speed_rpm)
-    column = column_of(block.source, "S")
+    column = block.source.column("S")
     if not found:
         raise spindle_faults.NO_GEAR_FOR_SPEED.at(
             block.source, column, speed=number(speed_rpm), spindle=name, ranges=ranges_text(spindle)
@@ -67,7 +66,7 @@ def stage_for(
 
 def _require_fit(spindle: Spindle, stage: int, speed_rpm: float | None, block: NcBlock, name: str) -> None:
     low, high = speed_range(spindle, stage)
-    column = column_of(block.source, f"M{m_of(stage)}")
+    column = block.source.column(f"M{m_of(stage)}")
     if high == 0.0:
         ranges = ranges_text(spindle)
         raise spindle_faults.GEAR_UNUSED.at(block.source, column, stage=m_of(stage), spindle=name, ranges=ranges)

@@ -8,7 +8,6 @@ from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, 
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.functions import block_functions
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.parser import parse_all
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Program, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
@@ -95,7 +94,7 @@ def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[Nc
 
 
 def _too_deep(block: NcBlock, call_depth: int) -> ProgramError:
-    column = column_of(block.source, block.call)
+    column = block.source.column(block.call)
     return faults.CALL_DEPTH.at(block.source, column, name=block.call, depth=call_depth + 1, limit=call_depth)
 
 

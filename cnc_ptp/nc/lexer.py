@@ -7,18 +7,31 @@ a subroutine, a bare number belongs to G04.
 """
 
 import re
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
-from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.canonical import CODES, Source, code_name
 
-MAX_DIGITS = 9
+MAX_DIGITS: Final = 9
 NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
 _NAME = r"[A-Z_][A-Z0-9_]*+"
 
-PLAIN_WORDS = re.compile(rf"\s*([A-Z])\s*=?\s*({NUMBER})\s*", re.ASCII)
-"""Splits a line into remainder, letter, number, remainder, ...; with all remainders empty the line is plain words."""
+MAX_EXACT_DIGITS: Final = 15
+"""Digits of a number and of a power of ten up to which their quotient is the nearest number, as `float` finds it."""
+POWERS_OF_TEN: Final = [10.0**power for power in range(MAX_EXACT_DIGITS + 1)]
+BLANK: Final = 32
+TAB: Final = 9
+PLUS: Final = 43
+MINUS: Final = 45
+POINT: Final = 46
+EQUALS: Final = 61
+ZERO: Final = 48
+NINE: Final = 57
+UPPER_A: Final = 65
+UPPER_Z: Final = 90
+TO_LOWER: Final = 32
+"""Characters as numbers, which the compiler compares at once."""
 
 _TOKEN = re.compile(
     rf"""\s*(?:
@@ -33,6 +46,7 @@ _TOKEN = re.compile(
 )
 _KINDS = ("call", "position", "word", "named", "bracket", "bare")
 _BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({NUMBER})(?![\d.])", re.ASCII)
+_BRACKET_CODE = re.compile(r"\b([GM])\s*=?\s*(\d{1,9})(?![\d.])", re.ASCII)
 _BRACKET_NAME = re.compile(r"\s*([A-Z_]{2,}+)()(?=\s|$)", re.ASCII)
 _UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
 
@@ -52,6 +66,66 @@ class Token(NamedTuple):
     text: str
     column: int
     shown: str
+
+
+def plain_words(line: str) -> tuple[list[str], list[float], list[int]]:
+    """Letters, numbers and columns (from 1) of a line that has nothing else; empty for any other line."""
+    letters: list[str] = []
+    values: list[float] = []
+    columns: list[int] = []
+    at, end = 0, len(line)
+    while at < end:
+        character = ord(line[at])
+        if character in (BLANK, TAB):
+            at += 1
+            continue
+        if character > UPPER_Z:
+            character -= TO_LOWER
+        if not UPPER_A <= character <= UPPER_Z:
+            return [], [], []
+        letters.append(chr(character))
+        at += 1
+        columns.append(at)
+        at, value = plain_number(line, at, end)
+        if at < 0:
+            return [], [], []
+        values.append(value)
+    return letters, values, columns
+
+
+def plain_number(line: str, at: int, end: int) -> tuple[int, float]:
+    """The place behind the number at `at`, which an equals sign may precede, and its value; -1 if there is none."""
+    signs = 0
+    while at < end:
+        character = ord(line[at])
+        if character == EQUALS:
+            signs += 1
+        elif character != BLANK and character != TAB:
+            break
+        at += 1
+    if at == end or signs > 1:
+        return -1, 0.0
+    negative = ord(line[at]) == MINUS
+    if negative or ord(line[at]) == PLUS:
+        at += 1
+    all_digits, digits, decimals = 0, 0, -1
+    while at < end:
+        character = ord(line[at])
+        if ZERO <= character <= NINE:
+            all_digits = 10 * all_digits + character - ZERO
+            digits += 1
+            decimals += decimals >= 0
+        elif character == POINT and decimals < 0:
+            decimals = 0
+        else:
+            break
+        at += 1
+    if not 0 < digits <= MAX_EXACT_DIGITS or digits - max(0, decimals) > MAX_DIGITS:
+        return -1, 0.0
+    value = float(all_digits)
+    if decimals > 0:
+        value /= POWERS_OF_TEN[decimals]
+    return at, -value if negative else value
 
 
 def normalise(source: Source) -> str:
@@ -117,6 +191,24 @@ def bracket_words(token: Token, source: Source) -> list[tuple[str, str, int]]:
     return words
 
 
+def places(found: Sequence[Token]) -> tuple[list[str], list[int]]:
+    """Names and columns of words and codes, also of codes in brackets, for `Source.column`."""
+    names: list[str] = []
+    columns: list[int] = []
+    for token in found:
+        if token.kind == "word" and token.name in CODES and token.text.isdecimal():
+            names.append(code_name(token.name, int(token.text)))
+        else:
+            names.append(token.name)
+        columns.append(token.column)
+        if token.kind == "bracket":
+            begin = token.column + token.shown.index("[") + 1
+            for code in _BRACKET_CODE.finditer(token.text):
+                names.append(code_name(code[1], int(code[2])))
+                columns.append(begin + code.start())
+    return names, columns
+
+
 def _unreadable(line: str, source: Source, position: int) -> faults.ProgramError:
     while line[position].isspace():
         position += 1
@@ -137,26 +229,3 @@ def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
     if len(shown) > 1 and shown.isalpha():
         return faults.UNKNOWN_WORD
     return faults.BAD_NUMBER if shown[0].isalnum() or shown[0] in "+-." else faults.UNEXPECTED_CHARACTER
-
-
-def column_of(source: Source, word: str, *, last: bool = False) -> int:
-    """Column (1-based) of a word by its name (X, S2) or of a G or M code (G01) in a parsed line; else 1.
-
-    A code may be in the brackets of a spindle. `last`: of several, the last one instead of the first.
-    """
-    columns = list(_columns(source, word))
-    return columns[-1 if last else 0] if columns else 1
-
-
-def _columns(source: Source, word: str) -> Iterator[int]:
-    code = re.fullmatch(r"([GM])(\d+)", word)
-    name, number = (code[1], int(code[2])) if code else (word, None)
-    line = normalise(source)
-    skip = SKIP.match(line)
-    for token in tokens(line, source, begin=skip.end() if skip else 0):
-        if token.name == name and (number is None or float(token.text) == number):
-            yield token.column
-        elif number is not None and token.kind == "bracket":
-            begin = token.column + token.shown.index("[") + 1
-            inside = re.finditer(rf"\b{name}\s*=?\s*0*{number}(?![\d.])", token.text, re.ASCII)
-            yield from (begin + match.start() for match in inside)

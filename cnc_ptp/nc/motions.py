@@ -9,7 +9,6 @@ from typing import NamedTuple
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
 
@@ -43,7 +42,7 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
             target[index] = value if state.absolute else position[index] + value
         elif word == "F":
             if value < 0.0:
-                raise faults.FEED_NEGATIVE.at(block.source, column_of(block.source, "F"), value=number(value))
+                raise faults.FEED_NEGATIVE.at(block.source, block.source.column("F"), value=number(value))
             state.feed = value / MM_PER_MIN
         elif word not in FUNCTION_WORDS and word not in code.words:
             raise _unused(channel, block, code, word)
@@ -51,7 +50,7 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
 
 
 def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
-    column = column_of(block.source, word)
+    column = block.source.column(word)
     if word in "IJKR":
         return faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
     return faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
@@ -74,7 +73,7 @@ def straight(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -
 
 
 def _no_feed(block: NcBlock, code: GCode) -> faults.ProgramError:
-    return faults.FEED_MISSING.at(block.source, column_of(block.source, code.name), g=code.name)
+    return faults.FEED_MISSING.at(block.source, block.source.column(code.name), g=code.name)
 
 
 def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> CircularMove | None:
@@ -87,7 +86,7 @@ def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -
     given = [word for word in "IJK" if word in words]
     if "R" in words:
         if given:
-            raise faults.CENTRE_AND_RADIUS.at(block.source, column_of(block.source, given[0]), word=given[0])
+            raise faults.CENTRE_AND_RADIUS.at(block.source, block.source.column(given[0]), word=given[0])
         state.radius = words["R"]
     if target is None and not given:
         return None
@@ -117,7 +116,7 @@ class _Arc:
         return first, second
 
     def _fault(self, fault: faults.Fault, place: str = "", **values: Value) -> faults.ProgramError:
-        return fault.at(self.block.source, column_of(self.block.source, place or self.code.name), **values)
+        return fault.at(self.block.source, self.block.source.column(place or self.code.name), **values)
 
     def by_centre(self, given: list[str]) -> CircularMove:
         """Centre from I, J, K: relative to the start (G162) or absolute (G161); a missing word is 0."""
@@ -198,15 +197,15 @@ def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> D
     others += [other.name for other in block.codes if other is not code]
     others += list(times)[1:]
     if others:
-        raise faults.DWELL_NOT_ALONE.at(block.source, column_of(block.source, others[0]), word=others[0])
+        raise faults.DWELL_NOT_ALONE.at(block.source, block.source.column(others[0]), word=others[0])
     if block.direct is not None and times:
         word = next(iter(times))
-        raise faults.DWELL_TWICE.at(block.source, column_of(block.source, word), word=word)
+        raise faults.DWELL_TWICE.at(block.source, block.source.column(word), word=word)
     if block.direct is None and not times:
-        raise faults.DWELL_MISSING.at(block.source, column_of(block.source, code.name))
+        raise faults.DWELL_MISSING.at(block.source, block.source.column(code.name))
     seconds = block.direct if block.direct is not None else _seconds(channel, state, block, times)
     if seconds < 0.0:
-        raise faults.DWELL_NEGATIVE.at(block.source, column_of(block.source, code.name), value=number(seconds))
+        raise faults.DWELL_NEGATIVE.at(block.source, block.source.column(code.name), value=number(seconds))
     return Dwell(seconds)
 
 
@@ -217,5 +216,5 @@ def _seconds(channel: Channel, state: ModalState, block: NcBlock, times: dict[st
     speed = state.speeds.get(current_main(channel, state).key, 0.0) if channel.table.spindles else 0.0
     if speed <= 0.0:
         main = channel.table.main_name
-        raise faults.DWELL_WITHOUT_SPEED.at(block.source, column_of(block.source, "S"), spindle=main)
+        raise faults.DWELL_WITHOUT_SPEED.at(block.source, block.source.column("S"), spindle=main)
     return value / speed * 60.0

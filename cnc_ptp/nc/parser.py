@@ -10,8 +10,9 @@ import re
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.blocks import careful_block, plain_block
 from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.collector import paused_collector
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.lexer import column_of, normalise
+from cnc_ptp.nc.lexer import normalise
 from cnc_ptp.nc.program import NcBlock, Program
 
 _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
@@ -29,9 +30,10 @@ def parse_all(text: str, file: str, *, mdi: bool = False) -> tuple[Program, list
     """Parsed program and its syntax errors, one per line in their order; a faulty line becomes a block that raises."""
     reader = _Reader(file, mdi)
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    for line, content in enumerate(lines, start=1):
-        reader.read(line, content)
-    return reader.finish()
+    with paused_collector():
+        for line, content in enumerate(lines, start=1):
+            reader.read(line, content)
+        return reader.finish()
 
 
 class _Section:
@@ -129,7 +131,7 @@ class _Reader:
         for section in self.sections:
             for index, block in enumerate(section.blocks):
                 if block.call and block.call not in subroutines:
-                    column = column_of(block.source, block.call)
+                    column = block.source.column(block.call)
                     error = faults.UNKNOWN_SUBROUTINE.at(block.source, column, name=block.call, known=known)
                     self._mark(section, index, error)
 
@@ -137,7 +139,7 @@ class _Reader:
         for index, block in enumerate(main.blocks):
             if block.flow == "return":
                 code = next(code for code in block.m if code.flow == "return")
-                column = column_of(block.source, code.name)
+                column = block.source.column(code.name)
                 self._mark(main, index, faults.RETURN_IN_MAIN.at(block.source, column, word=code.name))
 
     def _mark(self, section: _Section, index: int, error: ProgramError) -> None:

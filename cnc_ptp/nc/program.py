@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward
+from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
 from cnc_ptp.nc.faults import ProgramError
 
 
@@ -32,7 +32,7 @@ class GCode(NamedTuple):
     @property
     def name(self) -> str:
         """As printed in programs and errors: G01, G161."""
-        return f"G{self.number:02d}"
+        return code_name("G", self.number)
 
 
 class MCode(NamedTuple):
@@ -49,7 +49,7 @@ class MCode(NamedTuple):
     @property
     def name(self) -> str:
         """As printed in programs and errors: M03, M130."""
-        return f"M{self.number:02d}"
+        return code_name("M", self.number)
 
 
 class SpindleWords(NamedTuple):

@@ -13,7 +13,6 @@ from typing import Final
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, gears, spindle_faults
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
-from cnc_ptp.nc.lexer import column_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
@@ -34,7 +33,7 @@ def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
 def require_spindle(channel: Channel, block: NcBlock, word: str) -> None:
     """Raises ProgramError 21548 in a channel without spindles: `word` needs the main spindle."""
     if not channel.table.spindles:
-        raise faults.NO_SPINDLE.at(block.source, column_of(block.source, word), word=word)
+        raise faults.NO_SPINDLE.at(block.source, block.source.column(word), word=word)
 
 
 def current_main(channel: Channel, state: ModalState) -> Spindle:
@@ -62,9 +61,9 @@ def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
     for word in block.words:
         if word not in FUNCTION_WORDS:
             fault = spindle_faults.HOMING_OF_AXES if word in channel.axis_index else faults.WORD_NOT_USED
-            raise fault.at(block.source, column_of(block.source, word), word=word, g=code.name)
+            raise fault.at(block.source, block.source.column(word), word=word, g=code.name)
     if "S" not in block.words and not block.spindles:
-        main, column = channel.table.main_name, column_of(block.source, code.name)
+        main, column = channel.table.main_name, block.source.column(code.name)
         raise spindle_faults.HOMING_WITHOUT_SPINDLE.at(block.source, column, main=main)
 
 
@@ -75,7 +74,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> li
     for words, place in _words(channel, state, block):
         spindle = _named(channel, state, block, words, place)
         if spindle.key in used:
-            column = column_of(block.source, words.name, last=True)
+            column = block.source.column(words.name, last=True)
             raise faults.SPINDLE_TWICE.at(block.source, column, spindle=words.name)
         used.add(spindle.key)
         _check_coupling(channel, state, block, words, place, spindle)
@@ -115,9 +114,9 @@ def _with_values(block: NcBlock, words: SpindleWords, own: list[SpindleWords]) -
     positions = [other.position_deg for other in own if other.position_deg is not None]
     if len(speeds) > 1 or len(positions) > 1:
         place = own[-1].name if len(speeds) > 1 else f"{words.name}.POS"
-        raise faults.SPINDLE_TWICE.at(block.source, column_of(block.source, place, last=True), spindle=words.name)
+        raise faults.SPINDLE_TWICE.at(block.source, block.source.column(place, last=True), spindle=words.name)
     if positions and not words.positioning:
-        column = column_of(block.source, f"{words.name}.POS")
+        column = block.source.column(f"{words.name}.POS")
         raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
     speed, position = next(iter(speeds), None), next(iter(positions), None)
     return words._replace(speed_rpm=speed, position_deg=position)
@@ -127,7 +126,7 @@ def _named(channel: Channel, state: ModalState, block: NcBlock, words: SpindleWo
     known = names(channel, state)
     spindle = known.get(words.name)
     if spindle is None:
-        column = column_of(block.source, place)
+        column = block.source.column(place)
         main = channel.table.main_name
         if known and words.name == known[main].own_name:
             raise spindle_faults.MAIN_BY_OWN_NAME.at(block.source, column, word=words.name, main=main)
@@ -139,7 +138,7 @@ def _named(channel: Channel, state: ModalState, block: NcBlock, words: SpindleWo
 
 def _require_no_position(block: NcBlock, words: SpindleWords) -> None:
     if words.position_deg is not None:
-        column = column_of(block.source, f"{words.name}.POS")
+        column = block.source.column(f"{words.name}.POS")
         raise spindle_faults.POSITION_ALONE.at(block.source, column, spindle=words.name)
 
 
@@ -149,7 +148,7 @@ def _check_coupling(
     for group in state.spindle.active:
         for slave, master, _, _ in state.spindle.links[group]:
             if slave == spindle.key:
-                column, leader = column_of(block.source, place), name_of(channel, state, master)
+                column, leader = block.source.column(place), name_of(channel, state, master)
                 raise spindle_faults.COUPLED.at(block.source, column, spindle=words.name, master=leader, group=group)
 
 
@@ -195,7 +194,7 @@ def _check_speed(channel: Channel, state: ModalState, block: NcBlock, place: str
     if function.speed_rpm > limit:
         gear = f" of gear {stage}" if len(spindle.limits) > 1 else ""
         values = {"speed": f"{function.speed_rpm:g}", "limit": f"{limit:g}", "gear": gear}
-        name, column = name_of(channel, state, spindle.key), column_of(block.source, place)
+        name, column = name_of(channel, state, spindle.key), block.source.column(place)
         raise faults.SPEED_ABOVE_GEAR.at(block.source, column, spindle=name, **values)
 
 
@@ -205,7 +204,7 @@ def _check_position(
     """Raises ProgramError 21083 for a position beyond the range of the lists, at its word if the block has one."""
     if not isinstance(function, SpindleFunction) or abs(function.position_deg or 0.0) <= LARGEST_POSITION:
         return
-    column = column_of(block.source, f"{words.name}.POS" if words.din else place)
+    column = block.source.column(f"{words.name}.POS" if words.din else place)
     values = {"value": number(function.position_deg or 0.0), "limit": number(LARGEST_POSITION)}
     name = name_of(channel, state, function.spindle)
     raise spindle_faults.POSITION_RANGE.at(block.source, column, spindle=name, **values)
@@ -261,7 +260,7 @@ class _SpindleBlock:
         return function
 
     def _fault(self, fault: faults.Fault, **values: Value) -> faults.ProgramError:
-        column = column_of(self.block.source, self.place)
+        column = self.block.source.column(self.place)
         return fault.at(self.block.source, column, spindle=self.words.name, **values)
 
     def _take_speed(self) -> None:
@@ -277,7 +276,7 @@ class _SpindleBlock:
         """In DIN syntax; brackets were checked when they were read."""
         rival = next((code for code in self.block.m if code.group in ("spindle", "positioning")), None)
         if self.words.din and rival is not None:
-            column = column_of(self.block.source, rival.name)
+            column = self.block.source.column(rival.name)
             raise spindle_faults.HOMING_NOT_ALONE.at(
                 self.block.source, column, word=rival.name, spindle=self.words.name
             )
@@ -345,10 +344,10 @@ class _SpindleBlock:
             return 0
         codes = self._gear_codes()
         if len(codes) > 1:
-            column = column_of(self.block.source, f"M{codes[1]}")
+            column = self.block.source.column(f"M{codes[1]}")
             raise spindle_faults.GEAR_TWICE.at(self.block.source, column, first=codes[0], second=codes[1])
         if codes and words.homing:
-            column = column_of(self.block.source, f"M{codes[0]}")
+            column = self.block.source.column(f"M{codes[0]}")
             raise spindle_faults.GEAR_AND_HOMING.at(self.block.source, column, stage=codes[0])
         if not codes and not any(high > 0.0 for _, high in self.spindle.ranges):
             return 0
