@@ -191,22 +191,20 @@ def bracket_words(token: Token, source: Source) -> list[tuple[str, str, int]]:
     return words
 
 
-def places(found: Sequence[Token]) -> tuple[list[str], list[int]]:
+def places(found: Sequence[Token]) -> tuple[tuple[str, ...], tuple[int, ...]]:
     """Names and columns of words and codes, also of codes in brackets, for `Source.column`."""
     names: list[str] = []
     columns: list[int] = []
     for token in found:
-        if token.kind == "word" and token.name in CODES and token.text.isdecimal():
-            names.append(code_name(token.name, int(token.text)))
-        else:
-            names.append(token.name)
+        is_code = token.kind == "word" and token.name in CODES and float(token.text) >= 0.0
+        names.append(code_name(token.name, int(float(token.text))) if is_code else token.name)
         columns.append(token.column)
         if token.kind == "bracket":
             begin = token.column + token.shown.index("[") + 1
             for code in _BRACKET_CODE.finditer(token.text):
                 names.append(code_name(code[1], int(code[2])))
                 columns.append(begin + code.start())
-    return names, columns
+    return tuple(names), tuple(columns)
 
 
 def _unreadable(line: str, source: Source, position: int) -> faults.ProgramError:

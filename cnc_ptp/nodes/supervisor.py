@@ -151,7 +151,7 @@ class Supervisor:
             status = child.exitcode
             if status is None or name in self._dead or (name == CLOCK and status == 0):
                 continue
-            if SERVER in self._dead:  # nobody knows any more how a node has ended
+            if SERVER in self._dead:  # nobody can tell how a node has ended
                 continue
             if server_is_gone(child):
                 self._dead.add(SERVER)
