@@ -30,7 +30,10 @@ $(VENV)/.package: $(PACKAGE) $(INTERFACES) $(VENV)/.requirements
 	@$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --editable .
 	@touch $@
 
-# Without a C compiler the kernel runs interpreted; the program says why.
+# Without a C compiler the kernel runs interpreted; the program says why. A library that is gone is made again.
+ifeq ($(wildcard cnc_ptp/compiled/library/*.so),)
+.PHONY: $(VENV)/.kernel
+endif
 $(VENV)/.kernel: $(SOURCES) pyproject.toml $(VENV)/.package
 	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build >> build/kernel.log && touch $@ || true
 

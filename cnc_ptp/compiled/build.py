@@ -9,6 +9,8 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -91,14 +93,19 @@ def compile_library(extension: Extension, work: Path) -> Path:
     command = build_ext(Distribution({"name": NAME, "ext_modules": [extension]}))
     command.build_lib, command.build_temp = str(work / "lib"), str(work / "objects")
     command.ensure_finalized()
-    try:
-        from pybind11.setup_helpers import ParallelCompile
-
-        with ParallelCompile(needs_recompile=outdated):
-            command.run()
-    except ModuleNotFoundError:  # one file after the other
+    with in_parallel(outdated):
         command.run()
     return Path(command.get_ext_fullpath(extension.name))
+
+
+def in_parallel(outdated: Callable[[str, str], bool]) -> AbstractContextManager[object]:
+    """Compiles several files at a time, of those that have changed; without pybind11 all of them one by one."""
+    try:
+        from pybind11.setup_helpers import ParallelCompile
+    except ModuleNotFoundError:
+        return nullcontext()
+    parallel: AbstractContextManager[object] = ParallelCompile(needs_recompile=outdated)
+    return parallel
 
 
 if __name__ == "__main__":

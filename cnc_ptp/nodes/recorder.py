@@ -62,7 +62,7 @@ class RecorderNode(PollingNode):
     Subscriptions: /clock/tick, /<unit>/block of every unit (as raw bytes), /events, /commands, /diagnostics, /lateness,
     the topics of observed_topics, and of /rosout the messages of the nodes of its namespace: these come as raw bytes
     and are stamped with the time of their arrival, in free run with that of the last tick.
-    Publishes /clock/report: ready, and in free run the cycle up to which all is recorded; /events: blocks that did not
+    Publishes /clock/report: ready, and in free run the newest tick that it has taken; /events: blocks that did not
     arrive. A block that comes twice is recorded once.
     """
 

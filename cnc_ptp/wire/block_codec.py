@@ -11,9 +11,6 @@ import struct
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from mcap.records import Schema as McapSchema
-from mcap_ros2.decoder import DecoderFactory
-
 from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -27,7 +24,7 @@ from cnc_ptp.protocol.blocks import (
 )
 from cnc_ptp.wire.form import Form
 from cnc_ptp.wire.layout import NOT_ENCODED, Layout, encode, header_at
-from cnc_ptp.wire.schemas import PRIMITIVES, load_schema
+from cnc_ptp.wire.schemas import PRIMITIVES, decoder_of, load_schema
 from cnc_ptp.wire.stamps import Stamps
 
 HEAD = struct.Struct("<4xiIIx3xQI")
@@ -62,8 +59,7 @@ class BlockCodec:
     def __init__(self, block_class: Any) -> None:
         self._class = block_class
         self.schema = load_schema(f"cnc_ptp/msg/{block_class.__name__}")
-        text = McapSchema(0, self.schema.text.encode(), "ros2msg", self.schema.name)
-        self._decode: Any = DecoderFactory().decoder_for("cdr", text)
+        self._decode = decoder_of(self.schema)
         self._shape = _SHAPES[block_class]
         self._forms: dict[Hashable, Form] = {}
         self._of_words: dict[int, list[Form]] = {}

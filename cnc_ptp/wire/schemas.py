@@ -9,10 +9,14 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any, cast
+
+from mcap.records import Schema as McapSchema
+from mcap_ros2.decoder import DecoderFactory
 
 import cnc_ptp
 from cnc_ptp.errors import CncError
@@ -172,6 +176,13 @@ def _type_in(package: str, name: str) -> str:
     if name in PRIMITIVES or name in ("string", "wstring") or "/" in name:
         return name
     return "std_msgs/Header" if name == "Header" else f"{package}/{name}"
+
+
+def decoder_of(schema: Schema) -> Callable[[bytes], Any]:
+    """Reads a message of this type field by field."""
+    text = McapSchema(0, schema.text.encode(), "ros2msg", schema.name)
+    decoder: Any = DecoderFactory().decoder_for("cdr", text)
+    return cast("Callable[[bytes], Any]", decoder)
 
 
 def _length(array: str | None) -> int | None:

@@ -6,17 +6,13 @@ import struct
 from functools import cache
 from typing import Any, NamedTuple
 
-from mcap.records import Schema as McapSchema
-from mcap_ros2.decoder import DecoderFactory
-
 from cnc_ptp.wire.layout import ENCAPSULATION
-from cnc_ptp.wire.schemas import load_schema
+from cnc_ptp.wire.schemas import decoder_of, load_schema
 
 _TICK = struct.Struct("<4siIIs3xQI4xq")
 """Encapsulation, stamp, empty frame_id, first cycle, count, scheduled time: a CycleTick message."""
-
-
 _HEAD = struct.Struct("<4siII")
+"""Encapsulation, stamp, length of the frame_id."""
 
 
 class Tick(NamedTuple):
@@ -35,7 +31,7 @@ def encode_tick(first_cycle: int, count: int, scheduled_monotonic_ns: int, stamp
 
 def decode_tick(data: bytes) -> Tick:
     """Of any clock; headers of ours have no frame_id."""
-    _, seconds, nanoseconds, text_size, *_ = _HEAD.unpack_from(data)
+    _, seconds, nanoseconds, text_size = _HEAD.unpack_from(data)
     if text_size == 1:
         _, _, _, _, _, first_cycle, count, scheduled = _TICK.unpack_from(data)
     else:
@@ -46,5 +42,4 @@ def decode_tick(data: bytes) -> Tick:
 
 @cache
 def _decoder() -> Any:
-    schema = load_schema("cnc_ptp/msg/CycleTick")
-    return DecoderFactory().decoder_for("cdr", McapSchema(0, schema.text.encode(), "ros2msg", schema.name))
+    return decoder_of(load_schema("cnc_ptp/msg/CycleTick"))

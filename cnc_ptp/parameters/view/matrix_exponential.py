@@ -1,4 +1,4 @@
-"""Exponential of a matrix. SciPy has one too, but loading it takes every process longer than all else it loads."""
+"""Exponential of a matrix. SciPy has one too, but every process of a drive would load SciPy for it."""
 
 from __future__ import annotations
 
