@@ -35,7 +35,7 @@ ifeq ($(wildcard cnc_ptp/compiled/library/*.so),)
 .PHONY: $(VENV)/.kernel
 endif
 $(VENV)/.kernel: $(SOURCES) pyproject.toml $(VENV)/.package
-	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build >> build/kernel.log && touch $@ || true
+	@CNC_PTP_PURE=1 $(BIN)/python -m cnc_ptp.compiled.build > build/kernel.log && touch $@ || true
 
 demo: setup
 	@mkdir -p runs

@@ -1,4 +1,4 @@
-"""The offline run: speed over real time with and without recording, split of the time, memory over a long run."""
+"""The offline run: speed over real time with and without recording, memory over a long run."""
 
 from __future__ import annotations
 
@@ -6,13 +6,10 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
-from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from bench.figures import Effort, Figure, ShowProgress, Stopwatch, stopwatch
 from bench.jobs import BRACKET, MACHINE, OVERRIDES, ROOT, long_program
@@ -21,12 +18,10 @@ from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.run_entries import read_entries, read_file
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import read_machine
-from cnc_ptp.protocol.unit import Unit
 from cnc_ptp.recording.writer import Recording
 
 LONG = 600.0
 """Seconds of machine time of the long run of which the memory is measured."""
-KINDS = ("plc", "channel", "spindle", "axis")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +31,6 @@ class OfflineRun:
     machine_seconds: float
     blocks: int
     watch: Stopwatch
-    unit_seconds: Mapping[str, float]
-    """By kind of unit; empty unless asked for."""
 
 
 def run_offline(
@@ -47,13 +40,11 @@ def run_offline(
     scenario: str | None = None,
     seconds: float | None = None,
     record: str | None = None,
-    split: bool = False,
 ) -> OfflineRun:
     """As `cnc_ptp simulate` does it; the machine and the job are read before the watch starts."""
     parameters = read_machine(machine)
     entries = read_entries(parameters, program=program, scenario=scenario)
     units = build_units(parameters, scenario=entries, end_when_idle=seconds is None)
-    shares = measure_units(units) if split else {}
     offline = OfflineMachine(parameters, units)
     cycle_ns = parameters.cycle_time_us * 1000
     cycles = None if seconds is None else round(seconds * 1e9 / cycle_ns)
@@ -66,31 +57,11 @@ def run_offline(
             blocks += 1
             if recording is not None:
                 write(recording, outputs)
-    return OfflineRun(blocks * parameters.block_cycles * cycle_ns * 1e-9, blocks, watch, shares)
-
-
-def measure_units(units: Mapping[str, Unit]) -> dict[str, float]:
-    """Makes every unit add the time of its blocks to the seconds of its kind."""
-    shares: dict[str, float] = defaultdict(float)
-    for unit in units.values():
-        measure_unit(unit, shares)
-    return shares
-
-
-def measure_unit(unit: Unit, shares: dict[str, float]) -> None:
-    step, kind = unit.step, unit.kind
-
-    def measured(*arguments: Any) -> Any:
-        begin = time.thread_time()
-        block = step(*arguments)
-        shares[kind] += time.thread_time() - begin
-        return block
-
-    unit.step = measured  # type: ignore[method-assign]
+    return OfflineRun(blocks * parameters.block_cycles * cycle_ns * 1e-9, blocks, watch)
 
 
 def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
-    """Speed on the example, split of the time, memory."""
+    """Speed on the example, memory."""
     with tempfile.TemporaryDirectory() as folder:
         yield from speed(effort, show, str(Path(folder) / "run.mcap"))
         yield from memory(effort, show, Path(folder))
@@ -100,13 +71,11 @@ def speed(effort: Effort, show: ShowProgress, record: str) -> Iterator[Figure]:
     """examples/bracket.nc with its overrides on config/mill.yaml, with and without recording in turn."""
     recorded: list[OfflineRun] = []
     kernel: list[OfflineRun] = []
-    split: list[OfflineRun] = []
     seconds = None if effort.size >= 0.1 else 1.0
     for n in range(effort.runs):
         show(f"bracket, run {n + 1} of {effort.runs}")
         recorded.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds, record=record))
         kernel.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds))
-        split.append(run_offline(MACHINE, program=BRACKET, scenario=OVERRIDES, seconds=seconds, split=True))
     yield Figure("bracket with full recording", times_real_time(recorded), "× real time", goal=72.0, aim=100.0)
     yield Figure("bracket without recording", times_real_time(kernel), "× real time")
     cpu = statistics.median(run.machine_seconds / run.watch.cpu for run in recorded)
@@ -115,10 +84,6 @@ def speed(effort: Effort, show: ShowProgress, record: str) -> Iterator[Figure]:
     units = statistics.median(block_time_us(run, run.watch.wall) for run in kernel)
     yield Figure("a block of 10 cycles: kernel", units, "µs/block")
     yield Figure("a block of 10 cycles: recording", whole - units, "µs/block")
-    counts = {kind: sum(unit.kind == kind for unit in build_units(read_machine(MACHINE)).values()) for kind in KINDS}
-    for kind, count in counts.items():
-        share = statistics.median(block_time_us(run, run.unit_seconds[kind]) / count for run in split)
-        yield Figure(f"of the kernel: one {kind} unit ({count} of {sum(counts.values())})", share, "µs/block")
 
 
 def times_real_time(runs: list[OfflineRun]) -> float:

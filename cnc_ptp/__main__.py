@@ -17,8 +17,8 @@ def _entry(*command: str) -> Callable[[], object]:
     def call() -> object:
         signal.signal(signal.SIGINT, end_command)
         use_one_thread()
-        if KERNEL.edited:
-            print(f"{KERNEL}; make setup compiles it again", file=sys.stderr)
+        if KERNEL.remedy:
+            print(f"{KERNEL}; {KERNEL.remedy}", file=sys.stderr)
         from cnc_ptp.cli import main
 
         return main.main(args=[*command, *sys.argv[1:]], prog_name="cnc_ptp")

@@ -6,11 +6,12 @@ library, and the kernel runs interpreted.
 
 from __future__ import annotations
 
+import io
 import os
 import shutil
 import sys
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,17 +41,18 @@ def build(folder: Path) -> str:
     state = hashes(files | recipe())
     if read_state(folder) == state and library_file(folder).is_file():
         return ""
-    write_state(folder, {FAILURE: "its compilation was interrupted"})
+    print(f"Compiling the kernel, {len(files)} sources (one to three minutes on two cores) ...", file=sys.stderr)
+    write_state(folder, {FAILURE: "its compilation was interrupted", **state})
     work = PACKAGE.parent / "build" / f"kernel-{sys.implementation.cache_tag}"
     failure = ""
     try:
         make_library([file.relative_to(PACKAGE.parent) for file in files.values()], work, folder)
     except ImportError as error:
         failure = f"it cannot be compiled without {error.name}"
-    except (Exception, SystemExit) as error:  # mypyc ends the process when it does not understand a source
+    except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         failure = f"it could not be compiled: {reason}; build/kernel.log has more"
-    write_state(folder, {FAILURE: failure} if failure else state)
+    write_state(folder, {FAILURE: failure, **state} if failure else state)
     return failure
 
 
@@ -65,17 +67,28 @@ def make_library(files: list[Path], work: Path, folder: Path) -> None:
 
 
 def translate(files: list[Path], work: Path) -> Extension:
-    """The extension of mypyc's C sources; its shims, one for each module, are not needed."""
+    """The extension of mypyc's C sources; its shims, one for each module, are not needed.
+
+    Raises SyntaxError with the first message about a source that mypyc refuses; all are printed.
+    """
     from mypyc.build import mypycify
 
-    (extension, *_shims) = mypycify(
-        ["--config-file=pyproject.toml", *map(str, files)],
-        opt_level=OPTIMISATION,
-        debug_level="0",
-        multi_file=True,
-        target_dir=str(work),
-        group_name=NAME.removesuffix("__mypyc"),
-    )
+    said = io.StringIO()
+    try:
+        with redirect_stdout(said):
+            (extension, *_shims) = mypycify(
+                ["--config-file=pyproject.toml", *map(str, files)],
+                opt_level=OPTIMISATION,
+                debug_level="0",
+                multi_file=True,
+                target_dir=str(work),
+                group_name=NAME.removesuffix("__mypyc"),
+            )
+    except SystemExit as error:
+        errors = [line for line in said.getvalue().splitlines() if ": error:" in line]
+        raise SyntaxError(errors[0] if errors else f"mypyc ended with {error}") from None
+    finally:
+        print(said.getvalue(), end="")
     extension.extra_compile_args = [flag for flag in extension.extra_compile_args if flag != "-Werror"]
     extension.extra_compile_args.append("-ffp-contract=off")  # the same bits as Python on every processor
     return extension

@@ -49,11 +49,11 @@ class KernelFinder(MetaPathFinder, Loader):
 
 
 class Kernel:
-    """Which kernel runs. `interpreted_because`: empty when it is the compiled one; `edited`: the sources differ."""
+    """Which kernel runs. `interpreted_because`: empty when it is the compiled one; `remedy`: what would change that."""
 
     def __init__(self) -> None:
         self.interpreted_because = ""
-        self.edited = False
+        self.remedy = ""
 
     def choose(self) -> None:
         """Installs the finder when the library is what the sources are."""
@@ -61,12 +61,17 @@ class Kernel:
             self.interpreted_because = f"{INTERPRET} is set"
             return
         built, present = read_state(LIBRARY), sources()
-        if not built or FAILURE in built:
-            self.interpreted_because = built.get(FAILURE, "it was not compiled")
+        failure = built.pop(FAILURE, "")
+        if not built:
+            self.interpreted_because = "it was not compiled"
         elif change := changed(built, hashes(present | recipe())):
-            self.interpreted_because, self.edited = f"{change} since it was compiled", True
+            self.interpreted_because = f"{change} since {'its compilation failed' if failure else 'it was compiled'}"
+        elif failure:
+            self.interpreted_because = failure
         else:
             self._load(KernelFinder(present))
+        if self.interpreted_because:
+            self.remedy = "make setup compiles it again"
 
     def _load(self, finder: KernelFinder) -> None:
         sys.meta_path.insert(0, finder)

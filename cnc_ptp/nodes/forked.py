@@ -21,20 +21,28 @@ from types import ModuleType
 
 from setproctitle import setproctitle
 
+from cnc_ptp.errors import CncError
 from cnc_ptp.one_thread import ONE_THREAD
 
 PRELOAD = "cnc_ptp.nodes.preload"
 CONTEXT = get_context("forkserver")
+NODE_DIED = 26104
+SERVER_ENDED = "the process that nodes are forked from has ended"
 UNKNOWN = 255
 """Exit status of every process when the server has ended."""
 
 
 def start_server() -> None:
-    """Starts the server, unless it is there; it imports while its caller continues."""
+    """Starts the server, unless it is there; it imports while its caller continues.
+
+    It ignores SIGINT from its first instruction on: Ctrl-C is for the caller, which ends its nodes in order.
+    """
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(ONE_THREAD)
     CONTEXT.set_forkserver_preload([PRELOAD])
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
     forkserver.ensure_running()
+    signal.signal(signal.SIGINT, handler)
     for name, value in before.items():
         if value is None:
             del os.environ[name]
@@ -43,10 +51,16 @@ def start_server() -> None:
 
 
 def start_node(module: str, words: Sequence[str]) -> BaseProcess:
-    """Runs the node `cnc_ptp.nodes.<module>` with a command line, in the environment and folder of the caller."""
+    """Runs the node `cnc_ptp.nodes.<module>` with a command line, in the environment and folder of the caller.
+
+    Raises CncError 26104 when the server has ended.
+    """
     process = CONTEXT.Process(target=run_node, args=(module, words, {**os.environ}, os.getcwd()), name=module)
     with without_main_module():
-        process.start()
+        try:
+            process.start()
+        except (EOFError, ConnectionError):
+            raise CncError(NODE_DIED, f"{SERVER_ENDED} while nodes were started", "nothing has moved yet") from None
     return process
 
 

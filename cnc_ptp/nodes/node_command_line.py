@@ -51,8 +51,8 @@ def unit_main(node_class: Callable[..., Any], what: str, *more: click.Parameter)
 
 def call(command: click.Command) -> None:
     """Runs a node's command with the process arguments; those for ROS are its context's object."""
-    if KERNEL.edited and parent_process() is None:  # not one of many nodes of a run
-        print(f"{KERNEL}; make setup compiles it again", file=sys.stderr)
+    if KERNEL.remedy and parent_process() is None:  # not one of many nodes of a run
+        print(f"{KERNEL}; {KERNEL.remedy}", file=sys.stderr)
     try:
         own, ros = split(sys.argv[1:])
     except CncError as error:

@@ -148,10 +148,10 @@ def spin(
             for node in nodes:
                 if failure := getattr(node, "failure", None):
                     raise failure
+    finally:
+        executor.shutdown()  # before the nodes: messages that arrive meanwhile would call what is destroyed
         for node in nodes:
             node.destroy_node()
-    finally:
-        executor.shutdown()
         rclpy.try_shutdown()
 
 

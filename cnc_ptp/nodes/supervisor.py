@@ -20,7 +20,16 @@ from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
-from cnc_ptp.nodes.forked import end, is_alive, server_is_gone, start_node, start_server, wait_for
+from cnc_ptp.nodes.forked import (
+    NODE_DIED,
+    SERVER_ENDED,
+    end,
+    is_alive,
+    server_is_gone,
+    start_node,
+    start_server,
+    wait_for,
+)
 from cnc_ptp.nodes.monitor import SUPERVISOR, RunMonitor
 from cnc_ptp.nodes.recorder import require_writable
 from cnc_ptp.nodes.topics import MONITOR, RECORDER
@@ -31,7 +40,6 @@ from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
 
-NODE_DIED = 26104
 SERVER = "server of processes"
 NOT_READY = 26105
 POLL = 0.05
@@ -155,7 +163,7 @@ class Supervisor:
                 continue
             if server_is_gone(child):
                 self._dead.add(SERVER)
-                self._fail(NODE_DIED, f"the process that nodes are forked from has ended; {self._what_follows()}")
+                self._fail(NODE_DIED, f"{SERVER_ENDED}; {self._what_follows()}")
                 continue
             self._dead.add(name)
             text = f"node '{name}' (process {child.pid}) {how_ended(status)} during the run; {self._what_follows()}"
@@ -193,8 +201,10 @@ class Supervisor:
                 self._stop_everything()
             else:
                 self._fail(INTERRUPTED, f"the run was interrupted ({name}); {self._what_follows()}")
-        if len(self._signals) > 1:
+        if len(self._signals) > 1 and self._stop_deadline:
             self._stop_deadline = 0.0
+            name = signal.Signals(self._signals[1]).name
+            self.failures.append(f"P-ERR-{INTERRUPTED} a second interrupt ({name}) has ended the stop before its end")
 
     def _end_all(self) -> None:
         """Ends the nodes: the recorder after all others, so that it has seen everything."""
