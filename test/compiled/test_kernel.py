@@ -12,9 +12,10 @@ from loop_support import PLANT, T, control, make_loop
 
 from cnc_ptp import KERNEL
 from cnc_ptp.compiled import build as build_module
-from cnc_ptp.compiled.build import build
+from cnc_ptp.compiled import finder as finder_module
+from cnc_ptp.compiled.build import build, translate
 from cnc_ptp.compiled.finder import changed
-from cnc_ptp.compiled.sources import FAILURE, hashes, library_file, read_state, recipe, sources, state_file
+from cnc_ptp.compiled.sources import FAILURE, hashes, library_file, read_state, recipe, sources, state_file, write_state
 from cnc_ptp.control.drives import (
     CascadedDrive,
     DelayedDrive,
@@ -27,7 +28,8 @@ from cnc_ptp.control.drives import (
 )
 
 ROOT = Path(__file__).parents[2]
-compiled_only = pytest.mark.skipif(bool(KERNEL.remedy), reason="the sources have changed since they were compiled")
+EDITED = "changed since it was compiled" in KERNEL.interpreted_because
+compiled_only = pytest.mark.skipif(EDITED, reason="the sources have changed since they were compiled")
 """Without a library these tests fail: a set-up that no longer compiles must not go unnoticed."""
 RUNS = {
     "bracket": (
@@ -109,7 +111,6 @@ def test_what_has_changed(current: dict[str, str], text: str) -> None:
     [
         (ImportError("no", name="mypyc"), "it cannot be compiled without mypyc"),
         (RuntimeError("command 'gcc' failed: No such file\nmore"), "it could not be compiled: command 'gcc' failed: No such file; build/kernel.log has more"),
-        (SystemExit(1), "it could not be compiled: 1; build/kernel.log has more"),
         (AssertionError(), "it could not be compiled: AssertionError; build/kernel.log has more"),
     ],
 )  # fmt: skip
@@ -121,7 +122,43 @@ def test_a_kernel_that_cannot_be_compiled_runs_interpreted(
 
     monkeypatch.setattr(build_module, "make_library", fail)
     assert build(tmp_path / "library") == reason
-    assert read_state(tmp_path / "library") == {FAILURE: reason}
+    assert read_state(tmp_path / "library") == {FAILURE: reason, **hashes(sources() | recipe())}
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        ("x: int = 'a'\n", 'wrong.py:1: error: Incompatible types in assignment (expression has type "str"'),
+        ("def f(:\n", "wrong.py:1: error: "),
+    ],
+)
+def test_a_source_that_the_compiler_refuses_is_named(
+    source: str, reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "wrong.py").write_text(source)
+    (tmp_path / "pyproject.toml").write_text("[tool.mypy]\n")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SyntaxError) as refused:
+        translate([Path("wrong.py")], tmp_path / "work")
+    assert reason in str(refused.value)
+    assert str(refused.value) in capsys.readouterr().out
+
+
+def test_a_failure_counts_until_a_source_changes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CNC_PTP_PURE", raising=False)
+    monkeypatch.setattr(finder_module, "LIBRARY", tmp_path)
+    state = hashes(sources() | recipe())
+    told = []
+    for kept in ({}, {FAILURE: "it failed", **state}, {FAILURE: "it failed", **state, "cnc_ptp.axis.axis_unit": "0"}):
+        write_state(tmp_path, kept)
+        kernel = finder_module.Kernel()
+        kernel.choose()
+        told.append((kernel.interpreted_because, kernel.remedy))
+    assert told == [
+        ("it was not compiled", "make setup compiles it again"),
+        ("it failed", "make setup compiles it again"),
+        ("cnc_ptp/axis/axis_unit.py has changed since its compilation failed", "make setup compiles it again"),
+    ]
 
 
 def test_a_library_of_these_sources_is_not_built_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,6 +21,31 @@ node = start_node("clock", ["nowhere.yaml"])
 node.join()
 print(node.exitcode, "OPENBLAS_NUM_THREADS" in os.environ)
 """
+WITHOUT_SERVER = """
+import os, signal
+from multiprocessing.forkserver import _forkserver
+from cnc_ptp.errors import CncError
+from cnc_ptp.nodes.forked import start_node, start_server
+start_server()
+os.kill(_forkserver._forkserver_pid, signal.SIGINT)  # ignored, also while it imports
+start_node("clock", ["nowhere.yaml"]).join()
+os.kill(_forkserver._forkserver_pid, signal.SIGKILL)
+os.waitid(os.P_PID, _forkserver._forkserver_pid, os.WEXITED | os.WNOWAIT)
+_forkserver.ensure_running = lambda: None  # it has looked for the server a moment before
+try:
+    start_node("clock", ["nowhere.yaml"])
+except CncError as error:
+    print(error)
+"""
+
+
+def test_a_node_that_cannot_be_started_because_the_server_is_gone():
+    done = subprocess.run([sys.executable, "-c", WITHOUT_SERVER], capture_output=True, text=True, timeout=TIMEOUT)
+    text = (
+        "P-ERR-26104 the process that nodes are forked from has ended while nodes were started; nothing has moved yet"
+    )
+    assert done.stdout == f"{text}\n"
+    assert "Traceback" not in done.stderr and "nowhere.yaml:1:1: machine file cannot be read" in done.stderr
 
 
 def test_a_script_without_a_main_guard_starts_nodes(tmp_path):

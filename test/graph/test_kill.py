@@ -1,5 +1,6 @@
 """`kill -9` of any node in mid-program: a clear error, a stop on ramps, a readable recording, no orphan, no hang."""
 
+import os
 import signal
 import time
 
@@ -115,6 +116,19 @@ def check_ramps(recorded, *, skip, ended):
         assert bends.max() <= axis.jerk * (1.0 + 1e-6), f"{name} jerks with {bends.max()} mm/s³"
         if ended and name != skip:
             assert rows["set_velocity"][-1] == 0.0, f"{name} still moves at the end"
+
+
+def test_a_second_interrupt_ends_the_stop(running):
+    graph, nodes, _ = running
+    for node in ("x", "plc"):  # which do not answer, so that the stop takes its time
+        os.kill(nodes[node], signal.SIGSTOP)
+    graph.process.send_signal(signal.SIGINT)
+    time.sleep(0.5)
+    graph.process.send_signal(signal.SIGTERM)
+    output = graph.finish(expect=1)
+    assert "P-ERR-26106 the run was interrupted (SIGINT); everything stops on its ramps" in output
+    assert "P-ERR-26106 a second interrupt (SIGTERM) has ended the stop before its end" in output
+    assert wait_until_gone(nodes.values()) == []
 
 
 def test_interrupted_supervisor(running):
