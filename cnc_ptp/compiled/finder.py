@@ -63,7 +63,7 @@ class Kernel:
         built, present = read_state(LIBRARY), sources()
         failure = built.pop(FAILURE, "")
         if not built:
-            self.interpreted_because = "it was not compiled"
+            self.interpreted_because = failure or "it was not compiled"
         elif change := changed(built, hashes(present | recipe())):
             self.interpreted_because = f"{change} since {'its compilation failed' if failure else 'it was compiled'}"
         elif failure:
