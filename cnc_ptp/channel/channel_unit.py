@@ -17,8 +17,9 @@ from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck
 from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
+from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pairs, Program
+from cnc_ptp.nc.program import ModalState, Pairs
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name

@@ -19,9 +19,10 @@ from cnc_ptp.nc.canonical import (
     SpindleFunction,
 )
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pair, Pairs, Program, Spindle, SpindleTable
+from cnc_ptp.nc.program import ModalState, Pair, Pairs, Spindle, SpindleTable
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,

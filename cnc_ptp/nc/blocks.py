@@ -4,13 +4,26 @@ Two methods with the same result: a fast one for lines of letters with numbers o
 else, which also finds the column of an error.
 """
 
+from __future__ import annotations
+
+import re
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
 
 from cnc_ptp.nc import faults, feedforward, friction_switch
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
-from cnc_ptp.nc.hash_commands import hash_block
-from cnc_ptp.nc.lexer import SKIP, Token, normalise, places, plain_words, tokens
+from cnc_ptp.nc.expressions.nodes import Node
+from cnc_ptp.nc.expressions.values import Values
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.calls import call_of
+from cnc_ptp.nc.flow.lines import Call, Line, Statement
+from cnc_ptp.nc.flow.statement_reader import read_statement
+from cnc_ptp.nc.flow.statements import Assignment, Assignments
+from cnc_ptp.nc.hash_commands import hash_line
+from cnc_ptp.nc.lexer import SKIP, Token, TokenReader, normalise, places, plain_words
 from cnc_ptp.nc.program import GCode, MCode, NcBlock, SpindleWords
+from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.spindle_words import spindle_bracket
 from cnc_ptp.nc.vocabulary import (
     AXIS_LETTERS,
@@ -21,7 +34,18 @@ from cnc_ptp.nc.vocabulary import (
     m_code,
 )
 
+if TYPE_CHECKING:
+    from cnc_ptp.nc.flow.execution import Execution
+
 MAX_BLOCK_NUMBER = 999_999_999
+LONGEST_BLOCK: Final = 4000
+"""Characters of a block, as the vendor has it."""
+SHOWN: Final = 60
+"""Characters of a longer one that its error shows."""
+
+_LABEL_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*:", re.ASCII)
+_BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})(?![\d.])", re.ASCII)
+_LABEL_NAME = re.compile(r"\s*\[\s*([A-Z_][A-Z0-9_]*)\s*\]", re.ASCII)
 
 _PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
 _PLAIN_CODES = {float(number_): code for number_, code in G_CODES.items() if not code.spindle}
@@ -56,29 +80,137 @@ def plain_block(file: str, line: int, text: str) -> NcBlock | None:
         else:
             return None
     source = Source(file, line, block_number, text, tuple(names), tuple(columns))
-    return NcBlock(source, codes, words, (), (), None, "", "", 0, functions)
+    return NcBlock(source, codes, words, (), (), None, "", functions)
 
 
-def careful_block(source: Source) -> NcBlock | None:
-    """Any line: comments, M functions, names, brackets, calls; raises with the column. None without words."""
-    line = normalise(source)
-    skip, begin = _skip_level(line, source)
-    if "#" in line:
-        command = hash_block(line, source, begin, skip)
-        if command is not None:
-            return command
-    found = tokens(line, source, begin)
+def read_line(file: str, text: ProgramText, number: int, offset: int) -> Line:
+    """The line that begins at `offset`; a syntax error is kept in it."""
+    content, next_offset = text.line_at(offset)
+    content = content.rstrip()
+    next_number = number + 1
+    block = plain_block(file, number, content) if len(content) <= LONGEST_BLOCK else None
+    if block is not None:
+        line = Line(number, block.source, next_number, next_offset)
+        line.block = block
+        return line
+    while content.endswith("\\") and ";" not in content and next_offset >= 0:
+        more, next_offset = text.line_at(next_offset)
+        content = content[:-1] + " " + more.rstrip()
+        next_number += 1
+    source = Source(file, number, 0, content[:LONGEST_BLOCK])
+    line = Line(number, source, next_number, next_offset)
+    if not content:
+        return line
+    try:
+        if len(content) > LONGEST_BLOCK:
+            shown = source._replace(text=content[:SHOWN])
+            raise flow_faults.LINE_TOO_LONG.at(shown, LONGEST_BLOCK + 1, length=len(content), limit=LONGEST_BLOCK)
+        if content.lstrip().startswith("%"):
+            line.header = True
+        else:
+            careful_line(line)
+    except ProgramError as error:
+        line.error = error
+    return line
+
+
+def careful_line(line: Line) -> None:
+    """Any line: comments, M functions, names, brackets, expressions, statements, calls; raises with the column."""
+    text = normalise(line.source)
+    line.skip, begin = _skip_level(text, line.source)
+    begin = _take_labels(line, text, begin)
+    if "$" in text:
+        read_statement(line, text, begin, read_words)
+    elif "#" in text and hash_line(line, text, begin):
+        return
+    else:
+        line.block = read_words(line, text, begin)
+
+
+def _take_labels(line: Line, text: str, begin: int) -> int:
+    """Block number and label at the start of a line; the place behind them."""
+    for _ in range(3):
+        if match := _LABEL_NUMBER.match(text, begin):
+            line.source = line.source._replace(block_number=int(match[1]))
+            line.label, line.label_column = f"N{int(match[1])}", match.start(1)
+        elif match := _BLOCK_NUMBER.match(text, begin):
+            place = match.end() - len(match[0].lstrip()) + 1
+            line.source = line.source._replace(block_number=int(match[1]), names=("N",), columns=(place,))
+        elif match := _LABEL_NAME.match(text, begin):
+            line.label, line.label_column = f"[{match[1]}]", match.start(1)
+        else:
+            break
+        begin = match.end()
+    return begin
+
+
+def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
+    """The words from a place on: a block of numbers, or in `line.statement` what has to be evaluated first."""
+    reader = TokenReader(text, line.source)
+    found = reader.tokens(begin)
     if not found:
         return None
+    line.synchronises = reader.synchronises
     names, columns = places(found)
-    source = source._replace(names=names, columns=columns)
-    if found[0].kind == "word" and found[0].name == "N":
-        source = source._replace(block_number=_integer(found[0], source, MAX_BLOCK_NUMBER))
-        found = found[1:]
-    words = _BlockWords(source)
+    before = line.source
+    line.source = before._replace(names=(*before.names, *names), columns=(*before.columns, *columns))
+    if found[-1].kind == "call":
+        line.call = call_of(found.pop(), line.source)
+    stray = next((token for token in found if token.kind == "call"), None)
+    if stray is not None:
+        after = found[found.index(stray) + 1]
+        raise faults.WORDS_AFTER_CALL.at(line.source, after.column, word=after.shown)
+    if not any(token.dynamic or token.target is not None for token in found):
+        return _fixed_block(line, found)
+    if all(token.target is not None for token in found):
+        parts = [_assignment(token) for token in found]
+        line.statement = parts[0] if len(parts) == 1 else Assignments(parts[0].column, parts)
+        return None
+    line.statement = ComputedWords(found[0].column, found)
+    return None
+
+
+def _fixed_block(line: Line, found: Sequence[Token]) -> NcBlock | None:
+    if not found:
+        return None
+    words = BlockWords(line.source)
     for token in found:
         words.take(token)
-    return words.block(skip)
+    if line.call is not None:
+        words.require_no_end(line.call)
+    return words.block()
+
+
+def _assignment(token: Token) -> Assignment:
+    assert token.target is not None and token.value is not None
+    return Assignment(token.column, token.target, token.value)
+
+
+class ComputedWords(Statement):
+    """Words with expressions, and assignments among them, in their order."""
+
+    def __init__(self, column: int, tokens_: Sequence[Token]) -> None:
+        super().__init__(column)
+        self.tokens = tokens_
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        values = execution.values
+        words = BlockWords(line.source)
+        for token in self.tokens:
+            if token.target is not None:
+                _assignment(token).assign(values)
+            elif token.value is not None:
+                words.take(token._replace(text=repr(token.value.value(values))))
+            elif token.parts:
+                words.take(token._replace(text="".join(_part(part, values) for part in token.parts)))
+            else:
+                words.take(token)
+        return words.block()
+
+
+def _part(part: str | Node, values: Values) -> str:
+    """Text of a bracket with the number in place of an expression."""
+    return part if isinstance(part, str) else f"{part.value(values):.12f}"
 
 
 def _skip_level(line: str, source: Source) -> tuple[int, int]:
@@ -98,7 +230,7 @@ def _integer(token: Token, source: Source, limit: int) -> int:
     return int(value)
 
 
-class _BlockWords:
+class BlockWords:
     """The words of one block as the careful method collects them."""
 
     def __init__(self, source: Source) -> None:
@@ -109,12 +241,9 @@ class _BlockWords:
         self.spindles: list[SpindleWords] = []
         self.controls: list[SpindleFeedforward | CompensationSwitch] = []
         self.direct: float | None = None
-        self.call = ""
 
     def take(self, token: Token) -> None:
         """Adds one token."""
-        if self.call:
-            raise faults.WORDS_AFTER_CALL.at(self.source, token.column, word=token.shown)
         _TAKERS[token.kind](self, token)
 
     def word(self, token: Token) -> None:
@@ -124,6 +253,7 @@ class _BlockWords:
         elif token.name == "M":
             self._m(token)
         elif token.name == "N":
+            _integer(token, self.source, MAX_BLOCK_NUMBER)
             raise faults.BLOCK_NUMBER_PLACE.at(self.source, token.column, word=token.shown)
         elif token.name in _PLAIN_VALUES:
             self._value(token)
@@ -172,6 +302,10 @@ class _BlockWords:
         else:
             raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
 
+    def valued(self, token: Token) -> None:
+        """A code with a value: G159=2."""
+        raise faults.BAD_NUMBER.at(self.source, token.column, word=token.shown)
+
     def position(self, token: Token) -> None:
         """The position of M19: `S.POS=90`."""
         name = token.name.removesuffix(".POS")
@@ -196,14 +330,13 @@ class _BlockWords:
             raise faults.NUMBER_WITHOUT_WORD.at(self.source, token.column, word=token.shown)
         self.direct = float(token.text)
 
-    def subroutine(self, token: Token) -> None:
-        """`LL name`."""
+    def require_no_end(self, call: Call) -> None:
+        """Raises ProgramError 21021 when the block of a call also ends the program."""
         ending = next((code for code in self.m if code.flow in ("end", "return")), None)
         if ending is not None:
-            raise faults.CALL_AND_END.at(self.source, token.column, word=ending.name)
-        self.call = token.name
+            raise faults.CALL_AND_END.at(self.source, call.column, word=ending.name)
 
-    def block(self, skip: int) -> NcBlock:
+    def block(self) -> NcBlock:
         """The finished block."""
         functions = bool(self.m or self.spindles or not FUNCTION_WORDS.isdisjoint(self.words))
         functions = functions or any(code.spindle for code in self.codes)
@@ -215,19 +348,17 @@ class _BlockWords:
             tuple(self.m),
             tuple(self.spindles),
             self.direct,
-            self.call,
             flow,
-            skip,
             functions,
             controls=tuple(self.controls),
         )
 
 
 _TAKERS = {
-    "word": _BlockWords.word,
-    "named": _BlockWords.named,
-    "position": _BlockWords.position,
-    "bracket": _BlockWords.bracket,
-    "bare": _BlockWords.bare,
-    "call": _BlockWords.subroutine,
+    "word": BlockWords.word,
+    "named": BlockWords.named,
+    "position": BlockWords.position,
+    "bracket": BlockWords.bracket,
+    "bare": BlockWords.bare,
+    "valued": BlockWords.valued,
 }

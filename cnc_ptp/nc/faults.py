@@ -24,6 +24,8 @@ class ProgramError(CncError):
         self.line = source.line
         self.column = column
         self.text = source.text
+        self.calls: list[str] = []
+        """From where the subroutine was called that has the fault, the innermost first."""
 
     @property
     def caret(self) -> str:
@@ -72,7 +74,6 @@ END_MISSING = Fault(21017, "{program} has no {end} at its end")
 RETURN_IN_MAIN = Fault(21018, "{word} ends a subroutine, but this is the main program")
 UNKNOWN_SUBROUTINE = Fault(21019, "unknown subroutine {name}; known are: {known}")
 CALL_DEPTH = Fault(21020, "call of subroutine {name} at depth {depth}, the limit is {limit}")
-TOO_MANY_BLOCKS = Fault(21043, "the program executes more than {limit} blocks, calls counted each time")
 WORDS_AFTER_CALL = Fault(21542, "'{word}' after a subroutine call")
 CALL_AND_END = Fault(21021, "subroutine call and {word} in one block")
 

@@ -8,39 +8,88 @@ import re
 from collections.abc import Callable
 
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
-from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Source
+from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function
+from cnc_ptp.nc.expressions.nodes import SelfDefined
+from cnc_ptp.nc.expressions.reader import ExpressionReader
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.lines import Line
+from cnc_ptp.nc.flow.statements import Declarations, Delete, Mark
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
 
 Run = Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]
 
-_BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*", re.ASCII)
 _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCII)
 """[NBR] says that spindles are given by number; that is recognised anyway."""
 _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
 
 
-def hash_block(line: str, source: Source, begin: int, skip: int) -> NcBlock | None:
-    """The block of a normalised line with a command; None if it has no known command (the tokens say why)."""
-    found = _COMMAND.search(line, begin)
+def hash_line(line: Line, text: str, begin: int) -> bool:
+    """Reads a normalised line with a command; False if it has no known command (the tokens say why)."""
+    found = _COMMAND.search(text, begin)
     if found is None:
-        return None
+        return False
     name = " ".join(found[1].split())
-    before = _BLOCK_NUMBER.match(line, begin)
-    source = source._replace(block_number=int(before[1])) if before else source
-    position = before.end() if before else begin
     shown = "#" + name
-    words = line[position : found.start()].strip()
+    words = text[begin : found.start()].strip()
     if words:
-        raise spindle_faults.COMMAND_NOT_ALONE.at(source, position + 1, command=shown, word=words)
-    rest = _ARGUMENTS.match(line, found.end())
+        column = begin + len(text[begin:]) - len(text[begin:].lstrip()) + 1
+        raise spindle_faults.COMMAND_NOT_ALONE.at(line.source, column, command=shown, word=words)
+    statement = STATEMENTS.get(name)
+    if statement is not None:
+        statement(line, text, found.end(), found.start() + 1)
+        return True
+    rest = _ARGUMENTS.match(text, found.end())
     assert rest is not None
     if rest[2]:
-        raise spindle_faults.COMMAND_NOT_ALONE.at(source, rest.start(2) + 1, command=shown, word=rest[2].strip())
+        column = rest.start(2) + 1
+        raise spindle_faults.COMMAND_NOT_ALONE.at(line.source, column, command=shown, word=rest[2].strip())
     arguments = None if rest[1] is None else split_arguments(rest[1])
-    column = found.start() + 1
-    return NcBlock(source, (), {}, skip=skip, command=HashCommand(name, arguments, column, COMMANDS[name]))
+    command = HashCommand(name, arguments, found.start() + 1, COMMANDS[name])
+    line.block = NcBlock(line.source, (), {}, command=command)
+    return True
+
+
+def _nothing_behind(line: Line, text: str, end: int, command: str) -> None:
+    rest = text[end:].strip()
+    if rest:
+        raise spindle_faults.COMMAND_NOT_ALONE.at(line.source, text.index(rest, end) + 1, command=command, word=rest)
+
+
+def _variables(line: Line, text: str, end: int, column: int) -> None:
+    """#VAR: the lines up to #ENDVAR declare variables."""
+    _nothing_behind(line, text, end, "#VAR")
+    line.statement = Declarations(column)
+
+
+def _end_of_variables(line: Line, text: str, end: int, column: int) -> None:
+    raise flow_faults.SECTION_STRAY.at(line.source, column, begin="#VAR", end="#ENDVAR")
+
+
+def _comment(line: Line, text: str, end: int, column: int) -> None:
+    line.comment = True
+    line.statement = Mark(column)
+
+
+def _end_of_comment(line: Line, text: str, end: int, column: int) -> None:
+    raise flow_faults.SECTION_STRAY.at(line.source, column, begin="#COMMENT BEGIN", end="#COMMENT END")
+
+
+def _delete(line: Line, text: str, end: int, column: int) -> None:
+    """#DELETE V.P.A, V.L.B."""
+    reader = ExpressionReader(text, line.source, end)
+    names: list[tuple[str, int]] = []
+    while True:
+        begin = reader.skip_blanks()
+        target = reader.target()
+        if not isinstance(target, SelfDefined) or target.indices:
+            raise flow_faults.DECLARATION.at(line.source, begin + 1, word=text[begin:].strip())
+        names.append((target.name, begin + 1))
+        if not reader.follows(","):
+            break
+    _nothing_behind(line, text, reader.at, "#DELETE")
+    line.statement = Delete(column, names)
 
 
 def split_arguments(text: str) -> tuple[str, ...]:
@@ -134,4 +183,13 @@ COMMANDS: dict[str, Run] = {
     "SLOPE DEFAULT": default_slope,
     "SLOPE": slope,
 }
-_COMMAND = re.compile(r"#\s*(" + "|".join(name.replace(" ", r"\s+") for name in COMMANDS) + r")\b", re.ASCII)
+STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
+    "VAR": _variables,
+    "ENDVAR": _end_of_variables,
+    "DELETE": _delete,
+    "COMMENT BEGIN": _comment,
+    "COMMENT END": _end_of_comment,
+}
+"""Commands that change the order of execution or the variables: line, its text, place behind the command, column."""
+_NAMES = sorted([*COMMANDS, *STATEMENTS], key=len, reverse=True)
+_COMMAND = re.compile(r"#\s*(" + "|".join(name.replace(" ", r"\s+") for name in _NAMES) + r")\b", re.ASCII)

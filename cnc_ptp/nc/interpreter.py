@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Iterator
 
-from cnc_ptp.nc import faults
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, LinearMove, Motion, Source
 from cnc_ptp.nc.controls import bracketed_controls
+from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.execution import Execution, Limits, with_calls
+from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock, Program, SpindleTable
+from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import G_CODES
@@ -20,10 +22,7 @@ CENTRE_OFFSET = 2.0
 CENTRE_OFFSET_RATIO = 0.05
 """Default of P-CHAN-00060 mittelpkt_faktor: 50 in 0.1 %; share of the radius."""
 
-CALL_DEPTH = 20
-
-BLOCK_LIMIT = 1_000_000
-"""Blocks that a program may execute, calls counted each time: a program is interpreted as a whole before it starts."""
+LIMITS = Limits()
 
 CheckTarget = Callable[[tuple[float, ...], Source], None]
 
@@ -39,7 +38,8 @@ def interpret(
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     block_skip: int = 0,
-    call_depth: int = CALL_DEPTH,
+    limits: Limits = LIMITS,
+    values: Values | None = None,
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
@@ -51,59 +51,31 @@ def interpret(
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
     corrected, the smaller of both limits counts. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position.
-    Raises ProgramError; the state is then undefined, so MDI continues with a copy taken before.
+    `values`: parameters and variables to continue with, of the same `state`.
+    Raises ProgramError; state and values are then undefined, so MDI continues with copies taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
     channel = Channel(axes, index, spindle_table(spindles), centre_offset, centre_offset_ratio)
     state = ModalState() if state is None else state
     state.position = tuple(start)
-    for count, block in enumerate(_executed(program, block_skip, call_depth)):
-        if count >= BLOCK_LIMIT:
-            raise faults.TOO_MANY_BLOCKS.at(block.source, limit=BLOCK_LIMIT)
-        canonical = _resolve(channel, state, block, check_target)
-        if canonical is not None:
-            yield canonical
-
-
-def _executed(program: Program, block_skip: int, call_depth: int) -> Iterator[NcBlock]:
-    """The blocks in the order of execution: calls entered, skipped blocks left out, up to the program end."""
-    callers: list[Iterator[NcBlock]] = []
-    blocks = iter(program.main)
-    while True:
-        for block in blocks:
-            if block.skip & block_skip:
-                continue
-            yield block
-            if block.flow == "end":
-                return
-            if block.flow == "return":
-                break
-            if block.call:
-                if len(callers) == call_depth:
-                    raise _too_deep(block, call_depth)
-                callers.append(blocks)
-                blocks = iter(program.subroutines[block.call])
-                break
-        else:
-            if not callers:
-                return
-            blocks = callers.pop()
-            continue
-        if block.flow == "return":
-            blocks = callers.pop()
-
-
-def _too_deep(block: NcBlock, call_depth: int) -> ProgramError:
-    column = block.source.column(block.call)
-    return faults.CALL_DEPTH.at(block.source, column, name=block.call, depth=call_depth + 1, limit=call_depth)
+    if values is None:
+        values = Values(channel, state)
+    else:
+        values.channel, values.state = channel, state
+    execution = Execution(program, values, limits=limits, block_skip=block_skip)
+    try:
+        while (block := execution.next_block()) is not None:
+            canonical = _resolve(channel, state, block, check_target)
+            if canonical is not None:
+                yield canonical
+    except ProgramError as error:
+        raise with_calls(error, execution) from None
 
 
 def _resolve(
     channel: Channel, state: ModalState, block: NcBlock, check_target: CheckTarget | None
 ) -> CanonicalBlock | None:
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
-    if block.error is not None:
-        raise block.error
     if block.command is not None:
         commanded = block.command.run(channel, state, block, block.command)
         return CanonicalBlock(block.source, commanded, None, "") if commanded else None

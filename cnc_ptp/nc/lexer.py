@@ -12,6 +12,15 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import CODES, Source, code_name
+from cnc_ptp.nc.expressions.nodes import (
+    Add,
+    Divide,
+    Multiply,
+    Node,
+    Subtract,
+)
+from cnc_ptp.nc.expressions.reader import CONTINUES, FILLS, OPENS, Assignable, ExpressionReader
+from cnc_ptp.nc.flow import flow_faults
 
 MAX_DIGITS: Final = 9
 NUMBER = r"[+-]?(?:\d{1,9}+(?:\.\d*+)?+|\.\d++)"
@@ -39,7 +48,7 @@ _TOKEN = re.compile(
     | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{NUMBER}) (?![\d.]) )
     | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{NUMBER}) (?!\s*[=\[]|[\d.]) )
     | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{NUMBER}) (?![\d.]) )
-    | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>[^\[\]]*) \] )
+    | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>(?:[^\[\]\"]++|\[[^\[\]]*+\])*+) \] )
     | (?P<bare> {NUMBER} (?![\d.]) )
     )""",
     re.ASCII | re.VERBOSE,
@@ -56,9 +65,10 @@ SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
 
 
 class Token(NamedTuple):
-    """`kind`: call, position, word, named, bracket, bare; `column` from 1.
+    """`kind`: call, position, word, named, valued, bracket, bare, assignment; `column` from 1.
 
-    `name`: letter or name (S.POS for a position), `text`: number or content.
+    `name`: letter or name (S.POS for a position, G159 for a code with a value), `text`: number or content. `value`: in
+    place of the number an expression; `parts`: the content of a bracket with expressions; `target`: what is assigned.
     """
 
     kind: str
@@ -66,6 +76,15 @@ class Token(NamedTuple):
     text: str
     column: int
     shown: str
+    value: Node | None = None
+    parts: Sequence[str | Node] = ()
+    target: Assignable | None = None
+    arguments: Sequence[tuple[str, Node]] = ()
+
+    @property
+    def dynamic(self) -> bool:
+        """It has to be evaluated before it is a word."""
+        return self.value is not None or bool(self.parts)
 
 
 def plain_words(line: str) -> tuple[list[str], list[float], list[int]]:
@@ -129,20 +148,47 @@ def plain_number(line: str, at: int, end: int) -> tuple[int, float]:
 
 
 def normalise(source: Source) -> str:
-    """The line in upper case with blanks in place of comments, so that columns stay; error on a ')' without '('."""
+    """The line in upper case with blanks in place of comments, so that columns stay; texts in quotation marks stay.
+
+    Raises ProgramError for a ')' without '(' and for a character that is not ASCII.
+    """
     text = source.text
     if "(" in text or ";" in text or ")" in text:
         text = _blank_comments(source)
+    if '"' in text:
+        return _upper_outside_quotes(text, source)
     if text.isascii():
         return text.upper()
-    column = next(index for index, character in enumerate(text) if not character.isascii())
-    raise faults.UNEXPECTED_CHARACTER.at(source, column + 1, character=text[column])
+    raise _not_ascii(text, source, 0)
+
+
+def _not_ascii(text: str, source: Source, begin: int) -> faults.ProgramError:
+    column = begin + next(index for index, character in enumerate(text) if not character.isascii())
+    return faults.UNEXPECTED_CHARACTER.at(source, column + 1, character=source.text[column])
+
+
+def _upper_outside_quotes(text: str, source: Source) -> str:
+    parts = text.split('"')
+    begin = 0
+    for index, part in enumerate(parts):
+        if index % 2 == 0:
+            if not part.isascii():
+                raise _not_ascii(part, source, begin)
+            parts[index] = part.upper()
+        begin += len(part) + 1
+    return '"'.join(parts)
 
 
 def _blank_comments(source: Source) -> str:
     depth = 0
+    quoted = False
     kept: list[str] = []
     for column, character in enumerate(source.text, start=1):
+        if character == '"' and depth == 0:
+            quoted = not quoted
+        if quoted:
+            kept.append(character)
+            continue
         if depth == 0 and character == ";":
             break
         if character == ")" and depth == 0:
@@ -152,17 +198,126 @@ def _blank_comments(source: Source) -> str:
     return "".join(kept)
 
 
-def tokens(line: str, source: Source, begin: int = 0) -> list[Token]:
-    """All tokens of a normalised line from index `begin` on; the first unreadable place raises."""
-    found: list[Token] = []
-    position, length = begin, len(line.rstrip())
-    while position < length:
-        match = _TOKEN.match(line, position)
+class TokenReader:
+    """Reads the tokens of a normalised line."""
+
+    def __init__(self, line: str, source: Source) -> None:
+        self.line, self.source = line, source
+        self.length = len(line.rstrip())
+        self.synchronises = False
+        """One of them reads what only the run knows."""
+
+    def tokens(self, begin: int) -> list[Token]:
+        """All tokens from index `begin` on; the first unreadable place raises."""
+        found: list[Token] = []
+        position = begin
+        while position < self.length:
+            token, position = self.next(position)
+            found.append(token)
+        return found
+
+    def next(self, position: int) -> tuple[Token, int]:
+        """The token at a place, and where it ends."""
+        if _TARGET.match(self.line, position):
+            return self._assignment(position)
+        match = _TOKEN.match(self.line, position)
         if match is None:
-            raise _unreadable(line, source, position)
-        found.append(_token(match))
-        position = match.end()
-    return found
+            return self._computed(position)
+        kind = match.lastgroup or ""
+        if kind == "bracket" and FILLS.match(self.line, self.line.index("[", match.start("bracket"))):
+            return self._computed(position)
+        if kind in _NUMBERED and CONTINUES.match(self.line, match.end()):
+            return self._computed(position)
+        token = _token(match)
+        if kind == "bracket" and _COMPUTED_INSIDE.search(token.text):
+            return self._bracket(token), match.end()
+        return token, match.end()
+
+    def _reader(self, at: int) -> ExpressionReader:
+        return ExpressionReader(self.line, self.source, at)
+
+    def _read(self, at: int) -> tuple[Node, int]:
+        reader = self._reader(at)
+        value = reader.expression()
+        self.synchronises = self.synchronises or reader.synchronises
+        return value, reader.at
+
+    def _assignment(self, position: int) -> tuple[Token, int]:
+        """P1 = 5, V.P.DEPTH += 2."""
+        reader = self._reader(position)
+        begin = reader.skip_blanks()
+        target = reader.target()
+        assert target is not None
+        end = reader.at
+        operator = _ASSIGNS.match(self.line, end)
+        shown = self.line[begin:end].rstrip()
+        if operator is None:
+            raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown)
+        value, after = self._read(operator.end())
+        combined = _COMBINED.get(operator[1])
+        if combined is not None:
+            value = combined(operator.start(1) + 1, target, value)
+        return Token("assignment", shown, "", begin + 1, self.line[begin:after], value, (), target), after
+
+    def _computed(self, position: int) -> tuple[Token, int]:
+        """A word whose number is an expression."""
+        for pattern, kind in _COMPUTED:
+            match = pattern.match(self.line, position)
+            if match is None:
+                continue
+            name = match[1]
+            if kind in ("position", "valued"):
+                name = f"{name}.POS" if kind == "position" else f"{name}{int(match[2])}"
+            begin = match.start(1)
+            numeric = kind == "word" and _NUMBER_NEXT.match(self.line, match.end())
+            if kind == "valued" or "=" in match[0] or numeric or self._opens(match.end()):
+                value, end = self._read(match.end())
+                return Token(kind, name, "", begin + 1, self.line[begin:end].rstrip(), value), end
+        raise _unreadable(self.line, self.source, position)
+
+    def _opens(self, at: int) -> bool:
+        """Whether an expression begins there; the bracket of a spindle or an axis is none."""
+        if self.line.startswith("[", at):
+            return FILLS.match(self.line, at) is not None
+        return OPENS.match(self.line, at) is not None
+
+    def _bracket(self, token: Token) -> Token:
+        """The words of a bracket with expressions for some of their numbers."""
+        at = token.column - 1 + token.shown.index("[") + 1
+        end = token.column - 1 + len(token.shown) - 1
+        parts: list[str | Node] = []
+        while at < end:
+            match = _INSIDE_WORD.match(self.line, at)
+            if match is not None and OPENS.match(self.line, match.end()):
+                value, after = self._read(match.end())
+                parts += [f"{match[1]}=", value, " "]
+                at = after
+            else:
+                step = _INSIDE_REST.match(self.line, at)
+                assert step is not None
+                parts.append(self.line[at : min(step.end(), end)])
+                at = min(step.end(), end)
+        return token._replace(parts=parts)
+
+
+_TARGET = re.compile(r"\s*(?:P\s*[\d\[P]|V\s*\.)", re.ASCII)
+_ASSIGNS = re.compile(r"\s*([-+*/]?=)(?!=)", re.ASCII)
+_COMBINED: Final = {"+=": Add, "-=": Subtract, "*=": Multiply, "/=": Divide}
+_COMPUTED_POSITION = re.compile(rf"\s*({_NAME})\s*\.\s*POS\s*=?", re.ASCII)
+_VALUED = re.compile(r"\s*([GM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
+_COMPUTED_WORD = re.compile(r"\s*([A-Z])\s*=?", re.ASCII)
+_COMPUTED_NAME = re.compile(rf"\s*({_NAME})\s*=(?!=)", re.ASCII)
+_COMPUTED: Final = (
+    (_COMPUTED_POSITION, "position"),
+    (_VALUED, "valued"),
+    (_COMPUTED_NAME, "named"),
+    (_COMPUTED_WORD, "word"),
+)
+_NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)
+_NUMBERED = ("word", "named", "position")
+_COMPUTED_INSIDE = re.compile(r"[A-Z]\s*=?\s*[-+]*\s*(?:\[|P\s*[\d\[]|V\s*\.|@)", re.ASCII)
+_INSIDE_WORD = re.compile(r"\s*([A-Z_]+)\s*=?", re.ASCII)
+_INSIDE_REST = re.compile(r"\s*[A-Z_]*\s*=?\s*[^A-Z\]]*", re.ASCII)
 
 
 def _token(match: "re.Match[str]") -> Token:
@@ -196,7 +351,7 @@ def places(found: Sequence[Token]) -> tuple[tuple[str, ...], tuple[int, ...]]:
     names: list[str] = []
     columns: list[int] = []
     for token in found:
-        is_code = token.kind == "word" and token.name in CODES and float(token.text) >= 0.0
+        is_code = token.kind == "word" and token.name in CODES and token.value is None and float(token.text) >= 0.0
         names.append(code_name(token.name, int(float(token.text))) if is_code else token.name)
         columns.append(token.column)
         if token.kind == "bracket":

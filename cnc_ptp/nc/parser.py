@@ -1,4 +1,4 @@
-"""Program text -> program: lines become blocks, blocks become the main program and its subroutines.
+"""Program text -> program: its main part and subroutines, the structures of its lines, all syntax errors.
 
 Structure of a file: subroutines `%L name` ... M29 (M17), the main program `%name` ... M30 (M02); the header of the main
 program may be missing when it comes first. Names are not case-sensitive. The meaning of words together (feed
@@ -6,14 +6,24 @@ present, arc possible, axis in the machine) is checked by the interpreter.
 """
 
 import re
+from typing import Final
 
 from cnc_ptp.nc import faults
-from cnc_ptp.nc.blocks import careful_block, plain_block
+from cnc_ptp.nc.blocks import read_line
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.collector import paused_collector
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.declarations import declaration_of
+from cnc_ptp.nc.flow.lines import Line
+from cnc_ptp.nc.flow.sections import Program, Section
+from cnc_ptp.nc.flow.statements import Declarations
+from cnc_ptp.nc.flow.structures import CLOSING, DIVIDES, OPENED, Place, StructureReader
 from cnc_ptp.nc.lexer import normalise
-from cnc_ptp.nc.program import NcBlock, Program
+from cnc_ptp.nc.program_text import ProgramText
+
+MOST_ERRORS: Final = 1000
+"""Errors of a file that are kept; the rest is not looked for."""
 
 _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
 
@@ -27,128 +37,205 @@ def parse_program(text: str, file: str, *, mdi: bool = False) -> Program:
 
 
 def parse_all(text: str, file: str, *, mdi: bool = False) -> tuple[Program, list[ProgramError]]:
-    """Parsed program and its syntax errors, one per line in their order; a faulty line becomes a block that raises."""
-    reader = _Reader(file, mdi)
-    lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached."""
+    return parse_text(ProgramText(text), file, mdi=mdi)
+
+
+def parse_text(text: ProgramText, file: str, *, mdi: bool = False) -> tuple[Program, list[ProgramError]]:
+    """As parse_all, from memory or from a file."""
+    reader = _Reader(Program(file, text, read_line), mdi)
     with paused_collector():
-        for line, content in enumerate(lines, start=1):
-            reader.read(line, content)
-        return reader.finish()
-
-
-class _Section:
-    """One program of the file while it is read."""
-
-    def __init__(self, kind: str, name: str, source: Source) -> None:
-        self.kind, self.name, self.source = kind, name, source
-        self.blocks: list[NcBlock] = []
-
-    def end_error(self) -> ProgramError | None:
-        """Error if no block ends this program (skippable blocks do not count)."""
-        wanted = ("end",) if self.kind == "main program" else ("end", "return")
-        if any(block.flow in wanted and not block.skip for block in self.blocks if block.flow):
-            return None
-        last = self.blocks[-1].source if self.blocks else self.source
-        end = "M30 or M02" if self.kind == "main program" else "M29 or M17"
-        return faults.END_MISSING.at(last, program=self.title, end=end)
-
-    @property
-    def title(self) -> str:
-        """Kind and name, for errors."""
-        return f"{self.kind} {self.name}".rstrip()
+        return reader.read()
 
 
 class _Reader:
-    """Collects blocks and errors line by line and sorts the blocks into main program and subroutines."""
+    """Reads all lines once: errors, sections, labels, structures."""
 
-    def __init__(self, file: str, mdi: bool) -> None:
-        self.file, self.mdi = file, mdi
-        self.sections: list[_Section] = []
+    def __init__(self, program: Program, mdi: bool) -> None:
+        self.program, self.mdi = program, mdi
         self.errors: list[ProgramError] = []
-        self.current: _Section | None = None
-        self.last = Source(file, 1, 0, "")
+        self.sections: list[Section] = []
+        self.structures = StructureReader("the program")
+        self.ended = True
+        """The present section has its M30 or M29."""
+        self.last = Source(program.file, 1, 0, "")
+        self.calls: list[tuple[str, int, Source]] = []
+        self.declarations: Declarations | None = None
+        self.opened: Line | None = None
+        """Line of #VAR or #COMMENT BEGIN until its end."""
 
-    def read(self, line: int, text: str) -> None:
-        """Parses one line into the current section."""
-        block = plain_block(self.file, line, text.rstrip())
-        if block is None and text and not text.isspace():
-            source = self.last = Source(self.file, line, 0, text.rstrip())
-            try:
-                if text.lstrip().startswith("%"):
-                    self._header(source)
-                else:
-                    block = careful_block(source)
-            except ProgramError as error:
-                self.errors.append(error)
-                block = NcBlock(source, (), {}, error=error)
-        if block is not None:
-            if self.current is None:
-                self.current = self._section("main program", "", block.source)
-            self.current.blocks.append(block)
+    def read(self) -> tuple[Program, list[ProgramError]]:
+        number, offset = 1, 0
+        program = self.program
+        while offset >= 0 and len(self.errors) < MOST_ERRORS:
+            line = read_line(program.file, program.text, number, offset)
+            if self.opened is None:
+                self._line(line, offset)
+            else:
+                self._inside(line)
+            number, offset = line.next_number, line.next_offset
+        return self.finish()
 
-    def _header(self, source: Source) -> None:
+    def _line(self, line: Line, offset: int) -> None:
+        program = self.program
+        program.keep(line)
+        if line.error is not None:
+            self.errors.append(line.error)
+        if line.header:
+            self._header(line)
+        elif line.block is not None and line.statement is None and not line.label:
+            self._require_section(line, offset)
+            self._note_end(line)
+        elif line.block is not None or line.statement is not None or line.call is not None or line.label:
+            self._require_section(line, offset)
+            self._structure(line, offset)
+        elif line.error is not None:
+            self._require_section(line, offset)
+        if line.call is not None and line.call.local:
+            self.calls.append((line.call.name, line.call.column, line.source))
+        if line.source.text:
+            self.last = line.source
+
+    def _require_section(self, line: Line, offset: int) -> None:
+        if not self.sections:
+            self._begin("main program", "", line.source, line.number, offset)
+
+    def _note_end(self, line: Line) -> None:
+        """M30, M02, M29, M17."""
+        block = line.block
+        if block is None or not block.flow:
+            return
+        section = self.sections[-1]
+        is_main = section.kind == "main program"
+        if block.flow == "return" and is_main:
+            code = next(code for code in block.m if code.flow == "return")
+            column = line.source.column(code.name)
+            line.error = faults.RETURN_IN_MAIN.at(line.source, column, word=code.name)
+            self.errors.append(line.error)
+        elif not line.skip and (block.flow == "end" or (block.flow == "return" and not is_main)):
+            self.ended = True
+
+    # sections
+
+    def _header(self, line: Line) -> None:
         """`%name` or `%L name`: starts a section."""
-        normalise(source)
-        match = _HEADER.match(source.text)
-        assert match is not None
-        local, name, rest = bool(match["local"]), match["name"], match["rest"]
-        kind = "subroutine" if local else "main program"
-        self.current = self._section(kind, name, source)
-        if rest and rest[0] not in "(;":
-            raise faults.PROGRAM_NAME.at(source, match.start("rest") + 1, word=rest)
-        if local and not name:
-            raise faults.PROGRAM_NAME.at(source, match.end("local") + 1, word=source.text.strip())
+        try:
+            normalise(line.source)
+            match = _HEADER.match(line.source.text)
+            assert match is not None
+            local, name, rest = bool(match["local"]), match["name"], match["rest"]
+            kind = "subroutine" if local else "main program"
+            self._begin(kind, name, line.source, line.next_number, line.next_offset)
+            if rest and rest[0] not in "(;":
+                raise faults.PROGRAM_NAME.at(line.source, match.start("rest") + 1, word=rest)
+            if local and not name:
+                raise faults.PROGRAM_NAME.at(line.source, match.end("local") + 1, word=line.source.text.strip())
+        except ProgramError as error:
+            self.errors.append(error)
 
-    def _section(self, kind: str, name: str, source: Source) -> _Section:
-        section = _Section(kind, name, source)
+    def _begin(self, kind: str, name: str, source: Source, number: int, offset: int) -> None:
+        self._end_section()
+        section = Section(kind, name, source, number, offset)
         twin = next((other for other in self.sections if _same(other, section)), None)
-        self.sections.append(section)
         if twin is not None:
             self.errors.append(faults.SECOND_PROGRAM.at(source, program=section.title, line=twin.source.line))
-        return section
+        elif kind == "main program":
+            self.program.main = section
+        else:
+            self.program.subroutines[name.upper()] = section
+        self.sections.append(section)
+        self.ended = False
+        self.structures = StructureReader(section.title)
+
+    def _end_section(self) -> None:
+        """Structures that are open and a missing M30 are errors."""
+        self.program.targets.update(self.structures.finish(self.errors))
+        if self.ended or self.mdi:
+            return
+        section = self.sections[-1]
+        end = "M30 or M02" if section.kind == "main program" else "M29 or M17"
+        self.errors.append(faults.END_MISSING.at(self.last, program=section.title, end=end))
+
+    # structures
+
+    def _structure(self, line: Line, offset: int) -> None:
+        """Labels, jumps and control statements."""
+        begin, behind = Place(line.number, offset), Place(line.next_number, line.next_offset)
+        try:
+            if line.label:
+                self.structures.label(line.label, begin, line.source, line.label_column)
+            if line.control is not None:
+                self._control(line, begin, behind)
+            if line.jump:
+                self.structures.jump(line.jump, line.number, line.source, line.jump_column)
+            if isinstance(line.statement, Declarations):
+                self.declarations, self.opened = line.statement, line
+            elif line.comment:
+                self.opened = line
+        except ProgramError as error:
+            self.errors.append(error)
+            line.error = error
+        self._note_end(line)
+
+    def _control(self, line: Line, begin: Place, behind: Place) -> None:
+        control = line.control
+        assert control is not None
+        keyword, structures = control.keyword, self.structures
+        if keyword in CLOSING:
+            structure = structures.opens(control, begin, behind, line.source)
+            structure.statement = line.statement
+        elif keyword in DIVIDES:
+            structure = structures.divides(control, begin, behind, line.source)
+        elif keyword in OPENED:
+            structure = structures.closes(keyword, begin, behind, line.source, control.column)
+        elif keyword == "$RETURN":
+            if not line.skip and self.sections[-1].kind != "main program":
+                self.ended = self.ended or structures.open is None
+            return
+        else:
+            structure = structures.leaves(keyword, line.source, control.column)
+        self.program.structure_of[line.number] = structure
+
+    def _inside(self, line: Line) -> None:
+        """A line between #VAR and #ENDVAR, or of a comment over several lines."""
+        opened = self.opened
+        assert opened is not None
+        text = line.source.text.upper()
+        closing = "#COMMENT END" if opened.comment else "#ENDVAR"
+        if " ".join(text.split()).startswith(closing):
+            opened.next_number, opened.next_offset = line.next_number, line.next_offset
+            self.program.special[opened.number] = opened
+            self.opened = self.declarations = None
+        elif self.declarations is not None:
+            try:
+                declared = declaration_of(line)
+                if declared is not None:
+                    self.declarations.lines.append((line, declared))
+            except ProgramError as error:
+                self.errors.append(error)
+                opened.error = opened.error or error
+        if line.source.text:
+            self.last = line.source
+
+    # end
 
     def finish(self) -> tuple[Program, list[ProgramError]]:
         """The program; errors of structure are added."""
-        main = next((section for section in self.sections if section.kind == "main program"), None)
-        if main is None:
+        if self.opened is not None:
+            begin, end = ("#COMMENT BEGIN", "#COMMENT END") if self.opened.comment else ("#VAR", "#ENDVAR")
+            source, line = self.opened.source, self.opened.number
+            self.errors.append(flow_faults.SECTION_OPEN.at(source, begin=begin, end=end, line=line))
+        self._end_section()
+        if not any(section.kind == "main program" for section in self.sections):
             self.errors.append(faults.NO_MAIN_PROGRAM.at(self.last))
-            main = _Section("main program", "", self.last)
-        local = {section.name.upper(): section for section in self.sections if section.kind == "subroutine"}
-        self._check_ends()
-        self._check_calls(list(local))
-        self._check_returns(main)
-        subroutines = {name: tuple(section.blocks) for name, section in local.items()}
-        program = Program(self.file, main.name, tuple(main.blocks), subroutines)
-        return program, _one_a_line(self.errors)
-
-    def _check_ends(self) -> None:
-        if not self.mdi:
-            missing = (section.end_error() for section in self.sections)
-            self.errors += [error for error in missing if error is not None]
-
-    def _check_calls(self, subroutines: list[str]) -> None:
-        known = ", ".join(subroutines) or "none"
-        for section in self.sections:
-            for index, block in enumerate(section.blocks):
-                if block.call and block.call not in subroutines:
-                    column = block.source.column(block.call)
-                    error = faults.UNKNOWN_SUBROUTINE.at(block.source, column, name=block.call, known=known)
-                    self._mark(section, index, error)
-
-    def _check_returns(self, main: _Section) -> None:
-        for index, block in enumerate(main.blocks):
-            if block.flow == "return":
-                code = next(code for code in block.m if code.flow == "return")
-                column = block.source.column(code.name)
-                self._mark(main, index, faults.RETURN_IN_MAIN.at(block.source, column, word=code.name))
-
-    def _mark(self, section: _Section, index: int, error: ProgramError) -> None:
-        """Notes an error and makes its block raise it when it is reached."""
-        self.errors.append(error)
-        section.blocks[index] = section.blocks[index]._replace(error=error)
+        known = ", ".join(self.program.subroutines) or "none"
+        for name, column, source in self.calls:
+            if name.upper() not in self.program.subroutines:
+                self.errors.append(faults.UNKNOWN_SUBROUTINE.at(source, column, name=name, known=known))
+        return self.program, _one_a_line(self.errors)
 
 
-def _same(a: _Section, b: _Section) -> bool:
+def _same(a: Section, b: Section) -> bool:
     return a.kind == b.kind and (a.kind == "main program" or a.name.upper() == b.name.upper())
 
 

@@ -122,12 +122,11 @@ class SpindleTable(NamedTuple):
 
 
 class NcBlock(NamedTuple):
-    """One program line in words, not yet interpreted.
+    """The words of a program line, with numbers for all of them, not yet interpreted.
 
-    `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `call` the
-    subroutine, `flow` what the block does to the order of execution (see MCode), `skip` the bit of its skip level (0:
-    never skipped), `functions` is true if it has any M, S, T, D; `error` is set for a line with a syntax error, which
-    is raised when it is reached; `controls` holds brackets with feedforward and COMP.
+    `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `flow` what
+    the block does to the order of execution (see MCode), `functions` is true if it has any M, S, T, D; `controls` holds
+    brackets with feedforward and COMP.
     """
 
     source: Source
@@ -136,11 +135,8 @@ class NcBlock(NamedTuple):
     m: tuple[MCode, ...] = ()
     spindles: tuple[SpindleWords, ...] = ()
     direct: float | None = None
-    call: str = ""
     flow: str = ""
-    skip: int = 0
     functions: bool = False
-    error: ProgramError | None = None
     controls: tuple[SpindleFeedforward | CompensationSwitch, ...] = ()
     command: "HashCommand | None" = None
 
@@ -152,15 +148,6 @@ class HashCommand(NamedTuple):
     arguments: tuple[str, ...] | None
     column: int
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
-
-
-class Program(NamedTuple):
-    """A parsed file: the main program's blocks and those of its subroutines by upper-case name."""
-
-    file: str
-    name: str
-    main: tuple[NcBlock, ...]
-    subroutines: dict[str, tuple[NcBlock, ...]]
 
 
 class Channel(NamedTuple):
@@ -229,3 +216,9 @@ class ModalState:
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
         return replace(self, speeds=dict(self.speeds), spindle=self.spindle.copy())
+
+    def restore(self, other: "ModalState") -> None:
+        """After a cycle: codes, feed and radius of its caller; position, speeds and spindles stay as they are."""
+        self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
+        self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
+        self.slope = other.slope

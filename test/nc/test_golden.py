@@ -4,14 +4,27 @@ import pytest
 from canonical_text import format_block
 from nc_support import HERE, machine
 
-from cnc_ptp.nc import faults, interpreter, spindle_faults
+from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
 BAD = sorted((HERE / "bad").glob("*.nc"))
-FAULTS = [fault for part in (faults, spindle_faults) for fault in vars(part).values() if isinstance(fault, Fault)]
+
+
+def faults_of(part) -> list[Fault]:
+    """All faults of a module, also those in its tables."""
+    values = [value for value in vars(part).values() if isinstance(value, Fault)]
+    tables = [value for value in vars(part).values() if isinstance(value, dict)]
+    return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
+
+
+PARTS = (faults, spindle_faults, expression_faults, flow_faults)
+FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
 def stream(text: str, file: str) -> list[str]:
@@ -58,17 +71,22 @@ def test_check_finds_the_same_error(path):
 def test_every_fault_has_a_bad_program():
     known = {fault.number for fault in FAULTS}
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
-    assert known == shown | {faults.TOO_MANY_BLOCKS.number}
+    assert known == shown | {flow_faults.LOOP_LIMIT.number}
 
 
-@pytest.mark.interpreted
-def test_a_program_that_never_seems_to_end_is_refused(monkeypatch):
-    monkeypatch.setattr(interpreter, "BLOCK_LIMIT", 50)
-    text = "%L TEN\n" + "G91 G00 X1\n" * 10 + "M29\n%P\n" + "LL TEN\n" * 5 + "M30\n"
+@pytest.mark.parametrize(
+    "loop", ["$WHILE 1\nX1 X0\n$ENDWHILE", "N1: $GOTO N1", "$FOR P1=0,9,0.001\n$ENDFOR", "$DO\n$ENDDO 1"]
+)
+def test_a_loop_without_an_end_is_refused(loop):
+    last = loop.splitlines()[-1]
     with pytest.raises(ProgramError) as caught:
-        stream(text, "long.nc")
-    reason = "the program executes more than 50 blocks, calls counted each time"
-    assert str(caught.value) == f"P-ERR-21043 long.nc line 3 column 1 'G91 G00 X1': {reason}"
+        list(
+            interpret(
+                parse_program(loop.replace(" X0", "") + "\nM30", "a.nc"), (0.0,), ("X",), limits=Limits(repeats=50)
+            )
+        )
+    reason = "the program has repeated lines 50 times: does it have a loop without an end?"
+    assert str(caught.value) == f"P-ERR-21578 a.nc line {loop.count(chr(10)) + 1} column 1 '{last}': {reason}"
 
 
 def test_fault_numbers_are_unique():

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
-from cnc_ptp.nc.blocks import careful_block, plain_block
+from cnc_ptp.nc.blocks import careful_line, plain_block
 from cnc_ptp.nc.canonical import LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 
@@ -71,7 +72,9 @@ def test_fast_and_careful_parser_agree(pairs, seed):
     source = Source("a.nc", 1, 0, text.rstrip())
     fast = plain_block(source.file, source.line, source.text)
     if fast is not None:
-        assert fast == (careful_block(source) or fast._replace(codes=(), words={}))
+        line = Line(1, source, 2, -1)
+        careful_line(line)
+        assert fast == (line.block or fast._replace(codes=(), words={}))
 
 
 @given(st.text())

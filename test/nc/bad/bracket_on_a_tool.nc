@@ -1,3 +1,3 @@
-; P-ERR-21001 bracket_on_a_tool.nc line 2 column 6 'N10 T[10]': unexpected character '['
-N10 T[10]
+; P-ERR-21001 bracket_on_a_tool.nc line 2 column 6 'N10 T[M3]': unexpected character '['
+N10 T[M3]
 M30

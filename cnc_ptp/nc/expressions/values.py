@@ -1,0 +1,193 @@
+"""Values that expressions read and assignments change: P parameters and self-defined variables."""
+
+from difflib import get_close_matches
+from math import prod
+from typing import Final
+
+from cnc_ptp.nc.canonical import Source, number
+from cnc_ptp.nc.expressions import expression_faults as faults
+from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.program import Channel, ModalState
+
+Scalar = float | str
+
+LARGEST_PARAMETER: Final = 9999
+"""P0 ... P9999."""
+LONGEST_TEXT: Final = 1000
+"""Characters of a text in a variable."""
+MOST_VALUES: Final = 100_000
+"""Values of all self-defined variables and arrays of a channel together."""
+
+LOCAL: Final = "V.L."
+"""Of one subroutine call."""
+CYCLE: Final = "V.CYC."
+"""Of a cycle and the subroutines that it calls."""
+PROGRAM: Final = "V.P."
+"""Of a main program."""
+SHARED: Final = "V.S."
+"""Of the channel, from one program to the next."""
+SCOPES: Final = (PROGRAM, LOCAL, SHARED, CYCLE)
+
+NO_SOURCE: Final = Source("", 0, 0, "")
+
+
+def in_words(count: int, singular: str) -> str:
+    """1 index, 2 indices."""
+    plural = {"index": "indices"}.get(singular, f"{singular}s")
+    return f"{count} {singular if count == 1 else plural}"
+
+
+def nearest_name(name: str, known: list[str]) -> str:
+    """The end of an error's text: the name that may have been meant."""
+    close = get_close_matches(name, known, n=1, cutoff=0.6)
+    return f"; did you mean {close[0]}?" if close else ""
+
+
+def shown(value: Scalar) -> str:
+    """As a program would write it."""
+    return f'"{value}"' if isinstance(value, str) else number(value)
+
+
+class Variable:
+    """A self-defined variable or an array: its values in the order of the last index."""
+
+    def __init__(self, name: str, dimensions: tuple[int, ...], values: list[Scalar]) -> None:
+        self.name, self.dimensions, self.values = name, dimensions, values
+        self.is_text = isinstance(values[0], str)
+
+    def copy(self) -> "Variable":
+        return Variable(self.name, self.dimensions, list(self.values))
+
+
+class Values:
+    """All values of a channel's program, and the line that uses them."""
+
+    def __init__(self, channel: Channel, state: ModalState) -> None:
+        self.channel, self.state = channel, state
+        self.source = NO_SOURCE
+        """The active line, for faults."""
+        self.block_number = 0
+        """The last N word."""
+        self.level = 1
+        """1 in the main program, one more for each call."""
+        self.actual: tuple[float, ...] = ()
+        """Positions of the axes at the last synchronisation."""
+        self.parameters: dict[int, float] = {}
+        self.program: dict[str, Variable] = {}
+        self.shared: dict[str, Variable] = {}
+        self.local: dict[str, Variable] = {}
+        self.cycle: dict[str, Variable] = {}
+        self.arguments: dict[str, Scalar] = {}
+        """What a call has given its subroutine, by name (@P1)."""
+        self.count = 0
+        """Values of all variables that are there."""
+
+    def copy(self) -> "Values":
+        """Independent, so that a refused MDI text changes nothing."""
+        other = Values(self.channel, self.state)
+        other.parameters = dict(self.parameters)
+        other.arguments = dict(self.arguments)
+        other.program, other.shared = copies(self.program), copies(self.shared)
+        other.local, other.cycle = copies(self.local), copies(self.cycle)
+        other.count = self.count
+        return other
+
+    def begin_program(self) -> None:
+        """What belongs to one program begins anew; V.S. stays."""
+        self.parameters, self.program, self.local, self.cycle, self.arguments = {}, {}, {}, {}, {}
+        self.count = sum(len(variable.values) for variable in self.shared.values())
+
+    def scope(self, name: str) -> dict[str, Variable]:
+        """The variables among which `name` (V.P.DEPTH, or P10 for an array) is."""
+        if name.startswith((PROGRAM, "P")):
+            return self.program
+        if name.startswith(LOCAL):
+            return self.local
+        return self.shared if name.startswith(SHARED) else self.cycle
+
+    def fault(self, fault: Fault, column: int, **values: float | str) -> ProgramError:
+        return fault.at(self.source, column, **values)
+
+    def variable(self, name: str, column: int) -> Variable:
+        found = self.scope(name).get(name)
+        if found is None and name.startswith("P"):
+            raise self.fault(faults.ARRAY_UNDECLARED, column, name=name)
+        if found is None:
+            nearest = nearest_name(name, list(self.scope(name)))
+            raise self.fault(faults.VARIABLE_UNKNOWN, column, name=name, nearest=nearest)
+        return found
+
+    def declare(self, name: str, dimensions: tuple[int, ...], values: list[Scalar], column: int) -> None:
+        """Makes a variable."""
+        self.reserve(len(values), name, column)
+        self.count += len(values)
+        self.scope(name)[name] = Variable(name, dimensions, values)
+
+    def reserve(self, count: int, name: str, column: int) -> None:
+        """Raises ProgramError 21434 if there is no room for so many values."""
+        if self.count + count > MOST_VALUES:
+            raise self.fault(faults.TOO_MANY_VARIABLES, column, name=name, count=self.count + count, limit=MOST_VALUES)
+
+    def delete(self, name: str, column: int) -> None:
+        scope = self.scope(name)
+        if name not in scope:
+            raise self.fault(faults.DELETED_UNKNOWN, column, name=name, nearest=nearest_name(name, list(scope)))
+        self.count -= len(scope[name].values)
+        del scope[name]
+
+    def leave(self, local: dict[str, Variable], cycle: dict[str, Variable], arguments: dict[str, Scalar]) -> None:
+        """Back to the values of the caller."""
+        self.count -= sum(len(variable.values) for variable in self.local.values())
+        own = [variable for name, variable in self.cycle.items() if name not in cycle]
+        self.count -= sum(len(variable.values) for variable in own)
+        self.local, self.cycle, self.arguments = local, cycle, arguments
+
+    def place(self, variable: Variable, indices: list[float], column: int) -> int:
+        """Where the element of an array is among its values."""
+        wanted = len(variable.dimensions)
+        if len(indices) != wanted:
+            if not wanted:
+                raise self.fault(faults.NOT_AN_ARRAY, column, name=variable.name)
+            if not indices:
+                raise self.fault(faults.INDEX_MISSING, column, name=variable.name, wanted=in_words(wanted, "index"))
+            words = {"wanted": in_words(wanted, "index"), "given": str(len(indices))}
+            raise self.fault(faults.INDEX_COUNT, column, name=variable.name, **words)
+        place = 0
+        for index, size in zip(indices, variable.dimensions, strict=True):
+            if index != int(index):
+                raise self.fault(faults.NOT_INTEGER, column, what=f"the index of {variable.name}", value=number(index))
+            if not 0.0 <= index < size:
+                values = {"index": number(index), "limit": str(size - 1)}
+                raise self.fault(faults.INDEX_RANGE, column, name=variable.name, **values)
+            place = place * size + int(index)
+        return place
+
+    def assign(self, name: str, indices: list[float], value: Scalar, column: int) -> None:
+        """Gives a variable a value; one that is not an array is declared by that."""
+        scope = self.scope(name)
+        found = scope.get(name)
+        if found is not None and not indices and not found.dimensions and isinstance(value, str) == found.is_text:
+            found.values[0] = value
+            return
+        if isinstance(value, str) and len(value) > LONGEST_TEXT:
+            raise self.fault(faults.TEXT_TOO_LONG, column, name=name, length=len(value), limit=LONGEST_TEXT)
+        if found is None and not indices:
+            self.declare(name, (), [value], column)
+            return
+        variable = self.variable(name, column)
+        if variable.is_text != isinstance(value, str):
+            kinds = {
+                "kind": "text" if variable.is_text else "number",
+                "other": "number" if variable.is_text else "text",
+            }
+            raise self.fault(faults.TYPE_CHANGE, column, name=name, **kinds)
+        variable.values[self.place(variable, indices, column)] = value
+
+
+def copies(variables: dict[str, Variable]) -> dict[str, Variable]:
+    return {name: variable.copy() for name, variable in variables.items()}
+
+
+def size_of(dimensions: tuple[int, ...]) -> int:
+    """Number of values of an array."""
+    return prod(dimensions)

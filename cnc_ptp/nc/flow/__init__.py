@@ -1,0 +1,1 @@
+"""The order of execution: conditions, loops, jumps, subroutines."""

@@ -1,0 +1,58 @@
+"""Faults of conditions, loops, jumps and subroutines."""
+
+from cnc_ptp.nc.faults import Fault
+
+STRAY = {
+    keyword: Fault(number, f"{keyword} without {opened} before it")
+    for keyword, number, opened in (
+        ("$ELSEIF", 20216, "$IF"),
+        ("$ELSE", 21560, "$IF"),
+        ("$ENDIF", 20218, "$IF"),
+        ("$CASE", 21561, "$SWITCH"),
+        ("$DEFAULT", 20223, "$SWITCH"),
+        ("$ENDSWITCH", 21562, "$SWITCH"),
+        ("$ENDFOR", 20232, "$FOR"),
+        ("$ENDWHILE", 20237, "$WHILE"),
+        ("$ENDDO", 21563, "$DO"),
+        ("$UNTIL", 21564, "$REPEAT"),
+        ("$BREAK", 21565, "a loop or $SWITCH"),
+        ("$CONTINUE", 20244, "a loop"),
+    )
+}
+"""By the keyword that closes or divides a structure which was not opened."""
+UNKNOWN_KEYWORD = Fault(21566, "{word} is no control statement{nearest}")
+NOT_CLOSED = Fault(21501, "{keyword} of line {line} has no {closing} before the end of {program}")
+CROSSED = Fault(21567, "{keyword} stands within {opened} of line {line}, which has no {closing} yet")
+AFTER_ELSE = Fault(21568, "{keyword} after $ELSE of line {line}")
+SECOND_DEFAULT = Fault(21569, "second $DEFAULT of one $SWITCH, the first is in line {line}")
+BEFORE_CASE = Fault(21570, "'{word}' between $SWITCH and its first $CASE is never executed")
+WORDS_BEFORE = Fault(21571, "{keyword} must be alone in its block, '{word}' stands before it")
+WORDS_AFTER = Fault(21572, "'{word}' after {keyword}: it must be alone in its block")
+WORDS_AFTER_WHILE = Fault(20235, "'{word}' after the condition of $WHILE")
+WORDS_AFTER_BREAK = Fault(20242, "'{word}' after $BREAK: it must be alone in its block")
+CONDITION_MISSING = Fault(21573, "{keyword} without a condition or a value")
+COUNTER = Fault(20227, "$FOR needs a parameter or a variable to count with, not '{word}'")
+COUNTER_EQUALS = Fault(20228, "$FOR without '=' behind its counter")
+COUNTER_COMMA = Fault(20229, "$FOR needs start, end and step with commas between them")
+STEP_ZERO = Fault(21574, "the step of $FOR is 0: the loop would never end")
+LABEL_TARGET = Fault(20839, "'{word}' after $GOTO is neither a label N100 nor [NAME]")
+LABEL_TWICE = Fault(20836, "label {label} twice in {program}, first in line {line}")
+LABEL_UNKNOWN = Fault(21575, "{program} has no label {label}{nearest}")
+LABEL_PLACE = Fault(21187, "label {label} must be at the start of its block")
+JUMP_INTO_LOOP = Fault(21576, "$GOTO {label} leads into {keyword} of line {line}")
+TOO_DEEP = Fault(21577, "{keyword} at level {depth}, the limit is {limit}")
+LOOP_LIMIT = Fault(21578, "the program has repeated lines {limit} times: does it have a loop without an end?")
+VALUE_MISSING = Fault(21579, "{target} without '=' and a value")
+LINE_TOO_LONG = Fault(21580, "the block has {length} characters, the limit is {limit}")
+SECTION_OPEN = Fault(21581, "{begin} of line {line} has no {end}")
+SECTION_STRAY = Fault(21582, "{end} without {begin} before it")
+ARGUMENT_NAME = Fault(21583, "'{word}' is no parameter of a call: @P1=..., @NAME=...")
+ARGUMENT_TWICE = Fault(21584, "parameter {name} twice in one call")
+CYCLE_NAME = Fault(21585, "a cycle call needs NAME=...")
+FILE_UNKNOWN = Fault(21586, "no program {name} in the search folders; there are: {known}")
+RECURSION_IN_FILE = Fault(20360, "call of program {name} at depth {depth}, the limit is {limit}")
+"""The vendor's number for global subroutines."""
+DECLARATION = Fault(20908, "'{word}' between #VAR and #ENDVAR: only V.P., V.L., V.S., V.CYC. and P are declared")
+DECLARATION_LIST = Fault(21587, "the first values of the array {name} need brackets: = [1, 2, 3]")
+TYPE_UNKNOWN = Fault(21588, "type {word} is not known; known are: {known}")
+STRING_LENGTH = Fault(21589, "STRING needs its length in brackets, 1 to {limit}")

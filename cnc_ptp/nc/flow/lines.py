@@ -1,0 +1,79 @@
+"""One line of a program as it was read: its words, its statement, where the next line is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.expressions.nodes import Node
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.structures import Control
+from cnc_ptp.nc.program import NcBlock
+
+if TYPE_CHECKING:
+    from cnc_ptp.nc.flow.execution import Execution
+
+
+class Statement:
+    """What a line does besides, or in place of, fixed words."""
+
+    def __init__(self, column: int) -> None:
+        self.column = column
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        """Executes it; a block that it returns is executed as if its words had been written with numbers."""
+        raise NotImplementedError
+
+
+class Call:
+    """A call of a subroutine at the end of its line: `name`, of this file (`local`) or of another one.
+
+    `arguments`: @ parameters by name; `cycle`: the called program leaves the modal state as it was; `modal`: "" once,
+    "MODAL_MOVE" after each motion, "MODAL_BLOCK" after each block.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        column: int,
+        *,
+        local: bool,
+        arguments: dict[str, Node],
+        cycle: bool = False,
+        modal: str = "",
+    ) -> None:
+        self.name, self.column, self.local, self.arguments = name, column, local, arguments
+        self.cycle, self.modal = cycle, modal
+
+
+class Line:
+    """A line: `number` from 1, `next_number` and `next_offset` of the line behind it (offset -1: there is none).
+
+    block         its words, if all of them are numbers
+    statement     else what it does
+    call          the subroutine that it calls when its block is finished
+    control       its control statement, for the structure of the program
+    jump          label of its $GOTO
+    label         "N100" or "[NAME]", a place to jump to
+    skip          bit of its skip level, 0: never skipped
+    error         the syntax error of the line, raised when it is reached
+    synchronises  the path must stand before it is executed, because it reads what only the run knows
+    comment       a comment over several lines begins
+    header        it begins a program or subroutine
+    """
+
+    def __init__(self, number: int, source: Source, next_number: int, next_offset: int) -> None:
+        self.number, self.source = number, source
+        self.next_number, self.next_offset = next_number, next_offset
+        self.block: NcBlock | None = None
+        self.statement: Statement | None = None
+        self.call: Call | None = None
+        self.control: Control | None = None
+        self.jump, self.jump_column = "", 0
+        self.label = ""
+        self.label_column = 0
+        self.skip = 0
+        self.error: ProgramError | None = None
+        self.synchronises = False
+        self.header = False
+        self.comment = False

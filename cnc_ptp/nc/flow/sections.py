@@ -1,0 +1,100 @@
+"""A program: its main part and its subroutines, and every line by its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final, NamedTuple
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.lines import Call, Line
+from cnc_ptp.nc.flow.structures import Place, Structure
+from cnc_ptp.nc.program_text import ProgramText
+
+KEPT: Final = 200_000
+"""Lines that are kept as they were read; those behind them are read again each time."""
+KEPT_LATER: Final = 10_000
+"""Of them, lines of loops and subroutines."""
+
+
+class Section(NamedTuple):
+    """Main program or subroutine: its name and the place of its first line."""
+
+    kind: str
+    name: str
+    source: Source
+    line: int
+    offset: int
+
+    @property
+    def title(self) -> str:
+        """Kind and name, for errors."""
+        return f"{self.kind} {self.name}".rstrip()
+
+
+class Program:
+    """A parsed file.
+
+    main            main program
+    subroutines     by upper-case name
+    structure_of    by number of the line that opens, divides, closes or leaves a structure
+    targets         where the $GOTO of a line leads to
+    library         the other files that it may call, by upper-case name
+    """
+
+    def __init__(self, file: str, text: ProgramText, read_line: Callable[[str, ProgramText, int, int], Line]) -> None:
+        self.file, self.text = file, text
+        self.main = Section("main program", "", Source(file, 1, 0, ""), 1, 0)
+        self.subroutines: dict[str, Section] = {}
+        self.structure_of: dict[int, Structure] = {}
+        self.targets: dict[int, Place] = {}
+        self.kept: list[Line | None] = [None]
+        self.library: Mapping[str, Program] = {}
+        self.special: dict[int, Line] = {}
+        """Lines that hold more than their text says: declarations, comments of several lines."""
+        self._later: dict[int, Line] = {}
+        self._read_line = read_line
+
+    @property
+    def name(self) -> str:
+        return self.main.name
+
+    def keep(self, line: Line) -> None:
+        """Notes a line, as long as there is room for it."""
+        while len(self.kept) < line.number:
+            self.kept.append(None)
+        if len(self.kept) == line.number and line.number <= KEPT:
+            self.kept.append(line)
+
+    def line(self, number: int, offset: int) -> Line:
+        """The line of this number, which begins at this offset."""
+        if number < len(self.kept):
+            kept = self.kept[number]
+            if kept is not None:
+                return kept
+        special = self.special.get(number)
+        if special is not None:
+            return special
+        found = self._later.get(number)
+        if found is None:
+            found = self._read_line(self.file, self.text, number, offset)
+            if len(self._later) >= KEPT_LATER:
+                self._later.clear()
+            self._later[number] = found
+        return found
+
+    def called(self, call: Call, source: Source) -> tuple[Program, Place]:
+        """The program and the place of its first line. Raises ProgramError when it is not there."""
+        name = call.name.upper()
+        if call.local:
+            section = self.subroutines.get(name)
+            if section is None:
+                known = ", ".join(self.subroutines) or "none"
+                raise faults.UNKNOWN_SUBROUTINE.at(source, call.column, name=call.name, known=known)
+            return self, Place(section.line, section.offset)
+        program = self.library.get(name)
+        if program is None:
+            known = ", ".join(self.library) or "none"
+            raise flow_faults.FILE_UNKNOWN.at(source, call.column, name=call.name, known=known)
+        return program, Place(program.main.line, program.main.offset)

@@ -1,0 +1,296 @@
+"""Assignments and control statements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from cnc_ptp.nc.expressions import expression_faults
+from cnc_ptp.nc.expressions.nodes import Node, Parameter
+from cnc_ptp.nc.expressions.reader import Assignable
+from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.nc.flow import flow_faults as faults
+from cnc_ptp.nc.flow.lines import Line, Statement
+from cnc_ptp.nc.program import NcBlock
+
+if TYPE_CHECKING:
+    from cnc_ptp.nc.flow.execution import Execution
+
+EQUAL: Final = 0.001
+"""Two numbers of $SWITCH and $CASE are equal if they differ by less, as the vendor has it."""
+
+
+class Assignment(Statement):
+    """P1 = 5, V.P.DEPTH = P1 * 2."""
+
+    def __init__(self, column: int, target: Assignable, value: Node) -> None:
+        super().__init__(column)
+        self.target, self.value = target, value
+        self.parameter = target.index if isinstance(target, Parameter) and not value.may_be_text else -1
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        self.assign(execution.values)
+        return None
+
+    def assign(self, values: Values) -> None:
+        if self.parameter >= 0:
+            values.parameters[self.parameter] = self.value.value(values)
+        else:
+            self.target.assign(values, self.value.scalar(values))
+
+
+class Assignments(Statement):
+    """Several in one line, in their order."""
+
+    def __init__(self, column: int, parts: Sequence[Assignment]) -> None:
+        super().__init__(column)
+        self.parts = parts
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        for part in self.parts:
+            part.assign(execution.values)
+        return None
+
+
+class If(Statement):
+    """$IF: jumps behind the first of its branches whose condition holds, or behind $ENDIF."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        structure = execution.structure(line)
+        for branch in structure.branches:
+            if branch.condition is None or branch.condition.holds(execution.values):
+                execution.go(branch.place)
+                return None
+        execution.go(structure.after)
+        return None
+
+
+class ShortIf(Statement):
+    """$IF condition $GOTO label."""
+
+    def __init__(self, column: int, condition: Node) -> None:
+        super().__init__(column)
+        self.condition = condition
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        if self.condition.holds(execution.values):
+            execution.jump(line)
+        return None
+
+
+class Switch(Statement):
+    """$SWITCH: jumps behind the first $CASE of the same value, or behind $DEFAULT, or behind $ENDSWITCH."""
+
+    def __init__(self, column: int, value: Node, assignment: Assignment | None) -> None:
+        super().__init__(column)
+        self.value, self.assignment = value, assignment
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        if self.assignment is not None:
+            self.assignment.assign(execution.values)
+        structure = execution.structure(line)
+        value = self.value.scalar(execution.values)
+        target = structure.after
+        for branch in structure.branches:
+            if branch.condition is None:
+                target = branch.place
+            elif same(value, branch.condition.scalar(execution.values)):
+                target = branch.place
+                break
+        execution.go(target)
+        return None
+
+
+def same(a: Scalar, b: Scalar) -> bool:
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    return abs(a - b) < EQUAL
+
+
+class EndOfBranch(Statement):
+    """$ELSE, $ELSEIF reached from above, $BREAK: execution continues behind the structure."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        execution.go(execution.structure(line).after)
+        return None
+
+
+class Mark(Statement):
+    """$ENDIF, $ENDSWITCH, $CASE, $DEFAULT, $DO, $REPEAT: a place alone."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        return None
+
+
+class While(Statement):
+    def __init__(self, column: int, condition: Node) -> None:
+        super().__init__(column)
+        self.condition = condition
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        if not self.condition.holds(execution.values):
+            execution.go(execution.structure(line).after)
+        return None
+
+
+class EndWhile(Statement):
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        execution.back(execution.structure(line).begin, line)
+        return None
+
+
+class For(Statement):
+    """$FOR counter = start, end, step: `end` and `step` are evaluated for each turn."""
+
+    def __init__(self, column: int, counter: Assignable, values: Sequence[Node]) -> None:
+        super().__init__(column)
+        self.counter, self.parameter = counter, counter.index if isinstance(counter, Parameter) else -1
+        self.start, self.end, self.step = values
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        values = execution.values
+        start = self.start.value(values)
+        self.counter.assign(values, start)
+        if not self.turns(values, start):
+            execution.go(execution.structure(line).after)
+        return None
+
+    def turns(self, values: Values, count: float) -> bool:
+        """Whether the loop has a turn for this value of the counter."""
+        step = self.step.value(values)
+        if step == 0.0:
+            raise values.fault(faults.STEP_ZERO, self.step.column)
+        return count <= self.end.value(values) if step > 0.0 else count >= self.end.value(values)
+
+    def next_turn(self, values: Values) -> bool:
+        if self.parameter >= 0:
+            count = values.parameters[self.parameter] + self.step.value(values)
+            values.parameters[self.parameter] = count
+        else:
+            count = self.counter.value(values) + self.step.value(values)
+            self.counter.assign(values, count)
+        return self.turns(values, count)
+
+
+class EndFor(Statement):
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        structure = execution.structure(line)
+        statement = structure.statement
+        if isinstance(statement, For) and statement.next_turn(execution.values):
+            execution.back(structure.body, line)
+        return None
+
+
+class EndDo(Statement):
+    """$ENDDO condition: again while it holds. $UNTIL condition: again until it holds."""
+
+    def __init__(self, column: int, condition: Node, *, until: bool) -> None:
+        super().__init__(column)
+        self.condition, self.until = condition, until
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        if self.condition.holds(execution.values) != self.until:
+            execution.back(execution.structure(line).body, line)
+        return None
+
+
+class Continue(Statement):
+    """$CONTINUE: the last line of the loop is next."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        execution.go(execution.structure(line).end)
+        return None
+
+
+class Goto(Statement):
+    """$GOTO, after the words of its line."""
+
+    def __init__(self, column: int, words: Statement | None, block: NcBlock | None) -> None:
+        super().__init__(column)
+        self.words, self.block = words, block
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        block = self.block if self.words is None else self.words.run(execution, line)
+        execution.jump(line)
+        return block
+
+
+class Return(Statement):
+    """$RETURN: ends the subroutine."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        execution.leave(line)
+        return None
+
+
+class Declaration(Statement):
+    """One line between #VAR and #ENDVAR: a variable or an array, its type and first values."""
+
+    def __init__(
+        self,
+        column: int,
+        name: str,
+        sizes: Sequence[Node],
+        values: Sequence[Node],
+        *,
+        is_text: bool,
+        longest: int,
+    ) -> None:
+        super().__init__(column)
+        self.name, self.sizes, self.values = name, sizes, values
+        self.is_text, self.longest = is_text, longest
+
+    def declare(self, values: Values) -> None:
+        sizes: list[int] = []
+        count = 1
+        for size in self.sizes:
+            elements = size.integer(values, f"the size of {self.name}")
+            if elements < 1:
+                raise values.fault(expression_faults.SIZE, size.column, name=self.name, size=elements)
+            sizes.append(elements)
+            count *= elements
+        if len(self.values) > count:
+            words = {"given": len(self.values), "count": count}
+            raise values.fault(expression_faults.TOO_MANY_INITIAL, self.values[count].column, name=self.name, **words)
+        if self.name in values.scope(self.name):
+            raise values.fault(expression_faults.DECLARED_TWICE, self.column, name=self.name)
+        values.reserve(count, self.name, self.column)
+        given: list[Scalar] = []
+        for node in self.values:
+            value = node.scalar(values)
+            if isinstance(value, str) != self.is_text:
+                fault = expression_faults.TEXT_EXPECTED
+                if isinstance(value, str):
+                    raise values.fault(expression_faults.NUMBER_EXPECTED, node.column, what="the first value")
+                raise values.fault(fault, node.column)
+            given.append(value)
+        empty: Scalar = "" if self.is_text else 0.0
+        values.declare(self.name, tuple(sizes), [*given, *[empty] * (count - len(given))], self.column)
+
+
+class Declarations(Statement):
+    """#VAR ... #ENDVAR."""
+
+    def __init__(self, column: int) -> None:
+        super().__init__(column)
+        self.lines: list[tuple[Line, Declaration]] = []
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        values = execution.values
+        for declared, declaration in self.lines:
+            values.source = declared.source
+            declaration.declare(values)
+        return None
+
+
+class Delete(Statement):
+    """#DELETE V.P.A, V.L.B."""
+
+    def __init__(self, column: int, names: Sequence[tuple[str, int]]) -> None:
+        super().__init__(column)
+        self.names = names
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        for name, column in self.names:
+            execution.values.delete(name, column)
+        return None
