@@ -13,7 +13,7 @@ from cnc_ptp.nc.expressions.nodes import SelfDefined
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
-from cnc_ptp.nc.flow.statements import Declarations, Delete, Mark
+from cnc_ptp.nc.flow.statements import Declarations, Delete, EndOfModalCall, Mark
 from cnc_ptp.nc.program import Channel, HashCommand, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main, name_of, names
 
@@ -183,10 +183,18 @@ COMMANDS: dict[str, Run] = {
     "SLOPE DEFAULT": default_slope,
     "SLOPE": slope,
 }
+
+
+def _disable_modal_cycle(line: Line, text: str, end: int, column: int) -> None:
+    _nothing_behind(line, text, end, "#DISABLE MODAL CYCLE")
+    line.statement = EndOfModalCall(column)
+
+
 STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "VAR": _variables,
     "ENDVAR": _end_of_variables,
     "DELETE": _delete,
+    "DISABLE MODAL CYCLE": _disable_modal_cycle,
     "COMMENT BEGIN": _comment,
     "COMMENT END": _end_of_comment,
 }

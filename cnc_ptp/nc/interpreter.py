@@ -1,6 +1,6 @@
 """Blocks -> canonical stream: modal state, calls and returns, block skip, veto of targets; check of a whole program."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, LinearMove, Motion, Source
@@ -10,7 +10,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
-from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
@@ -66,6 +66,7 @@ def interpret(
     try:
         while (block := execution.next_block()) is not None:
             canonical = _resolve(channel, state, block, check_target)
+            execution.moved = canonical is not None and canonical.motion is not None
             if canonical is not None:
                 yield canonical
     except ProgramError as error:
@@ -146,6 +147,7 @@ def check(
     check_target: CheckTarget | None = None,
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
+    files: Mapping[str, str] = NO_FILES,
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
@@ -153,7 +155,7 @@ def check(
     error, since everything after that would be a guess. An error that `check_target` raises comes out as it is,
     unless it is a ProgramError.
     """
-    program, errors = parse_all(text, file)
+    program, errors = parse_all(text, file, files=files)
     begin = (0.0,) * len(axes) if start is None else start
     try:
         for _ in interpret(
@@ -167,6 +169,6 @@ def check(
         ):
             pass
     except ProgramError as error:
-        if all(error.line != known.line for known in errors):
+        if all((error.file, error.line) != (known.file, known.line) for known in errors):
             errors.append(error)
-    return sorted(errors, key=lambda error: error.line)
+    return sorted(errors, key=lambda error: (error.file != file, error.file, error.line))

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import CODES, Source, code_name
+from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.nodes import (
     Add,
     Divide,
@@ -44,7 +45,7 @@ TO_LOWER: Final = 32
 
 _TOKEN = re.compile(
     rf"""\s*(?:
-      (?P<call> LL\s+ (?P<callee>[^\s"\],#$\[]+) )
+      (?P<call> (?P<scope>LL?)\s+ (?P<callee>[^\s"\],#$\[]+) )
     | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{NUMBER}) (?![\d.]) )
     | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{NUMBER}) (?!\s*[=\[]|[\d.]) )
     | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{NUMBER}) (?![\d.]) )
@@ -220,6 +221,9 @@ class TokenReader:
         """The token at a place, and where it ends."""
         if _TARGET.match(self.line, position):
             return self._assignment(position)
+        cycle = _CYCLE.match(self.line, position)
+        if cycle is not None:
+            return self._cycle(cycle)
         match = _TOKEN.match(self.line, position)
         if match is None:
             return self._computed(position)
@@ -258,6 +262,35 @@ class TokenReader:
         if combined is not None:
             value = combined(operator.start(1) + 1, target, value)
         return Token("assignment", shown, "", begin + 1, self.line[begin:after], value, (), target), after
+
+    def _cycle(self, begin: "re.Match[str]") -> tuple[Token, int]:
+        """L CYCLE [NAME=DRILL.NC @P1=-10 MODAL_MOVE]."""
+        name, modal = "", ""
+        arguments: list[tuple[str, Node]] = []
+        at = begin.end()
+        while True:
+            word = _CYCLE_WORD.match(self.line, at)
+            if word is None:
+                rest = self.line[at:].split()
+                if not rest:
+                    raise expression_faults.PARENTHESIS_OPEN.at(self.source, begin.end(), bracket="[")
+                raise flow_faults.CYCLE_WORD.at(self.source, self.line.index(rest[0], at) + 1, word=rest[0])
+            at = word.end()
+            if word["end"]:
+                break
+            if word["name"]:
+                name = word["name"]
+            elif word["modal"]:
+                modal = {"MODAL": "MODAL_MOVE"}.get(word["modal"], word["modal"])
+            else:
+                value, at = self._read(at)
+                arguments.append((word["argument"], value))
+        column = begin.start(1) + 1
+        if not name:
+            raise flow_faults.CYCLE_NAME.at(self.source, column)
+        shown = self.line[begin.start(1) : at]
+        scope = f"{begin[1]} CYCLE {modal}".rstrip()
+        return Token("call", name, scope, column, shown, arguments=arguments), at
 
     def _computed(self, position: int) -> tuple[Token, int]:
         """A word whose number is an expression."""
@@ -300,6 +333,12 @@ class TokenReader:
         return token._replace(parts=parts)
 
 
+_CYCLE = re.compile(r"\s*(LL?)\s+CYCLE\s*\[", re.ASCII)
+_CYCLE_WORD = re.compile(
+    r"""[\s,]*(?: NAME\s*=\s*"?(?P<name>[^\s"\],#$\[]+)"? | (?P<modal>MODAL(?:_MOVE|_BLOCK)?)(?![A-Z_])
+    | @\s*(?P<argument>[A-Z]\w*)\s*= | (?P<end>\]) )""",
+    re.ASCII | re.VERBOSE,
+)
 _TARGET = re.compile(r"\s*(?:P\s*[\d\[P]|V\s*\.)", re.ASCII)
 _ASSIGNS = re.compile(r"\s*([-+*/]?=)(?!=)", re.ASCII)
 _COMBINED: Final = {"+=": Add, "-=": Subtract, "*=": Multiply, "/=": Divide}
@@ -326,7 +365,7 @@ def _token(match: "re.Match[str]") -> Token:
     if kind == "position":
         return Token(kind, f"{part['positioned']}.POS", part["angle"], match.start(kind) + 1, part[kind])
     name = part["callee"] or part["letter"] or part["name"] or part["owner"] or ""
-    text = part["number"] or part["value"] or part["inside"] or part["bare"] or ""
+    text = part["scope"] or part["number"] or part["value"] or part["inside"] or part["bare"] or ""
     return Token(kind, name, text, match.start(kind) + 1, part[kind])
 
 

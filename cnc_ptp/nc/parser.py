@@ -6,6 +6,7 @@ present, arc possible, axis in the machine) is checked by the interpreter.
 """
 
 import re
+from collections.abc import Mapping
 from typing import Final
 
 from cnc_ptp.nc import faults
@@ -15,7 +16,7 @@ from cnc_ptp.nc.collector import paused_collector
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.declarations import declaration_of
-from cnc_ptp.nc.flow.lines import Line
+from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.sections import Program, Section
 from cnc_ptp.nc.flow.statements import Declarations
 from cnc_ptp.nc.flow.structures import CLOSING, DIVIDES, OPENED, Place, StructureReader
@@ -28,43 +29,60 @@ MOST_ERRORS: Final = 1000
 _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
 
 
-def parse_program(text: str, file: str, *, mdi: bool = False) -> Program:
-    """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks)."""
-    program, errors = parse_all(text, file, mdi=mdi)
+NO_FILES: Final[Mapping[str, str]] = {}
+
+
+def parse_program(text: str, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES) -> Program:
+    """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks).
+
+    `files`: the texts of the programs that it may call, by name.
+    """
+    program, errors = parse_all(text, file, mdi=mdi, files=files)
     if errors:
         raise errors[0]
     return program
 
 
-def parse_all(text: str, file: str, *, mdi: bool = False) -> tuple[Program, list[ProgramError]]:
+def parse_all(
+    text: str, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES
+) -> tuple[Program, list[ProgramError]]:
     """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached."""
-    return parse_text(ProgramText(text), file, mdi=mdi)
+    return parse_text(ProgramText(text), file, mdi=mdi, files=files)
 
 
-def parse_text(text: ProgramText, file: str, *, mdi: bool = False) -> tuple[Program, list[ProgramError]]:
+def parse_text(
+    text: ProgramText, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES
+) -> tuple[Program, list[ProgramError]]:
     """As parse_all, from memory or from a file."""
-    reader = _Reader(Program(file, text, read_line), mdi)
+    library = {name.upper(): Program(name, ProgramText(content), read_line) for name, content in files.items()}
+    program = Program(file, text, read_line)
+    errors: list[ProgramError] = []
     with paused_collector():
-        return reader.read()
+        for each in (program, *library.values()):
+            each.library = library
+            errors += _Reader(each, mdi=mdi, called=each is not program).read()
+    return program, errors
 
 
 class _Reader:
     """Reads all lines once: errors, sections, labels, structures."""
 
-    def __init__(self, program: Program, mdi: bool) -> None:
-        self.program, self.mdi = program, mdi
+    def __init__(self, program: Program, *, mdi: bool, called: bool) -> None:
+        """`called`: its main part is a subroutine of other programs."""
+        self.program, self.mdi, self.called = program, mdi, called
         self.errors: list[ProgramError] = []
         self.sections: list[Section] = []
         self.structures = StructureReader("the program")
         self.ended = True
         """The present section has its M30 or M29."""
         self.last = Source(program.file, 1, 0, "")
-        self.calls: list[tuple[str, int, Source]] = []
+        self.calls: list[tuple[Call, Source]] = []
         self.declarations: Declarations | None = None
         self.opened: Line | None = None
         """Line of #VAR or #COMMENT BEGIN until its end."""
 
-    def read(self) -> tuple[Program, list[ProgramError]]:
+    def read(self) -> list[ProgramError]:
+        """All errors of the file, one per line."""
         number, offset = 1, 0
         program = self.program
         while offset >= 0 and len(self.errors) < MOST_ERRORS:
@@ -83,18 +101,33 @@ class _Reader:
             self.errors.append(line.error)
         if line.header:
             self._header(line)
+        elif (
+            self.structures.awaits_case
+            and line.control is None
+            and (line.block is not None or line.statement is not None)
+        ):
+            word = line.source.text.split()[0]
+            line.error = flow_faults.BEFORE_CASE.at(line.source, line.source.text.index(word) + 1, word=word)
+            self.errors.append(line.error)
         elif line.block is not None and line.statement is None and not line.label:
             self._require_section(line, offset)
             self._note_end(line)
-        elif line.block is not None or line.statement is not None or line.call is not None or line.label:
+        elif line.does_something or line.label:
             self._require_section(line, offset)
             self._structure(line, offset)
         elif line.error is not None:
             self._require_section(line, offset)
-        if line.call is not None and line.call.local:
-            self.calls.append((line.call.name, line.call.column, line.source))
+            if line.control is not None:
+                self._structure(line, offset)
+        if line.call is not None:
+            self._note_call(line.call, line.source)
         if line.source.text:
             self.last = line.source
+
+    def _note_call(self, call: Call, source: Source) -> None:
+        """Subroutines may follow later in the file; of a name that is called again and again, one call is enough."""
+        if len(self.calls) < MOST_ERRORS or all(call.name != noted.name for noted, _ in self.calls):
+            self.calls.append((call, source))
 
     def _require_section(self, line: Line, offset: int) -> None:
         if not self.sections:
@@ -106,7 +139,7 @@ class _Reader:
         if block is None or not block.flow:
             return
         section = self.sections[-1]
-        is_main = section.kind == "main program"
+        is_main = section.kind == "main program" and not self.called
         if block.flow == "return" and is_main:
             code = next(code for code in block.m if code.flow == "return")
             column = line.source.column(code.name)
@@ -153,7 +186,8 @@ class _Reader:
         if self.ended or self.mdi:
             return
         section = self.sections[-1]
-        end = "M30 or M02" if section.kind == "main program" else "M29 or M17"
+        is_main = section.kind == "main program" and not self.called
+        end = "M30 or M02" if is_main else "M29 or M17"
         self.errors.append(faults.END_MISSING.at(self.last, program=section.title, end=end))
 
     # structures
@@ -189,7 +223,7 @@ class _Reader:
         elif keyword in OPENED:
             structure = structures.closes(keyword, begin, behind, line.source, control.column)
         elif keyword == "$RETURN":
-            if not line.skip and self.sections[-1].kind != "main program":
+            if not line.skip and (self.called or self.sections[-1].kind != "main program"):
                 self.ended = self.ended or structures.open is None
             return
         else:
@@ -219,8 +253,8 @@ class _Reader:
 
     # end
 
-    def finish(self) -> tuple[Program, list[ProgramError]]:
-        """The program; errors of structure are added."""
+    def finish(self) -> list[ProgramError]:
+        """All errors; those of the structure are added."""
         if self.opened is not None:
             begin, end = ("#COMMENT BEGIN", "#COMMENT END") if self.opened.comment else ("#VAR", "#ENDVAR")
             source, line = self.opened.source, self.opened.number
@@ -228,11 +262,12 @@ class _Reader:
         self._end_section()
         if not any(section.kind == "main program" for section in self.sections):
             self.errors.append(faults.NO_MAIN_PROGRAM.at(self.last))
-        known = ", ".join(self.program.subroutines) or "none"
-        for name, column, source in self.calls:
-            if name.upper() not in self.program.subroutines:
-                self.errors.append(faults.UNKNOWN_SUBROUTINE.at(source, column, name=name, known=known))
-        return self.program, _one_a_line(self.errors)
+        for call, source in self.calls:
+            try:
+                self.program.called(call, source)
+            except ProgramError as error:
+                self.errors.append(error)
+        return _one_a_line(self.errors)
 
 
 def _same(a: Section, b: Section) -> bool:

@@ -12,6 +12,8 @@ from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 
+FILES = {path.name: path.read_text() for path in (HERE / "library").glob("*.nc")}
+"""Programs that the others may call."""
 GOOD = sorted((HERE / "golden").glob("*.nc"))
 BAD = sorted((HERE / "bad").glob("*.nc"))
 
@@ -29,7 +31,7 @@ FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
-    program = parse_program(text, file)
+    program = parse_program(text, file, files=FILES)
     return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
 
 
@@ -43,7 +45,7 @@ def test_canonical_stream_is_the_golden_one(path):
 def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    assert check(text, path.name, axes, spindles) == []
+    assert check(text, path.name, axes, spindles, files=FILES) == []
 
 
 def test_example_bracket_gives_its_golden_stream():
@@ -64,7 +66,7 @@ def test_bad_program_raises_the_text_of_its_first_line(path):
 def test_check_finds_the_same_error(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    found = [str(error) for error in check(text, path.name, axes, spindles)]
+    found = [str(error) for error in check(text, path.name, axes, spindles, files=FILES)]
     assert text.split("\n")[0].removeprefix("; ") in found
 
 

@@ -145,9 +145,9 @@ class SelfDefined(Node):
 class Readable(Node):
     """V.A.ABS.X: state of axes and channel. `units`: the axis, or expressions for an index."""
 
-    def __init__(self, column: int, reading: Reading, units: Sequence[Node | str]) -> None:
+    def __init__(self, column: int, name: str, reading: Reading, units: Sequence[Node | str]) -> None:
         super().__init__(column)
-        self.reading, self.units = reading, units
+        self.name, self.reading, self.units = name, reading, units
         self.may_be_text = True
 
     def given(self, values: Values) -> list[Scalar]:
@@ -164,7 +164,7 @@ class Readable(Node):
 
     def assign(self, values: Values, value: Scalar) -> None:
         if self.reading.write is None:
-            raise values.fault(faults.NOT_ASSIGNABLE, self.column, name=self.reading.text)
+            raise values.fault(faults.NOT_ASSIGNABLE, self.column, name=self.name)
         self.reading.write(values, self.given(values), value, self.column)
 
 

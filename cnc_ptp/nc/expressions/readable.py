@@ -31,7 +31,7 @@ def axis_of(values: Values, unit: Scalar, column: int) -> int:
         return names.index(unit)
     shown = unit if isinstance(unit, str) else f"{unit:g}"
     known = ", ".join(names)
-    raise values.fault(faults.UNIT_UNKNOWN, column, name="V.A.", kind="axis", unit=shown, known=known)
+    raise values.fault(faults.UNIT_UNKNOWN, column, kind="axis", unit=shown, known=known)
 
 
 def spindle_of(values: Values, unit: Scalar, column: int) -> str:
@@ -44,7 +44,7 @@ def spindle_of(values: Values, unit: Scalar, column: int) -> str:
             return spindle.key
     known = ", ".join(spindle.own_name for spindle in spindles) or "none"
     shown = unit if isinstance(unit, str) else f"{unit:g}"
-    raise values.fault(faults.UNIT_UNKNOWN, column, name="V.SPDL_PROG.", kind="spindle", unit=shown, known=known)
+    raise values.fault(faults.UNIT_UNKNOWN, column, kind="spindle", unit=shown, known=known)
 
 
 def absolute(values: Values, units: Units, column: int) -> Scalar:
@@ -85,6 +85,13 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),
     "V.SPDL_PROG.POSITION": ((("*",), Reading("programmed position, deg", spindle_position)),),
 }
+
+
+def forms(name: str) -> str:
+    """How a readable name is written, with a placeholder for its axis, spindle or index."""
+    placeholder = {"V.A": ".<axis>", "V.S": ".<spindle>"}.get(name[:3], "[<index>]")
+    written = [[placeholder if part == "*" else f".{part}" for part in pattern] for pattern, _ in READABLE[name]]
+    return " or ".join(name + "".join(parts) for parts in written)
 
 
 def all_names() -> list[str]:

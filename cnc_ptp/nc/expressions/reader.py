@@ -40,7 +40,7 @@ from cnc_ptp.nc.expressions.nodes import (
     TextCall,
     Xor,
 )
-from cnc_ptp.nc.expressions.readable import READABLE, Reading, all_names
+from cnc_ptp.nc.expressions.readable import READABLE, Reading, all_names, forms
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, SCOPES, in_words, nearest_name
 from cnc_ptp.nc.faults import Fault, ProgramError
 
@@ -269,10 +269,12 @@ class ExpressionReader:
         reading = _reading(name, parts)
         if reading is None:
             shown = ".".join([name, *(part for part in parts if isinstance(part, str))])
+            if name in READABLE:
+                raise self.fault(faults.READING_FORM, begin, word=self.line[begin : self.at], forms=forms(name))
             raise self.fault(faults.NAME_UNKNOWN, begin, word=shown, nearest=nearest_name(shown, all_names()))
         found_reading, units = reading
         self.synchronises = self.synchronises or found_reading.synchronises
-        return Readable(begin + 1, found_reading, units)
+        return Readable(begin + 1, name, found_reading, units)
 
     def _exists(self, begin: int) -> Node:
         opened = self.at - 1

@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from cnc_ptp.nc.expressions.nodes import ComputedParameter, Constant, Node, Parameter, SelfDefined
+from cnc_ptp.nc.expressions.nodes import ComputedParameter, Constant, Node, Parameter, SelfDefined, Text
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
@@ -32,8 +32,8 @@ def declaration_of(line: Line) -> Declaration | None:
     elif isinstance(target, Parameter):
         name, sizes = f"P{target.index}", []
     else:
-        raise flow_faults.DECLARATION.at(line.source, begin + 1, word=reader.word())
-    is_text, longest = _type(reader, line)
+        raise flow_faults.DECLARATION.at(line.source, begin + 1, word=text[begin:].split()[0])
+    typed, is_text, longest = _type(reader, line)
     values: list[Node] = []
     if reader.follows("="):
         if sizes:
@@ -42,27 +42,27 @@ def declaration_of(line: Line) -> Declaration | None:
             values = reader.items()
         else:
             values = [reader.expression()]
-            is_text = is_text or values[0].may_be_text
+            is_text = is_text or (not typed and isinstance(values[0], Text))
     if reader.skip_blanks() < len(text.rstrip()):
         raise flow_faults.WORDS_AFTER.at(line.source, reader.at + 1, word=reader.word(), keyword="a declaration")
     return Declaration(begin + 1, name, sizes, values, is_text=is_text, longest=longest)
 
 
-def _type(reader: ExpressionReader, line: Line) -> tuple[bool, int]:
-    """Whether it is a text, and its length."""
+def _type(reader: ExpressionReader, line: Line) -> tuple[bool, bool, int]:
+    """Whether the line gives a type, whether that is a text, and its length."""
     found = _TYPE.match(reader.line, reader.at)
     if found is None:
-        return False, 0
+        return False, False, 0
     if found[1] not in TYPES:
         known = ", ".join(TYPES)
         raise flow_faults.TYPE_UNKNOWN.at(line.source, found.start(1) + 1, word=found[1], known=known)
     reader.at = found.end()
     if found[1] != "STRING":
-        return False, 0
+        return True, False, 0
     begin = reader.at
     if not reader.follows("["):
         raise flow_faults.STRING_LENGTH.at(line.source, begin + 1, limit=LONGEST_STRING)
     (length, *more) = reader.items()
     if more or not isinstance(length, Constant) or not 1.0 <= length.constant <= LONGEST_STRING:
         raise flow_faults.STRING_LENGTH.at(line.source, begin + 1, limit=LONGEST_STRING)
-    return True, int(length.constant)
+    return True, True, int(length.constant)

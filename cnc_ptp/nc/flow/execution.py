@@ -22,6 +22,9 @@ class Limits(NamedTuple):
     repeats: int = 1_000_000
 
 
+MODAL_BLOCK: Final = "MODAL_BLOCK"
+
+
 class Frame:
     """Where a subroutine was called, and what its caller had."""
 
@@ -51,15 +54,24 @@ class Execution:
         self._call: Call | None = None
         self._line: Line | None = None
         self._paused = -1
+        self._modal: Call | None = None
+        """The call that follows each motion or block."""
+        self._modal_line: Line | None = None
+        self._modal_depth = 0
+        self.moved = False
+        """The last block had a motion; who resolves it says so."""
 
     # the next block
 
     def next_block(self) -> NcBlock | None:
         """The next block with words, PAUSE, or None at the end of the program. Raises ProgramError."""
-        call = self._call
-        if call is not None:
-            self._call = None
-            self._enter(call)
+        call, line = self._call, self._line
+        if line is not None:
+            self._call = self._line = None
+            if call is not None:
+                self._enter(call, line)
+            elif self._modal is not None and self._modal_line is not None and self._modal_due:
+                self._enter(self._modal, self._modal_line)
         while not self.ended:
             if self.offset < 0:
                 self._end_of_section()
@@ -87,9 +99,14 @@ class Execution:
                 self._follow(block, line)
                 return block
             if line.call is not None:
-                self._line = line
-                self._enter(line.call)
+                self._enter(line.call, line)
         return None
+
+    @property
+    def _modal_due(self) -> bool:
+        """The modal call follows the last block: not within itself, and not after a block without a motion."""
+        assert self._modal is not None
+        return len(self.frames) == self._modal_depth and (self.moved or self._modal.modal == MODAL_BLOCK)
 
     def _follow(self, block: NcBlock, line: Line) -> None:
         """What a block does to the order of execution, when it has been executed."""
@@ -125,6 +142,8 @@ class Execution:
     def jump(self, line: Line) -> None:
         """To the label of the line's $GOTO."""
         place = self.program.targets[line.number]
+        if isinstance(place, ProgramError):
+            raise place
         if place.line <= line.number:
             self._count_repeat(line)
         self.number, self.offset = place
@@ -136,10 +155,10 @@ class Execution:
 
     # subroutines
 
-    def _enter(self, call: Call) -> None:
+    def _enter(self, call: Call, line: Line) -> None:
         """Calls a subroutine: arguments are evaluated with the values of the caller."""
-        line = self._line
-        assert line is not None
+        if call.modal and self._modal is not call:
+            self._modal, self._modal_line, self._modal_depth = call, line, len(self.frames)
         depth = len(self.frames) + 1
         if depth > self.limits.call_depth:
             limit = self.limits.call_depth
@@ -158,6 +177,11 @@ class Execution:
         values.local, values.cycle, values.arguments = {}, dict(values.cycle), arguments
         values.level = len(self.frames) + 1
 
+    def end_modal_call(self) -> None:
+        """#DISABLE MODAL CYCLE, and the end of the subroutine that has ordered it."""
+        self._modal = self._modal_line = None
+        self._modal_depth = 0
+
     def leave(self, line: Line) -> None:
         """M17, M29, $RETURN: back to the caller."""
         if not self.frames:
@@ -166,6 +190,8 @@ class Execution:
 
     def _return(self) -> None:
         frame = self.frames.pop()
+        if len(self.frames) < self._modal_depth:
+            self.end_modal_call()
         self.program, self.number, self.offset = frame.program, frame.number, frame.offset
         self.values.leave(frame.local, frame.cycle, frame.arguments)
         self.values.level = len(self.frames) + 1

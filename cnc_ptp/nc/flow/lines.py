@@ -33,17 +33,10 @@ class Call:
     """
 
     def __init__(
-        self,
-        name: str,
-        column: int,
-        *,
-        local: bool,
-        arguments: dict[str, Node],
-        cycle: bool = False,
-        modal: str = "",
+        self, name: str, column: int, arguments: dict[str, Node], *, local: bool, cycle: bool, modal: str
     ) -> None:
-        self.name, self.column, self.local, self.arguments = name, column, local, arguments
-        self.cycle, self.modal = cycle, modal
+        self.name, self.column, self.arguments = name, column, arguments
+        self.local, self.cycle, self.modal = local, cycle, modal
 
 
 class Line:
@@ -77,3 +70,8 @@ class Line:
         self.synchronises = False
         self.header = False
         self.comment = False
+
+    @property
+    def does_something(self) -> bool:
+        """It is more than a comment or a label."""
+        return self.block is not None or self.statement is not None or self.call is not None

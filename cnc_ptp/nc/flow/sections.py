@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.structures import Place, Structure
@@ -39,7 +40,7 @@ class Program:
     main            main program
     subroutines     by upper-case name
     structure_of    by number of the line that opens, divides, closes or leaves a structure
-    targets         where the $GOTO of a line leads to
+    targets         where the $GOTO of a line leads to, or why it leads nowhere
     library         the other files that it may call, by upper-case name
     """
 
@@ -48,7 +49,7 @@ class Program:
         self.main = Section("main program", "", Source(file, 1, 0, ""), 1, 0)
         self.subroutines: dict[str, Section] = {}
         self.structure_of: dict[int, Structure] = {}
-        self.targets: dict[int, Place] = {}
+        self.targets: dict[int, Place | ProgramError] = {}
         self.kept: list[Line | None] = [None]
         self.library: Mapping[str, Program] = {}
         self.special: dict[int, Line] = {}

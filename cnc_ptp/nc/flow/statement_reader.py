@@ -86,6 +86,9 @@ def _require_end(line: Line, reader: ExpressionReader, keyword: str) -> None:
     fault = {"$WHILE": faults.WORDS_AFTER_WHILE, "$BREAK": faults.WORDS_AFTER_BREAK}.get(keyword, faults.WORDS_AFTER)
     if reader.line[reader.at] == "=":
         raise reader.equals(reader.at)
+    second = _KEYWORD.match(reader.line, reader.at)
+    if second is not None:
+        raise fault.at(line.source, reader.at + 1, word=second[0], keyword=keyword)
     raise fault.at(line.source, reader.at + 1, word=reader.word(), keyword=keyword)
 
 
@@ -98,8 +101,7 @@ def _condition(line: Line, reader: ExpressionReader, keyword: str) -> Node:
 def _if(line: Line, reader: ExpressionReader, keyword: str, column: int) -> None:
     condition = _condition(line, reader, keyword)
     if _GOTO.match(reader.line, reader.at):
-        end = _target(line, reader.line, reader.at)
-        reader.at = end
+        reader.at = _target(line, reader.line, reader.at)
         _require_end(line, reader, "$GOTO")
         line.control, line.statement = None, ShortIf(column, condition)
         return
@@ -166,8 +168,10 @@ def _target(line: Line, text: str, place: int) -> int:
     match = _GOTO.match(text, place)
     assert match is not None
     if match[1] is None and match[2] is None:
-        word = text[match.end() :].split()[:1]
-        raise faults.LABEL_TARGET.at(line.source, match.end() + 1, word=word[0] if word else "")
+        rest = text[match.end() :].strip()
+        if not rest:
+            raise faults.LABEL_MISSING.at(line.source, match.end() + 1)
+        raise faults.LABEL_TARGET.at(line.source, text.index(rest, match.end()) + 1, word=rest.split()[0])
     line.jump = f"N{int(match[1])}" if match[1] is not None else f"[{match[2]}]"
     line.jump_column = match.start(1 if match[1] is not None else 2) + 1
     return match.end()
@@ -178,7 +182,9 @@ def _goto(line: Line, text: str, begin: int, place: int, read_words: WithWords) 
     end = _target(line, text, place)
     rest = text[begin:place] + " " * (end - place) + text[end:]
     if "$" in rest:
-        raise faults.WORDS_AFTER.at(line.source, text.index("$", end) + 1, word="$", keyword="$GOTO")
+        second = _KEYWORD.search(text, end)
+        assert second is not None
+        raise faults.WORDS_AFTER.at(line.source, second.start() + 1, word=second[0], keyword="$GOTO")
     block = read_words(line, text[:begin] + rest, begin)
     line.statement = Goto(place + 1, line.statement, block)
 

@@ -283,6 +283,14 @@ class Declarations(Statement):
         return None
 
 
+class EndOfModalCall(Statement):
+    """#DISABLE MODAL CYCLE."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        execution.end_modal_call()
+        return None
+
+
 class Delete(Statement):
     """#DELETE V.P.A, V.L.B."""
 

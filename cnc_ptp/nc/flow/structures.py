@@ -107,6 +107,11 @@ class StructureReader:
         self.labels: dict[str, Label] = {}
         self.jumps: list[Jump] = []
 
+    @property
+    def awaits_case(self) -> bool:
+        """A $SWITCH has begun, and no $CASE of it."""
+        return self.open is not None and self.open.keyword == "$SWITCH" and not self.open.branches
+
     def opens(self, control: Control, begin: Place, behind: Place, source: Source) -> Structure:
         """$IF, $FOR ... in line `begin`; `behind` is the next one."""
         keyword = control.keyword
@@ -143,6 +148,9 @@ class StructureReader:
             raise faults.STRAY[keyword].at(source, column)
         if current.keyword != opening:
             values = {"opened": current.keyword, "closing": CLOSING[current.keyword]}
+            outer = current.innermost((opening,))
+            assert outer is not None
+            self.open = outer.parent if keyword in OPENED else outer
             raise faults.CROSSED.at(source, column, keyword=keyword, line=current.begin.line, **values)
         return current
 
@@ -164,8 +172,8 @@ class StructureReader:
     def jump(self, label: str, line: int, source: Source, column: int) -> None:
         self.jumps.append(Jump(label, line, column, self.open, source))
 
-    def finish(self, errors: list[ProgramError]) -> dict[int, Place]:
-        """Targets of all jumps by line; what is not closed or not there becomes an error."""
+    def finish(self, errors: list[ProgramError]) -> dict[int, Place | ProgramError]:
+        """Targets of all jumps by line, or why there is none; what is not closed becomes an error."""
         left = self.open
         while left is not None:
             values = {"keyword": left.keyword, "closing": CLOSING[left.keyword], "program": self.program}
@@ -173,11 +181,12 @@ class StructureReader:
                 faults.NOT_CLOSED.at(left.source, left.source.column(left.keyword), line=left.begin.line, **values)
             )
             left = left.parent
-        targets: dict[int, Place] = {}
+        targets: dict[int, Place | ProgramError] = {}
         for jump in self.jumps:
             try:
                 targets[jump.line] = self._target(jump)
             except ProgramError as error:
+                targets[jump.line] = error
                 errors.append(error)
         return targets
 

@@ -1,0 +1,3 @@
+; P-ERR-21585 cycle_without_name.nc line 2 column 1 'L CYCLE [@P1=5]': a cycle call needs NAME=...
+L CYCLE [@P1=5]
+M30

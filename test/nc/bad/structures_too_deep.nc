@@ -1,0 +1,85 @@
+; P-ERR-21577 structures_too_deep.nc line 42 column 1 '$IF 1': $IF at level 41, the limit is 40
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$IF 1
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+$ENDIF
+
+M30
