@@ -10,16 +10,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NoReturn
 
+from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
-from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck
+from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
+from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pairs
+from cnc_ptp.nc.program import Pairs
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
@@ -73,16 +75,17 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
-        self._sequence = ProgramSequence(self._motion, functions)
+        self._sequence = ProgramSequence(self._motion, functions, nodes)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._program: Program | None = None
         self._prepared: PreparedProgram | None = None
-        self._modal = ModalState()
-        """The modal state in which an MDI text starts: that of the previous one, if it was carried out in full."""
-        self._modal_at_end: ModalState | None = None
+        self._state = self._check.state({}, {}, {})
+        """The state in which an MDI text starts: that of the previous one, if it was carried out in full."""
+        self._state_at_end: ProgramState | None = None
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
         self._links: dict[int, Pairs] = {}
-        """Coupling groups that programs have defined; they are kept for the next one."""
+        """Coupling groups that programs have defined; they are kept for the next one, as V.S. is."""
+        self._shared: dict[str, Variable] = {}
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
@@ -100,10 +103,10 @@ class ChannelUnit(Unit):
     def prepare(self, program: str, text: str) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
         parsed = parse_program(text, program)
-        modal = self._check.initial_state(self._feedback, self._links)
-        before = modal.copy()
-        blocks = self._check.blocks(parsed, self._motion.position, modal)
-        self._prepared = PreparedProgram(text, parsed, self._motion.position, before, modal, blocks)
+        state = self._check.state(self._feedback, self._links, self._shared)
+        before = state.copy()
+        known = self._check.known_blocks(parsed, self._motion.position, state)
+        self._prepared = PreparedProgram(text, parsed, self._motion.position, before, state, known)
 
     # commands
 
@@ -124,15 +127,15 @@ class ChannelUnit(Unit):
         self._require_idle("start")
         if self._program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        self._begin("start", self._program, self._check.initial_state(self._feedback, self._links))
+        self._begin("start", self._program, self._check.state(self._feedback, self._links, self._shared))
         self._sequence.end_couplings()
 
     def do_mdi(self, cycle: int, *, text: str) -> None:
         """Executes NC text immediately; modal states are kept from one such text to the next."""
         self._require_idle("mdi")
-        modal = self._modal.copy()
-        modal.spindle.gears = self._check.gears(self._feedback)
-        self._begin("mdi", parse_program(text, "mdi", mdi=True), modal)
+        state = self._state.copy()
+        state.modal.spindle.gears = self._check.gears(self._feedback)
+        self._begin("mdi", parse_program(text, "mdi", mdi=True), state)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
@@ -212,8 +215,8 @@ class ChannelUnit(Unit):
         self._fill(rows, first_cycle, count + 1)
         self._axes.give(rows.axes[count - 1], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
-        if self._sequence.finished and self._modal_at_end is not None:
-            self._modal, self._modal_at_end = self._modal_at_end, None
+        if self._sequence.finished and self._state_at_end is not None:
+            self._state, self._state_at_end = self._state_at_end, None
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
 
@@ -244,8 +247,8 @@ class ChannelUnit(Unit):
             state=rows.state[:count],
             error_id=rows.error_id[:count],
             done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
-            blocks_done=self._sequence.blocks_done,
-            blocks_total=len(self._sequence.blocks),
+            blocks_done=self._sequence.stream.done,
+            blocks_total=self._sequence.stream.total,
             commands=outgoing.commands,
             requests=outgoing.requests,
         )
@@ -309,13 +312,13 @@ class ChannelUnit(Unit):
             return C.IDLE if self._program is None else C.READY
         return PHASE_STATES[phase]
 
-    def _begin(self, command: str, program: Program, modal: ModalState) -> None:
-        for node, state in self._axes.states.items():
-            if state != AxisStateCode.STANDSTILL:
+    def _begin(self, command: str, program: Program, state: ProgramState) -> None:
+        for node, axis_state in self._axes.states.items():
+            if axis_state != AxisStateCode.STANDSTILL:
                 self._refuse(
                     command,
                     AXIS_NOT_READY,
-                    f"axis {node} is in {state_name(state)}, it must be in Standstill",
+                    f"axis {node} is in {state_name(axis_state)}, it must be in Standstill",
                     axis=node,
                 )
         for node in self._axes.beside:
@@ -325,21 +328,26 @@ class ChannelUnit(Unit):
         for node in self.lost:
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
-        ready = self._ready(command, program, modal)
+        before = state.copy()
+        ready = self._ready(command, program, state)
         if ready is not None:
-            blocks, modal = ready.blocks, ready.modal_at_end
+            known, state = ready.known, ready.at_end
         else:
-            blocks = self._check.blocks(program, self._motion.position, modal)
-        self._links = modal.spindle.links
-        self._modal = self._check.initial_state({}, self._links)
-        self._modal_at_end = modal if command == "mdi" else self._check.initial_state({}, self._links)
-        self._sequence.begin(blocks, program=command == "start")
+            known = self._check.known_blocks(program, self._motion.position, state)
+        stream = BlockStream.of(known.blocks)
+        if not known.complete:
+            state = before
+            stream = BlockStream(self._check.running(program, self._motion.position, state), known.total, state.values)
+        self._links, self._shared = state.modal.spindle.links, state.values.shared
+        self._state = self._check.state({}, self._links, self._shared)
+        self._state_at_end = state if command == "mdi" else self._check.state({}, self._links, self._shared)
+        self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 
-    def _ready(self, command: str, program: Program, modal: ModalState) -> PreparedProgram | None:
+    def _ready(self, command: str, program: Program, state: ProgramState) -> PreparedProgram | None:
         """What was interpreted ahead, if that was from the present positions and state."""
         ready = self._prepared
-        if ready is None or command != "start" or ready.program is not program or ready.modal != modal:
+        if ready is None or command != "start" or ready.program is not program or not ready.before.same_as(state):
             return None
         return ready if ready.start == self._motion.position else None
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import inf
 from typing import NamedTuple
 
@@ -10,6 +10,7 @@ from cnc_ptp.axis.faults import SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
+    BUSY,
     AuxiliaryFunction,
     CanonicalBlock,
     CompensationSwitch,
@@ -17,12 +18,14 @@ from cnc_ptp.nc.canonical import (
     Source,
     SpindleCommand,
     SpindleFunction,
+    WaitForPath,
 )
+from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import ModalState, Pair, Pairs, Spindle, SpindleTable
+from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,
@@ -39,15 +42,47 @@ UNKNOWN_M_FUNCTION = 22011
 NO_CHANNEL = 26112
 
 
+MOST_BLOCKS = 100_000
+"""Blocks of a program that are kept; a longer one is interpreted again while it runs."""
+
+
+class ProgramState(NamedTuple):
+    """What a program changes while it is interpreted."""
+
+    modal: ModalState
+    values: Values
+
+    def copy(self) -> ProgramState:
+        modal = self.modal.copy()
+        return ProgramState(modal, self.values.copy(modal))
+
+    def same_as(self, other: ProgramState) -> bool:
+        """Whether a program would have the same blocks from both."""
+        return self.modal == other.modal and self.values.same_as(other.values)
+
+
+class KnownBlocks(NamedTuple):
+    """What is known of a program before it starts.
+
+    blocks     its blocks, as far as they are kept
+    complete   these are all; else it is interpreted again while it runs
+    total      their number; None if it depends on what only the run knows
+    """
+
+    blocks: list[CanonicalBlock]
+    complete: bool
+    total: int | None
+
+
 class PreparedProgram(NamedTuple):
-    """A program that was interpreted ahead of its load, from the position `start` and the modal state `modal`."""
+    """A program that was interpreted ahead of its load, from the position `start` and the state `before`."""
 
     text: str
     program: Program
     start: tuple[float, ...]
-    modal: ModalState
-    modal_at_end: ModalState
-    blocks: list[CanonicalBlock]
+    before: ProgramState
+    at_end: ProgramState
+    known: KnownBlocks
 
 
 class ProgramCheck:
@@ -66,6 +101,9 @@ class ProgramCheck:
         self._spindles = spindle_table(channel, spindles)
         self._nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._units = spindles
+        indices = {name: index for index, name in enumerate(self._axis_names)}
+        ratio = channel.circle_center_ratio
+        self._nc = Channel(self._axis_names, indices, self._spindles, channel.circle_center_tolerance, ratio)
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -99,12 +137,17 @@ class ProgramCheck:
         """Start positions of the channel's axes, mm."""
         return tuple(axis.start_position for axis in self._axes)
 
-    def initial_state(self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs]) -> ModalState:
-        """The modal state in which programs start: gears as the spindles report them, coupling groups as defined."""
-        state = ModalState()
-        state.spindle.gears = self.gears(feedback)
-        state.spindle.links = dict(links)
-        return state
+    def state(
+        self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs], shared: dict[str, Variable]
+    ) -> ProgramState:
+        """The state in which programs start: gears as spindles report them, coupling groups and V.S. as they are."""
+        modal = ModalState()
+        modal.spindle.gears = self.gears(feedback)
+        modal.spindle.links = dict(links)
+        values = Values(self._nc, modal)
+        values.shared = copies(shared)
+        values.begin_program()
+        return ProgramState(modal, values)
 
     def gears(self, feedback: Mapping[str, CycleBlock]) -> dict[str, int]:
         """Gear stages of the spindles that are not in the one of their start-up, by name."""
@@ -115,24 +158,45 @@ class ProgramCheck:
                 reported[spindle.key] = block.gear[-1]
         return reported
 
-    def blocks(self, program: Program, start: Sequence[float], state: ModalState | None = None) -> list[CanonicalBlock]:
-        """All blocks from `start` (mm, in the channel's order of axes). Raises ProgramError; then `state` is void."""
-        blocks = list(
-            interpret(
-                program,
-                tuple(start),
-                self._axis_names,
-                self._spindles,
-                state=state,
-                check_target=self.check_target,
-                centre_offset=self._channel.circle_center_tolerance,
-                centre_offset_ratio=self._channel.circle_center_ratio,
-            )
+    def blocks(self, program: Program, start: Sequence[float]) -> list[CanonicalBlock]:
+        """The blocks of a program that is started from the initial state, as far as they are known before it runs."""
+        return self.known_blocks(program, start, self.state({}, {}, {})).blocks
+
+    def known_blocks(self, program: Program, start: Sequence[float], state: ProgramState) -> KnownBlocks:
+        """Interprets a program from `start` (mm, in the channel's order of axes) before anything moves.
+
+        All of it, up to a line that reads what only the run knows. Raises ProgramError; then `state` is void.
+        """
+        blocks: list[CanonicalBlock] = []
+        total = 0
+        for block in self.running(program, start, state):
+            if block is BUSY:
+                continue
+            total += 1
+            if len(blocks) < MOST_BLOCKS:
+                blocks.append(block)
+            if any(isinstance(function, WaitForPath) for function in block.functions):
+                return KnownBlocks(blocks, False, None)
+        return KnownBlocks(blocks, total == len(blocks), total)
+
+    def running(self, program: Program, start: Sequence[float], state: ProgramState) -> Iterator[CanonicalBlock]:
+        """The blocks one by one, also BUSY and those with WaitForPath. Raises ProgramError; then `state` is void."""
+        stream = interpret(
+            program,
+            tuple(start),
+            self._axis_names,
+            self._spindles,
+            state=state.modal,
+            values=state.values,
+            check_target=self.check_target,
+            centre_offset=self._channel.circle_center_tolerance,
+            centre_offset_ratio=self._channel.circle_center_ratio,
+            runs=True,
         )
-        for block in blocks:
+        for block in stream:
             for function in block.functions:
                 self._function(function, block.source)
-        return blocks
+            yield block
 
     def check_target(self, target: tuple[float, ...], source: Source) -> None:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""

@@ -17,13 +17,14 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
+from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
 from cnc_ptp.path.path_motion import PathMotion
-from cnc_ptp.protocol.blocks import CycleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 
 ENDS = ("stop", "decouple")
 """Commands that are sent although the program was aborted."""
@@ -60,12 +61,15 @@ class ProgramSequence:
     `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` reports that it has finished.
     """
 
-    def __init__(self, motion: PathMotion, functions: FunctionOutput) -> None:
+    def __init__(self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str]) -> None:
+        """`axes`: nodes of the channel's axes, in its order."""
         self._motion = motion
+        self._axes = axes
         self._functions = functions
         self.phase = Phase.IDLE
-        self.blocks: Sequence[CanonicalBlock] = ()
-        self.blocks_done = 0
+        self.stream = NO_BLOCKS
+        self.finished = False
+        """The program has been carried out to its end."""
         self.source = NO_SOURCE
         """Source of the active block; after the end, of the last one."""
         self.single_block = False
@@ -85,13 +89,12 @@ class ProgramSequence:
 
     # from outside
 
-    def begin(self, blocks: Sequence[CanonicalBlock], *, program: bool) -> None:
+    def begin(self, stream: BlockStream, *, program: bool) -> None:
         """Starts from the first block; a `program` starts with feedforward off, MDI blocks leave it unchanged."""
         if program:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
-        self.blocks = blocks
-        self.blocks_done = 0
+        self.stream, self.finished = stream, False
         self.phase = Phase.NEXT
 
     def resume(self) -> None:
@@ -119,11 +122,6 @@ class ProgramSequence:
             self._motion.stop()
         else:
             self.motion_ended()
-
-    @property
-    def finished(self) -> bool:
-        """The program has been carried out to its end."""
-        return self.phase is Phase.IDLE and self.blocks_done == len(self.blocks)
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
@@ -209,8 +207,7 @@ class ProgramSequence:
         Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
-            self._begin_block()
-            return True
+            return self._begin_block()
         if self.phase not in WAITING:
             return False
         waits = self._waited_for()
@@ -224,7 +221,7 @@ class ProgramSequence:
         elif self.phase is Phase.WAIT_BEFORE:
             self._start_motion()
         elif self.phase is Phase.WAIT_END:
-            self._end_program()
+            self._finish()
         else:
             self._end_block()
         return True
@@ -259,19 +256,26 @@ class ProgramSequence:
             expected = Expectation(spindle.node)
             self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
-    def _begin_block(self) -> None:
-        if self.blocks_done >= len(self.blocks):
+    def _begin_block(self) -> bool:
+        """False while the interpreter computes. Raises ProgramError."""
+        if self.stream.awaited:
+            self.stream.give(actual_positions(self._feedback, self._axes))
+        block = self.stream.next()
+        if block is BUSY:
+            return False
+        if block is None:
             self._await_answers()
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
-            return
-        self._block = block = self.blocks[self.blocks_done]
+            return True
+        self._block = block
         self.source = block.source
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before()
-            return
+            return True
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
+        return True
 
     def _functions_before(self) -> None:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
@@ -291,17 +295,23 @@ class ProgramSequence:
 
     def _end_block(self) -> None:
         stop = self._block.stop if self._block else ""
-        self.blocks_done += 1
+        self.stream.done += 1
         if stop == "end":
             self._queue(self._functions.at_program_end(self.source))
-            self._end_program()
+            self._finish()
         elif stop == "M00" or (stop == "M01" and self.optional_stop) or self._stops_between_blocks():
             self.phase = Phase.STOPPED
         else:
             self.phase = Phase.NEXT
 
     def _stops_between_blocks(self) -> bool:
-        return self.single_block and self.blocks_done < len(self.blocks)
+        return self.single_block and self.stream.done < self.stream.total
+
+    def _finish(self) -> None:
+        """The program has been carried out to its end."""
+        self._end_program()
+        self.stream.end()
+        self.finished = True
 
     def _end_program(self) -> None:
         self._motion.feed = 0.0
@@ -331,6 +341,12 @@ class ProgramSequence:
     def _add_waits(self, waits: Sequence[Wait]) -> None:
         """The list is in the order of the moments."""
         self._waits = sorted([*self._waits, *waits], key=lambda wait: ORDER[wait.until])
+
+
+def actual_positions(feedback: Mapping[str, CycleBlock], axes: Sequence[str]) -> tuple[float, ...]:
+    """As the axes have reported them last; 0 for one that has not yet."""
+    blocks = (feedback.get(axis) for axis in axes)
+    return tuple(block.actual_position[-1] if isinstance(block, AxisBlock) else 0.0 for block in blocks)
 
 
 def moments_before(block: CanonicalBlock) -> list[Moment]:

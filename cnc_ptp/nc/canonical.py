@@ -11,7 +11,7 @@ functions have finished.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 
 class Source(NamedTuple):
@@ -132,6 +132,10 @@ class ExplicitSynchronisation(NamedTuple):
     """#EXPL SYN: the path waits for all functions of type MVS_SLP before it."""
 
 
+class WaitForPath(NamedTuple):
+    """#FLUSH WAIT; also before a line that reads what only the run knows: the path stands when it is interpreted."""
+
+
 class AuxiliaryFunction(NamedTuple):
     """A function for the PLC or the tool management: letter "M", "T" or "D"; with the `spindle` of S2[M8]."""
 
@@ -184,6 +188,7 @@ Function = (
     | GearChange
     | SpindleLink
     | ExplicitSynchronisation
+    | WaitForPath
     | AuxiliaryFunction
     | ControlFunction
 )
@@ -197,6 +202,10 @@ class CanonicalBlock(NamedTuple):
     functions: tuple[Function, ...]
     motion: Motion | None
     stop: str
+
+
+BUSY: Final = CanonicalBlock(Source("", 0, 0, ""), (), None, "")
+"""In place of a block: the interpreter has executed many lines without one, and continues when it is asked again."""
 
 
 def number(value: float) -> str:

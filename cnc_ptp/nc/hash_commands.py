@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
-from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function
+from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, WaitForPath
 from cnc_ptp.nc.expressions.nodes import SelfDefined
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
@@ -144,6 +144,20 @@ def explicit_synchronisation(
     return (ExplicitSynchronisation(),)
 
 
+def flush(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
+    """#FLUSH, #FLUSH WAIT: the path stands before the next block; with WAIT also before that is interpreted."""
+    if command.arguments is not None:
+        raise arguments_fault(block, command, "without arguments")
+    return (WaitForPath(),)
+
+
+def flush_continue(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
+    """#FLUSH CONTINUE: no block waits for blocks behind it here."""
+    if command.arguments is not None:
+        raise arguments_fault(block, command, "without arguments")
+    return ()
+
+
 def slope(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
     """#SLOPE [TYPE=STEP], [TYPE=TRAPEZ]: for the motions of the blocks after it."""
     words = _SLOPE.fullmatch(",".join(command.arguments or ()))
@@ -182,6 +196,9 @@ COMMANDS: dict[str, Run] = {
     "AX LINK": spindle_links.define,
     "SLOPE DEFAULT": default_slope,
     "SLOPE": slope,
+    "FLUSH": flush,
+    "FLUSH WAIT": flush,
+    "FLUSH CONTINUE": flush_continue,
 }
 
 

@@ -3,11 +3,22 @@
 from collections.abc import Callable, Iterator, Mapping
 
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, Function, LinearMove, Motion, Source
+from cnc_ptp.nc.canonical import (
+    BUSY,
+    CanonicalBlock,
+    CircularMove,
+    Dwell,
+    Function,
+    LinearMove,
+    Motion,
+    Source,
+    WaitForPath,
+)
 from cnc_ptp.nc.controls import bracketed_controls
+from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.execution import Execution, Limits, with_calls
+from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import NO_FILES, parse_all
@@ -40,6 +51,7 @@ def interpret(
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
+    runs: bool = False,
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
@@ -51,6 +63,8 @@ def interpret(
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
     corrected, the smaller of both limits counts. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position.
+    `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
+    it, and BUSY in long computations. Otherwise such a line is the error 21438.
     `values`: parameters and variables to continue with, of the same `state`.
     Raises ProgramError; state and values are then undefined, so MDI continues with copies taken before.
     """
@@ -65,6 +79,15 @@ def interpret(
     execution = Execution(program, values, limits=limits, block_skip=block_skip)
     try:
         while (block := execution.next_block()) is not None:
+            if block is COMPUTES:
+                if runs:
+                    yield BUSY
+                continue
+            if block is PAUSE:
+                if not runs:
+                    raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
+                yield CanonicalBlock(values.source, (WaitForPath(),), None, "")
+                continue
             canonical = _resolve(channel, state, block, check_target)
             execution.moved = canonical is not None and canonical.motion is not None
             if canonical is not None:
@@ -151,14 +174,14 @@ def check(
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
-    The modal check runs the program from `start` (default 0) up to its first error or the first line with a syntax
-    error, since everything after that would be a guess. An error that `check_target` raises comes out as it is,
-    unless it is a ProgramError.
+    The modal check runs the program from `start` (default 0) up to its first error, the first line with a syntax
+    error, or one that reads what only the run knows, since everything after that would be a guess. An error that
+    `check_target` raises comes out as it is, unless it is a ProgramError.
     """
     program, errors = parse_all(text, file, files=files)
     begin = (0.0,) * len(axes) if start is None else start
     try:
-        for _ in interpret(
+        blocks = interpret(
             program,
             begin,
             axes,
@@ -166,8 +189,11 @@ def check(
             check_target=check_target,
             centre_offset=centre_offset,
             centre_offset_ratio=centre_offset_ratio,
-        ):
-            pass
+            runs=True,
+        )
+        for block in blocks:
+            if any(isinstance(function, WaitForPath) for function in block.functions):
+                break
     except ProgramError as error:
         if all((error.file, error.line) != (known.file, known.line) for known in errors):
             errors.append(error)

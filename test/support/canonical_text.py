@@ -16,6 +16,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFeedforward,
     SpindleFunction,
     SpindleLink,
+    WaitForPath,
     number,
 )
 
@@ -46,6 +47,8 @@ def _function(function: Function) -> str:
             return f"{'link' if on else 'unlink'} {slave}={master}{ratio}"
         case ExplicitSynchronisation():
             return "wait for MVS_SLP"
+        case WaitForPath():
+            return "wait for the path"
         case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
             return _control(function)
         case SpindleFunction():

@@ -1,7 +1,6 @@
 """Values that expressions read and assignments change: P parameters and self-defined variables."""
 
 from difflib import get_close_matches
-from math import prod
 from typing import Final
 
 from cnc_ptp.nc.canonical import Source, number
@@ -82,15 +81,24 @@ class Values:
         self.count = 0
         """Values of all variables that are there."""
 
-    def copy(self) -> "Values":
-        """Independent, so that a refused MDI text changes nothing."""
-        other = Values(self.channel, self.state)
+    def copy(self, state: ModalState) -> "Values":
+        """Independent, with the copy of the modal state, so that a refused MDI text changes nothing."""
+        other = Values(self.channel, state)
         other.parameters = dict(self.parameters)
         other.arguments = dict(self.arguments)
         other.program, other.shared = copies(self.program), copies(self.shared)
         other.local, other.cycle = copies(self.local), copies(self.cycle)
         other.count = self.count
         return other
+
+    def same_as(self, other: "Values") -> bool:
+        """Whether a program would have the same blocks with both."""
+        scopes = ((self.program, other.program), (self.shared, other.shared), (self.local, other.local))
+        return (
+            self.parameters == other.parameters
+            and self.arguments == other.arguments
+            and all(same_variables(mine, others) for mine, others in (*scopes, (self.cycle, other.cycle)))
+        )
 
     def begin_program(self) -> None:
         """What belongs to one program begins anew; V.S. stays."""
@@ -188,6 +196,8 @@ def copies(variables: dict[str, Variable]) -> dict[str, Variable]:
     return {name: variable.copy() for name, variable in variables.items()}
 
 
-def size_of(dimensions: tuple[int, ...]) -> int:
-    """Number of values of an array."""
-    return prod(dimensions)
+def same_variables(a: dict[str, Variable], b: dict[str, Variable]) -> bool:
+    """Whether both have the same names with the same values."""
+    return a.keys() == b.keys() and all(
+        (one.dimensions, one.values) == (b[name].dimensions, b[name].values) for name, one in a.items()
+    )

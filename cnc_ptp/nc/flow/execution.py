@@ -40,6 +40,10 @@ class Frame:
 
 PAUSE: Final = NcBlock(Source("", 0, 0, ""), (), {})
 """In place of a block: the path must stand before the next line, which reads what only the run knows."""
+COMPUTES: Final = NcBlock(Source("", 0, 0, ""), (), {})
+"""In place of a block: many lines had none."""
+LINES_AT_ONCE: Final = 5000
+"""Lines that are executed before the caller has its turn again."""
 
 
 class Execution:
@@ -64,7 +68,7 @@ class Execution:
     # the next block
 
     def next_block(self) -> NcBlock | None:
-        """The next block with words, PAUSE, or None at the end of the program. Raises ProgramError."""
+        """The next block with words, PAUSE, COMPUTES, or None at the end of the program. Raises ProgramError."""
         call, line = self._call, self._line
         if line is not None:
             self._call = self._line = None
@@ -72,7 +76,11 @@ class Execution:
                 self._enter(call, line)
             elif self._modal is not None and self._modal_line is not None and self._modal_due:
                 self._enter(self._modal, self._modal_line)
+        lines = 0
         while not self.ended:
+            lines += 1
+            if lines > LINES_AT_ONCE:
+                return COMPUTES
             if self.offset < 0:
                 self._end_of_section()
                 continue
@@ -87,6 +95,7 @@ class Execution:
                 raise line.error
             if line.synchronises and self._paused != self.number:
                 self._paused = self.number
+                self.values.source = line.source
                 return PAUSE
             self._paused = -1
             self.number, self.offset = line.next_number, line.next_offset

@@ -1,0 +1,102 @@
+"""Programs that are interpreted while they run: what only the run knows, long programs, variables that stay."""
+
+from __future__ import annotations
+
+import pytest
+from machine_support import MachineBench, machine
+
+from cnc_ptp.channel import program_check
+from cnc_ptp.protocol.channel_states import ChannelStateCode as C
+
+
+def test_an_actual_position_is_that_of_the_instant_at_which_the_path_stands() -> None:
+    bench = MachineBench("G00 X10\nP1 = V.A.ACT_POS.X\nG04 X0.5\nY[V.A.ACT_POS.X]\nZ[P1 - 10]\nM30").run()
+    assert bench.errors() == []
+    x, y, z = (bench.position(axis) for axis in "xyz")
+    assert x == 10.0
+    assert y == pytest.approx(10.0, abs=0.01)  # the drive is there after half a second
+    assert -2.0 < z < -1e-3  # at the end of the motion it still lagged behind
+    actual = bench.column("x", "actual_position")
+    assert z + 10.0 in actual and y in actual
+
+
+def test_a_program_whose_blocks_are_not_known_shows_no_total_until_its_end() -> None:
+    bench = MachineBench("G00 X1\nX[V.A.ACT_POS.X + 1]\nX5\nM30").run()
+    totals = [(block.blocks_done, block.blocks_total) for block in bench.blocks["channel"] if block.path_active]
+    assert all(total == done + 1 for done, total in totals[:-1])
+    assert (bench.last("channel").blocks_done, bench.last("channel").blocks_total) == (5, 5)
+
+
+def test_a_fault_behind_what_only_the_run_knows_stops_the_program_when_it_is_reached() -> None:
+    bench = MachineBench("G00 X1\nP1 = V.A.ACT_POS.X\nY5\nX[1/0]\nZ5\nM30").run()
+    assert bench.failed
+    (text,) = bench.errors()
+    assert text.startswith("P-ERR-20396 channel channel: test.nc line 4 column 4 'X[1/0]': division by 0")
+    assert (bench.position("x"), bench.position("y"), bench.position("z")) == (1.0, 5.0, 0.0)
+
+
+def test_a_fault_that_is_known_before_refuses_the_start() -> None:
+    bench = MachineBench("G00 X1\nY5\nX[1/0]\nM30").run()
+    assert bench.refusals() == ["P-ERR-20396 test.nc line 3 column 4 'X[1/0]': division by 0"]
+    assert bench.position("x") == bench.position("y") == 0.0
+
+
+def test_a_long_computation_takes_its_cycles_and_no_more_at_once() -> None:
+    text = "P1 = V.A.ACT_POS.X\nP2 = 0\n$FOR P3 = 1, 100000, 1\nP2 = P2 + P3\n$ENDFOR\nX[P2 / 1E9]\nM30".replace(
+        "1E9", "1000000000"
+    )
+    bench = MachineBench(text).run()
+    assert bench.errors() == [] and bench.position("x") == pytest.approx(5.00005, abs=1e-9)
+    waiting = [block for block in bench.blocks["channel"] if block.path_active]
+    assert len(waiting) >= 200_000 / 5000 / 10
+
+
+@pytest.mark.interpreted
+def test_a_long_program_is_interpreted_again_while_it_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the same cycles as one of which every block is kept."""
+    text = "\n".join([*(f"G00 X{n % 7} Y{n % 5}" for n in range(40)), "M30"])
+    kept = MachineBench(text).run()
+    monkeypatch.setattr(program_check, "MOST_BLOCKS", 10)
+    again = MachineBench(text).run()
+    for unit in ("channel", "x", "y"):
+        assert again.blocks[unit] == kept.blocks[unit]
+
+
+def test_shared_variables_stay_for_the_next_program_and_others_do_not() -> None:
+    bench = MachineBench("P1 = 5 V.P.A = 6 V.S.A = 7\nG00 X1\nM30", end_when_idle=False).run(1.0)
+    assert bench.give("channel", "load", program="b.nc", text="G00 X[V.S.A]\nV.S.A = 8\nM30").accepted
+    assert bench.give("channel", "start").accepted
+    bench.run(1.0)
+    assert bench.position("x") == 7.0
+    assert bench.give("channel", "mdi", text="Y[V.S.A]").accepted
+    bench.run(1.0)
+    assert bench.position("y") == 8.0
+    for name in ("P1", "V.P.A"):
+        assert bench.give("channel", "load", program="c.nc", text=f"X[{name}]\nM30").accepted
+        assert "P-ERR-2" in bench.refused("channel", "start")
+
+
+def test_variables_of_manual_blocks_stay_for_the_next_ones_unless_they_were_refused() -> None:
+    bench = MachineBench(end_when_idle=False).run(0.1)
+    assert bench.give("channel", "mdi", text="P1 = 5 V.P.A = 2").accepted
+    bench.run(0.1)
+    assert "division by 0" in bench.refused("channel", "mdi", text="P1 = 6 V.P.A = 3\nX[1/0]")
+    assert bench.give("channel", "mdi", text="X[P1 * V.P.A]").accepted
+    bench.run(1.0)
+    assert bench.position("x") == 10.0
+
+
+def test_an_aborted_program_leaves_its_interpreter() -> None:
+    bench = MachineBench("P1 = V.A.ACT_POS.X\n$WHILE 1\nX[P1 + 1]\nX0\n$ENDWHILE\nM30", end_when_idle=False).run(1.0)
+    assert bench.last("channel").state[-1] == C.RUNNING
+    assert bench.give("channel", "reset").accepted
+    bench.run(0.5)
+    assert bench.give("channel", "mdi", text="G00 X3").accepted
+    bench.run(1.0)
+    assert bench.position("x") == 3.0 and bench.errors() == []
+
+
+def test_two_runs_of_such_a_program_are_equal() -> None:
+    text = "G00 X10\nX[V.A.ACT_POS.X * 2]\n$WHILE V.A.ACT_POS.X > 1\nX[V.A.ABS.X / 2]\n$ENDWHILE\nM30"
+    first, second = MachineBench(text, machine=machine()).run(), MachineBench(text, machine=machine()).run()
+    assert first.blocks == second.blocks and first.errors() == []
