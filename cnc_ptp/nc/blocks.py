@@ -47,8 +47,14 @@ _LABEL_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*:", re.ASCII)
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})(?![\d.])", re.ASCII)
 _LABEL_NAME = re.compile(r"\s*\[\s*([A-Z_][A-Z0-9_]*)\s*\]", re.ASCII)
 
+
+def is_plain(code: GCode) -> bool:
+    """A code whose line the fast method may read."""
+    return not (code.spindle or code.valued or code.later)
+
+
 _PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
-_PLAIN_CODES = {float(number_): code for number_, code in G_CODES.items() if not code.spindle}
+_PLAIN_CODES = {float(number_): code for number_, code in G_CODES.items() if is_plain(code)}
 _PLAIN_NAMES = {code.number: code.name for code in G_CODES.values()}
 
 
@@ -241,6 +247,7 @@ class BlockWords:
         self.spindles: list[SpindleWords] = []
         self.controls: list[SpindleFeedforward | CompensationSwitch] = []
         self.direct: float | None = None
+        self.values: dict[str, float] = {}
 
     def take(self, token: Token) -> None:
         """Adds one token."""
@@ -265,6 +272,10 @@ class BlockWords:
         code = G_CODES.get(int(value)) if value == int(value) else None
         if code is None:
             raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
+        if code.later:
+            raise faults.LATER.at(self.source, token.column, g=code.name, what=code.later)
+        if code.valued:
+            raise faults.CODE_VALUE.at(self.source, token.column, g=code.name)
         self._check_group(token, code, self.codes)
         self.codes.append(code)
 
@@ -304,7 +315,15 @@ class BlockWords:
 
     def valued(self, token: Token) -> None:
         """A code with a value: G159=2."""
-        raise faults.BAD_NUMBER.at(self.source, token.column, word=token.shown)
+        number_ = int(token.name[1:])
+        code = G_CODES.get(number_) if token.name[0] == "G" else None
+        if code is None and token.name[0] == "G":
+            raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
+        if code is None or not code.valued:
+            raise faults.CODE_NO_VALUE.at(self.source, token.column, code=token.name)
+        self._check_group(token, code, self.codes)
+        self.codes.append(code)
+        self.values[code.name] = float(token.text)
 
     def position(self, token: Token) -> None:
         """The position of M19: `S.POS=90`."""
@@ -351,6 +370,7 @@ class BlockWords:
             flow,
             functions,
             controls=tuple(self.controls),
+            values=self.values or None,
         )
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 from cnc_ptp.nc import faults, spindle_faults, spindle_links
 from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, WaitForPath
+from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
@@ -212,6 +213,12 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "ENDVAR": _end_of_variables,
     "DELETE": _delete,
     "DISABLE MODAL CYCLE": _disable_modal_cycle,
+    "ROTATION": commands.read_rotation,
+    "SCALE": commands.read_scale,
+    "CS": commands.read_system,
+    "ACS": commands.read_system,
+    "PSET": commands.read_preset,
+    "PRESET": commands.read_preset,
     "COMMENT BEGIN": _comment,
     "COMMENT END": _end_of_comment,
 }

@@ -1,6 +1,6 @@
 """Blocks -> canonical stream: modal state, calls and returns, block skip, veto of targets; check of a whole program."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import (
@@ -15,6 +15,8 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
 )
 from cnc_ptp.nc.controls import bracketed_controls
+from cnc_ptp.nc.coordinates.limits import check_limits
+from cnc_ptp.nc.coordinates.placement import place, refresh
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
@@ -48,6 +50,8 @@ def interpret(
     check_target: CheckTarget | None = None,
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
+    rotary: Collection[str] = (),
+    zero_offsets: Mapping[int, tuple[float, ...]] | None = None,
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
@@ -61,7 +65,8 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits counts. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    corrected, the smaller of both limits counts. `rotary`: axes in deg. `zero_offsets` by index (1: G54), one value for
+    each axis. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
     it, and BUSY in long computations. Otherwise such a line is the error 21438.
@@ -69,9 +74,11 @@ def interpret(
     Raises ProgramError; state and values are then undefined, so MDI continues with copies taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
-    channel = Channel(axes, index, spindle_table(spindles), centre_offset, centre_offset_ratio)
+    table, ratio = spindle_table(spindles), centre_offset_ratio
+    channel = Channel(axes, index, table, centre_offset, ratio, frozenset(rotary), dict(zero_offsets or {}))
     state = ModalState() if state is None else state
     state.position = tuple(start)
+    refresh(channel, state)
     if values is None:
         values = Values(channel, state)
     else:
@@ -113,6 +120,8 @@ def _resolve(
                 state.path = code.number
         elif code.select is not None:
             code.select(state)
+        elif code.prepare is not None:
+            code.prepare(channel, state, block, code)
         elif code.function is not None:
             control += code.function(channel, state, block, code)
             moves = moves and not code.takes_axes
@@ -125,16 +134,21 @@ def _resolve(
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None and not isinstance(motion, Dwell):
+        programmed = motion.target
+        motion = place(channel, state, block, motion)
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None
+            state.programmed = programmed
         else:
             if check_target is not None:
                 _check_move(state.position, motion, block.source, check_target)
+            if state.coordinates.limits:
+                check_limits(channel, state, block, motion)
             if state.slope:
                 motion = motion._replace(slope=state.slope)
             if state.spindle.speedless:
                 _require_speed(state, motion)
-            state.position = motion.target
+            state.position, state.programmed = motion.target, programmed
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":
         _require_speed(state, None)

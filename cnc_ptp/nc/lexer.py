@@ -225,7 +225,7 @@ class TokenReader:
         if cycle is not None:
             return self._cycle(cycle)
         match = _TOKEN.match(self.line, position)
-        if match is None:
+        if match is None or _VALUED.match(self.line, position):
             return self._computed(position)
         kind = match.lastgroup or ""
         if kind == "bracket" and FILLS.match(self.line, self.line.index("[", match.start("bracket"))):
@@ -300,7 +300,7 @@ class TokenReader:
                 continue
             name = match[1]
             if kind in ("position", "valued"):
-                name = f"{name}.POS" if kind == "position" else f"{name}{int(match[2])}"
+                name = f"{name}.POS" if kind == "position" else code_name(name, int(match[2]))
             begin = match.start(1)
             numeric = kind == "word" and _NUMBER_NEXT.match(self.line, match.end())
             if kind == "valued" or "=" in match[0] or numeric or self._opens(match.end()):

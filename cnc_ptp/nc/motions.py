@@ -33,17 +33,20 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
     """Target of all axes (G90 absolute, G91 relative), None if the block names no axis; takes F into the state."""
     target: list[float] | None = None
     axis_index = channel.axis_index
-    position = state.position
+    position = state.programmed
+    unit = state.coordinates.unit
     for word, value in block.words.items():
         index = axis_index.get(word)
         if index is not None:
             if target is None:
                 target = list(position)
+            if unit != 1.0 and word not in channel.rotary:
+                value *= unit
             target[index] = value if state.absolute else position[index] + value
         elif word == "F":
             if value < 0.0:
                 raise faults.FEED_NEGATIVE.at(block.source, block.source.column("F"), value=number(value))
-            state.feed = value / MM_PER_MIN
+            state.feed = value * unit / MM_PER_MIN
         elif word not in FUNCTION_WORDS and word not in code.words:
             raise _unused(channel, block, code, word)
     return target
@@ -87,12 +90,12 @@ def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -
     if "R" in words:
         if given:
             raise faults.CENTRE_AND_RADIUS.at(block.source, block.source.column(given[0]), word=given[0])
-        state.radius = words["R"]
+        state.radius = words["R"] * state.coordinates.unit
     if target is None and not given:
         return None
     if state.feed == 0.0:
         raise _no_feed(block, code)
-    arc = _Arc(channel, state, block, code, target or list(state.position))
+    arc = _Arc(channel, state, block, code, target or list(state.programmed))
     return arc.by_centre(given) if given else arc.by_radius()
 
 
@@ -104,7 +107,7 @@ class _Arc:
         self.plane = PLANES[state.plane]
         self.indices = self._indices()
         first, second = self.indices
-        self.start = (state.position[first], state.position[second])
+        self.start = (state.programmed[first], state.programmed[second])
         self.end = (target[first], target[second])
         self.full = arcs.distance(self.start, self.end) < arcs.RESOLUTION
 
@@ -124,7 +127,8 @@ class _Arc:
             if word not in self.plane.centre_words:
                 plane = "".join(self.plane.axes)
                 raise self._fault(faults.CENTRE_NOT_IN_PLANE, word, word=word, g=f"G{self.state.plane}", plane=plane)
-        first, second = (self.block.words.get(word, 0.0) for word in self.plane.centre_words)
+        unit = self.state.coordinates.unit
+        first, second = (self.block.words.get(word, 0.0) * unit for word in self.plane.centre_words)
         if not self.state.centre_absolute:
             first, second = first + self.start[0], second + self.start[1]
         if arcs.distance((first, second), self.start) < arcs.RESOLUTION:

@@ -1,10 +1,12 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
+from cnc_ptp.nc.coordinates.coordinates import Coordinates
+from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
 
 
@@ -15,7 +17,9 @@ class GCode(NamedTuple):
     a path function: it builds the motion of a block, and of the blocks after it if `modal`. `words` are the words that
     this motion uses besides axes and F; `own_words`: it reads all words of its block itself (dwell). `function`
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
-    `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path.
+    `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path. `prepare` changes
+    the coordinates before the motion of its block; `valued`: it takes a value (G159=2). `later`: what it stands for is
+    not built yet, so it is refused when the program is read.
     """
 
     number: int
@@ -28,6 +32,9 @@ class GCode(NamedTuple):
     function: "Callable[[Channel, ModalState, NcBlock, GCode], tuple[Function, ...]] | None" = None
     takes_axes: bool = False
     spindle: bool = False
+    prepare: "Callable[[Channel, ModalState, NcBlock, GCode], None] | None" = None
+    valued: bool = False
+    later: str = ""
 
     @property
     def name(self) -> str:
@@ -126,7 +133,7 @@ class NcBlock(NamedTuple):
 
     `words` holds the numbers by word (X, Y1, F, I, S, T ...), `direct` a number without a word (G04 5.5), `flow` what
     the block does to the order of execution (see MCode), `functions` is true if it has any M, S, T, D; `controls` holds
-    brackets with feedforward and COMP.
+    brackets with feedforward and COMP, `values` those of codes that have one (G159=2).
     """
 
     source: Source
@@ -139,6 +146,7 @@ class NcBlock(NamedTuple):
     functions: bool = False
     controls: tuple[SpindleFeedforward | CompensationSwitch, ...] = ()
     command: "HashCommand | None" = None
+    values: dict[str, float] | None = None
 
 
 class HashCommand(NamedTuple):
@@ -150,14 +158,28 @@ class HashCommand(NamedTuple):
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
+NO_TABLES: Final[Mapping[int, tuple[float, ...]]] = {}
+
+
 class Channel(NamedTuple):
-    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio)."""
+    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio).
+
+    `rotary`: axes in deg; `zero_offsets`: those of the machine by index (1: G54), one value for each axis.
+    """
 
     axes: tuple[str, ...]
     axis_index: dict[str, int]
     table: SpindleTable
     centre_offset: float
     centre_offset_ratio: float
+    rotary: frozenset[str] = frozenset()
+    zero_offsets: Mapping[int, tuple[float, ...]] = NO_TABLES
+
+    @property
+    def main(self) -> tuple[int, int, int]:
+        """Places of X, Y and Z, -1 for one that is not there."""
+        x, y, z = (self.axis_index.get(name, -1) for name in "XYZ")
+        return x, y, z
 
 
 @dataclass(slots=True)
@@ -199,7 +221,8 @@ class ModalState:
     """Modal state from one block to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
 
     `path`, `plane`: numbers of the active G codes; `radius`: last R (mm, signed, 0.0 none); `speeds`: S by spindle;
-    `slope`: #SLOPE, "" is that of P-CHAN-00071.
+    `slope`: #SLOPE, "" is that of P-CHAN-00071; `position` in machine coordinates, `programmed`: the same point as
+    programs name it, by `frame` (None: they are equal), which is what `coordinates` amount to.
     """
 
     position: tuple[float, ...] = ()
@@ -212,13 +235,17 @@ class ModalState:
     speeds: dict[str, float] = field(default_factory=dict)
     spindle: SpindleModes = field(default_factory=SpindleModes)
     slope: str = ""
+    coordinates: Coordinates = field(default_factory=Coordinates)
+    frame: Frame | None = None
+    programmed: tuple[float, ...] = ()
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
-        return replace(self, speeds=dict(self.speeds), spindle=self.spindle.copy())
+        spindle, coordinates = self.spindle.copy(), self.coordinates.copy()
+        return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates)
 
     def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed and radius of its caller; position, speeds and spindles stay as they are."""
+        """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles stay as they are."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
-        self.slope = other.slope
+        self.slope, self.coordinates = other.slope, other.coordinates

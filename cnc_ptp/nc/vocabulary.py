@@ -6,6 +6,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 from typing import Final
 
 from cnc_ptp.nc import feedforward, functions, motions, spindles
+from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
 
@@ -50,6 +51,37 @@ G_CODES: dict[int, GCode] = {
         _dimension(91, False),
         _centre(161, True),
         _centre(162, False),
+        GCode(9, "block end"),
+        GCode(20, "mirror", prepare=codes.mirror),
+        GCode(21, "mirror", prepare=codes.mirror),
+        GCode(22, "mirror", prepare=codes.mirror),
+        GCode(23, "mirror", prepare=codes.mirror),
+        GCode(33, "path", later="thread cutting"),
+        GCode(40, "tool radius"),
+        GCode(41, "tool radius", later="compensation of the tool radius"),
+        GCode(42, "tool radius", later="compensation of the tool radius"),
+        GCode(51, "diameter", later="programming of diameters"),
+        GCode(52, "diameter"),
+        *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
+        GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
+        GCode(60, "block transition"),
+        GCode(359, "block transition"),
+        GCode(360, "block transition"),
+        GCode(61, "block transition", later="contouring of corners"),
+        GCode(260, "block transition"),
+        GCode(261, "block transition", later="contouring of corners"),
+        GCode(63, "path", later="tapping"),
+        GCode(70, "units", prepare=codes.unit),
+        GCode(71, "units", prepare=codes.unit),
+        GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
+        GCode(93, "feed", later="the time of a block"),
+        GCode(94, "feed"),
+        GCode(95, "feed", later="feed per revolution"),
+        GCode(96, "cutting speed", later="constant cutting speed"),
+        GCode(97, "cutting speed"),
+        GCode(196, "cutting speed", later="constant cutting speed"),
+        GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
+        GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
         GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
         GCode(165, "centre correction"),
         GCode(167, "spindle override", spindle=True),

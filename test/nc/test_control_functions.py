@@ -77,7 +77,7 @@ def test_channels_name_their_axes_and_spindles():
 
 
 def test_functions_of_manual_blocks_leave_the_modal_state_alone():
-    state = ModalState(position=(0.0, 0.0, 0.0), path=1, feed=5.0)
+    state = ModalState(position=(0.0, 0.0, 0.0), path=1, feed=5.0, programmed=(0.0, 0.0, 0.0))
     before = state.copy()
     program = parse_program("G135 G136 X50 S[G135] X[COMP OFF FRICT]", "mdi", mdi=True)
     list(interpret(program, (0.0, 0.0, 0.0), AXES, state=state))

@@ -5,6 +5,7 @@ from canonical_text import format_block
 from nc_support import HERE, machine
 
 from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.flow import flow_faults
@@ -25,7 +26,7 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (faults, spindle_faults, expression_faults, flow_faults)
+PARTS = (faults, spindle_faults, expression_faults, flow_faults, coordinate_faults)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
@@ -73,7 +74,11 @@ def test_check_finds_the_same_error(path):
 def test_every_fault_has_a_bad_program():
     known = {fault.number for fault in FAULTS}
     shown = {int(path.read_text().split()[1].removeprefix("P-ERR-")) for path in BAD}
-    assert known == shown | {flow_faults.LOOP_LIMIT.number, expression_faults.ONLY_WHILE_RUNNING.number}
+    assert known == shown | {
+        flow_faults.LOOP_LIMIT.number,
+        expression_faults.ONLY_WHILE_RUNNING.number,
+        coordinate_faults.SCALE_ROTARY.number,
+    }
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from cnc_ptp.nc.faults import Fault
 
 # While a line is read
 OPERAND_MISSING = Fault(21400, "an expression needs a value here, not '{word}'")
+OPERAND_END = Fault(21399, "the expression ends where a value is needed")
 PARENTHESIS_OPEN = Fault(21401, "'{bracket}' is not closed in its line")
 NAME_UNKNOWN = Fault(21402, "'{word}' is no function, constant or variable{nearest}")
 ARGUMENT_COUNT = Fault(21403, "{function} takes {wanted}, not {given}")

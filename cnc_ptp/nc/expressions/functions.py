@@ -8,27 +8,13 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import number
+from cnc_ptp.nc.degrees import cosine, sine
 from cnc_ptp.nc.expressions.nodes import TRUTH
 from cnc_ptp.nc.expressions.values import Scalar
 
 NAN: Final = math.nan
 ANY: Final = 99
 """Number of arguments without a limit."""
-
-
-def sine(degrees: float) -> float:
-    """Exact at the multiples of 30° where it is 0, ±1/2, ±1."""
-    turned = math.fmod(degrees, 360.0)
-    exact = EXACT_SINES.get(turned + 360.0 if turned < 0.0 else turned)
-    return math.sin(math.radians(turned)) if exact is None else exact
-
-
-EXACT_SINES: Final = {0.0: 0.0, 30.0: 0.5, 90.0: 1.0, 150.0: 0.5, 180.0: 0.0, 210.0: -0.5, 270.0: -1.0, 330.0: -0.5}
-
-
-def cosine(degrees: float) -> float:
-    """Exact where the sine is: cos a = sin (90° - |a|)."""
-    return sine(90.0 - math.fmod(abs(degrees), 360.0))
 
 
 def tangent(degrees: float) -> float:

@@ -6,8 +6,11 @@ Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables.
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
+from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.parameters.list_units import LARGEST_POSITION
 
 Units = Sequence[Scalar]
 """The axis, spindle or index of a name, in its order."""
@@ -47,12 +50,100 @@ def spindle_of(values: Values, unit: Scalar, column: int) -> str:
     raise values.fault(faults.UNIT_UNKNOWN, column, kind="spindle", unit=shown, known=known)
 
 
+def length(values: Values, axis: int, value: float) -> float:
+    """As programs name it: in inch with G70, unless the axis is rotary."""
+    return value if values.channel.axes[axis] in values.channel.rotary else value / values.state.coordinates.unit
+
+
+def programmed(values: Values, units: Units, column: int) -> Scalar:
+    axis = axis_of(values, units[0], column)
+    return length(values, axis, values.state.programmed[axis])
+
+
+def reference_offset(values: Values, units: Units, column: int) -> Scalar:
+    axis, added = axis_of(values, units[0], column), values.state.coordinates.own.added
+    return length(values, axis, added[axis]) if added else 0.0
+
+
+def table_index(values: Values, unit: Scalar, column: int) -> int:
+    if isinstance(unit, str) or unit != int(unit) or not 0 <= unit <= LAST_OFFSET:
+        shown = unit if isinstance(unit, str) else f"{unit:g}"
+        known = f"0 to {LAST_OFFSET}"
+        raise values.fault(faults.UNIT_UNKNOWN, column, kind="zero offset", unit=shown, known=known)
+    return int(unit)
+
+
+def zero_offset(values: Values, units: Units, column: int) -> Scalar:
+    """V.G.NP[j].V.X."""
+    index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
+    return length(values, axis, offset_values(values.channel, values.state, index)[axis])
+
+
+def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
+    """It acts when the offset is selected next, as the vendor has it."""
+    index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
+    table = list(offset_values(values.channel, values.state, index))
+    table[axis] = in_mm(values, axis, value, column)
+    coordinates = values.state.coordinates
+    coordinates.tables = {**(coordinates.tables or {}), index: tuple(table)}
+
+
+def in_mm(values: Values, axis: int, value: Scalar, column: int) -> float:
+    if isinstance(value, str):
+        raise values.fault(faults.NUMBER_EXPECTED, column, what="the value of an offset")
+    return value if values.channel.axes[axis] in values.channel.rotary else value * values.state.coordinates.unit
+
+
+def active_offset(values: Values, units: Units, column: int) -> Scalar:
+    """V.G.NP_AKT.V.X."""
+    axis, zero = axis_of(values, units[0], column), values.state.coordinates.own.zero
+    return length(values, axis, zero[axis]) if zero else 0.0
+
+
+def set_active_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
+    """Lost when a zero offset is selected next."""
+    axis, own = axis_of(values, units[0], column), values.state.coordinates.own
+    zero = list(own.zero or (0.0,) * len(values.channel.axes))
+    zero[axis] = in_mm(values, axis, value, column)
+    values.state.coordinates.own = own._replace(zero=tuple(zero))
+    refresh(values.channel, values.state)
+
+
+def software_limit(values: Values, unit: Scalar, column: int, place: int) -> float:
+    axis = axis_of(values, unit, column)
+    limit = (values.state.coordinates.limits or {}).get(axis, (-LARGEST_POSITION, LARGEST_POSITION))[place]
+    return length(values, axis, max(-LARGEST_POSITION, min(LARGEST_POSITION, limit)))
+
+
+def systems(values: Values, command: str) -> float:
+    return float(sum(system.command == command for system in values.state.coordinates.systems))
+
+
+def feed(values: Values) -> float:
+    return values.state.feed * 60.0 / values.state.coordinates.unit
+
+
+def zero_index(values: Values) -> float:
+    return float(values.state.coordinates.zero_index)
+
+
+def turned(values: Values) -> bool:
+    return values.state.coordinates.turn is not None
+
+
+def turn_angle(values: Values) -> float:
+    turn = values.state.coordinates.turn
+    return 0.0 if turn is None else turn[0]
+
+
 def absolute(values: Values, units: Units, column: int) -> Scalar:
-    return values.state.position[axis_of(values, units[0], column)]
+    axis = axis_of(values, units[0], column)
+    return length(values, axis, values.state.position[axis])
 
 
 def actual(values: Values, units: Units, column: int) -> Scalar:
-    return values.actual[axis_of(values, units[0], column)]
+    axis = axis_of(values, units[0], column)
+    return length(values, axis, values.actual[axis])
 
 
 def spindle_speed(values: Values, units: Units, column: int) -> Scalar:
@@ -74,9 +165,32 @@ def argument_given(values: Values, units: Units, column: int) -> Scalar:
 
 READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     "V.A.ABS": ((("*",), Reading("end point of the previous block, with all offsets", absolute)),),
+    "V.A.PROG": ((("*",), Reading("end point of the previous block as it was programmed", programmed)),),
+    "V.A.BZP": ((("*",), Reading("offset of G92", reference_offset)),),
+    "V.A.-SWE": ((("*",), Reading("software limit of G98", lambda values, u, c: software_limit(values, u[0], c, 0))),),
+    "V.A.+SWE": ((("*",), Reading("software limit of G99", lambda values, u, c: software_limit(values, u[0], c, 1))),),
+    "V.G.NP": ((("*", "V", "*"), Reading("zero offset of an index and an axis", zero_offset, set_zero_offset)),),
+    "V.G.NP_AKT": (
+        (("V", "*"), Reading("active zero offset of an axis", active_offset, set_active_offset)),
+        (("IDX",), Reading("index of the active zero offset", lambda values, u, c: zero_index(values))),
+    ),
+    "V.G.ROT_ACTIVE": (((), Reading("TRUE with #ROTATION ON", lambda values, u, c: float(turned(values)))),),
+    "V.G.ROT_ANGLE": (((), Reading("angle of #ROTATION, deg", lambda values, u, c: turn_angle(values))),),
+    "V.G.CS_ACTIVE": (((), Reading("TRUE with #CS ON", lambda values, u, c: min(1.0, systems(values, "#CS")))),),
+    "V.G.CS_COUNT": (((), Reading("number of #CS that are on", lambda values, u, c: systems(values, "#CS"))),),
+    "V.G.ACS_ACTIVE": (((), Reading("TRUE with #ACS ON", lambda values, u, c: min(1.0, systems(values, "#ACS")))),),
+    "V.G.ACS_COUNT": (((), Reading("number of #ACS that are on", lambda values, u, c: systems(values, "#ACS"))),),
     "V.A.ACT_POS": ((("*",), Reading("actual position at the instant", actual, synchronises=True)),),
     "V.G.BLOCK_NR": (((), Reading("last N word", lambda values, u, c: float(values.block_number))),),
-    "V.G.FEEDRATE": (((), Reading("last F word, mm/min", lambda values, u, c: values.state.feed * 60.0)),),
+    "V.G.FEEDRATE": (
+        (
+            (),
+            Reading(
+                "last F word, mm/min (inch/min)",
+                lambda values, u, c: values.state.feed * 60.0 / values.state.coordinates.unit,
+            ),
+        ),
+    ),
     "V.G.PROG_ABS": (((), Reading("TRUE with G90", lambda values, u, c: 1.0 if values.state.absolute else 0.0)),),
     "V.G.PROG_LEVEL": (((), Reading("1 in the main program", lambda values, u, c: float(values.level))),),
     "V.G.R": (((), Reading("last radius of an arc", lambda values, u, c: values.state.radius)),),
@@ -89,9 +203,14 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
 
 def forms(name: str) -> str:
     """How a readable name is written, with a placeholder for its axis, spindle or index."""
-    placeholder = {"V.A": ".<axis>", "V.S": ".<spindle>"}.get(name[:3], "[<index>]")
-    written = [[placeholder if part == "*" else f".{part}" for part in pattern] for pattern, _ in READABLE[name]]
-    return " or ".join(name + "".join(parts) for parts in written)
+    first = {"V.A": ".<axis>", "V.S": ".<spindle>"}.get(name[:3], "[<index>]")
+    written = []
+    for pattern, _ in READABLE[name]:
+        index = first if pattern[:1] == ("*",) else ""
+        written.append(
+            name + index + "".join(".<axis>" if part == "*" else f".{part}" for part in pattern[bool(index) :])
+        )
+    return " or ".join(written)
 
 
 def all_names() -> list[str]:

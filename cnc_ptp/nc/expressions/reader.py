@@ -124,7 +124,12 @@ class ExpressionReader:
             raise self.fault(faults.PARENTHESIS_OPEN, opened, bracket=self.line[opened])
         if self.line[self.at] == "=":
             raise self.equals(self.at)
-        raise self.fault(faults.OPERAND_MISSING, self.at, word=self.word())
+        raise self.operand_missing(self.at)
+
+    def operand_missing(self, at: int) -> ProgramError:
+        """The error of something that is no value, or of nothing."""
+        word = self.word()
+        return self.fault(faults.OPERAND_MISSING, at, word=word) if word else self.fault(faults.OPERAND_END, at)
 
     def equals(self, at: int) -> ProgramError:
         """The error of a single '=' where values are compared."""
@@ -207,7 +212,7 @@ class ExpressionReader:
             return target
         name = _NAME.match(self.line, begin)
         if name is None:
-            raise self.fault(faults.OPERAND_MISSING, begin, word=self.word())
+            raise self.operand_missing(begin)
         self.at = name.end()
         if name[0] in CONSTANTS:
             return Constant(begin + 1, CONSTANTS[name[0]])
@@ -285,7 +290,7 @@ class ExpressionReader:
         else:
             asked = self.target()
         if not isinstance(asked, (SelfDefined, Argument, Parameter)):
-            raise self.fault(faults.OPERAND_MISSING, inside, word=self.word())
+            raise self.operand_missing(inside)
         self.close(opened)
         return Exists(begin + 1, asked)
 

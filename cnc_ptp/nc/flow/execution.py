@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
@@ -206,6 +207,7 @@ class Execution:
         self.values.level = len(self.frames) + 1
         if frame.modal is not None:
             self.values.state.restore(frame.modal)
+            refresh(self.values.channel, self.values.state)
 
     @property
     def calls(self) -> list[str]:

@@ -1,0 +1,1 @@
+"""From programmed to machine coordinates: units, rotation, scaling, mirror, offsets, coordinate systems."""

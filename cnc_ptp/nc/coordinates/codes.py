@@ -1,0 +1,103 @@
+"""G codes of coordinates: units, zero offsets, G92, mirror, software limits."""
+
+from cnc_ptp.nc import faults as nc_faults
+from cnc_ptp.nc.canonical import Function, number
+from cnc_ptp.nc.coordinates import coordinate_faults as faults
+from cnc_ptp.nc.coordinates.coordinates import INCH, Offsets
+from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+
+LAST_OFFSET = 96
+"""P-ZERO: np_grp[0] to np_grp[96]."""
+FIRST_OFFSET_CODE = 53
+
+
+def unit(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G70: lengths and feeds in inch, G71: in mm."""
+    state.coordinates.unit = INCH if code.number == 70 else 1.0
+
+
+def zero_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G53: none; G54 to G59: the first to the sixth; G159=n: any of them."""
+    index: float = code.number - FIRST_OFFSET_CODE
+    if code.number == 159:
+        index = (block.values or {})[code.name]
+        if index != int(index) or not 0 <= index <= LAST_OFFSET:
+            column = block.source.column(code.name)
+            raise faults.OFFSET_INDEX.at(block.source, column, index=number(index), limit=LAST_OFFSET)
+    select_offset(channel, state, int(index))
+
+
+def select_offset(channel: Channel, state: ModalState, index: int) -> None:
+    """An offset without values has none: it is 0 for all axes."""
+    coordinates = state.coordinates
+    coordinates.zero_index = index
+    zero = offset_values(channel, state, index) if index else ()
+    coordinates.own = coordinates.own._replace(zero=zero)
+    refresh(channel, state)
+
+
+def offset_values(channel: Channel, state: ModalState, index: int) -> Offsets:
+    """Values of a zero offset, one for each axis: as the program has changed it, else as its file has it."""
+    changed = (state.coordinates.tables or {}).get(index)
+    none = (0.0,) * len(channel.axes)
+    return changed if changed is not None else channel.zero_offsets.get(index, none)
+
+
+def reference_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
+    """G92 X10: an offset beside the zero offset; G90 sets it, G91 adds to it."""
+    own = state.coordinates.own
+    values = list(own.added or (0.0,) * len(channel.axes))
+    for index, value in axis_values(channel, state, block, code):
+        values[index] = value if state.absolute else values[index] + value
+    state.coordinates.own = own._replace(added=tuple(values))
+    refresh(channel, state)
+    return ()
+
+
+def axis_values(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> list[tuple[int, float]]:
+    """Places and values (mm, deg) of the axes of a block. Raises ProgramError without an axis, and for other words."""
+    found: list[tuple[int, float]] = []
+    for word, value in block.words.items():
+        index = channel.axis_index.get(word)
+        if index is None:
+            column = block.source.column(word)
+            if word in "FSTDIJKR":
+                raise nc_faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
+            raise nc_faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
+        found.append((index, value if word in channel.rotary else value * state.coordinates.unit))
+    if not found:
+        raise faults.AXES_MISSING.at(block.source, block.source.column(code.name), word=code.name)
+    return found
+
+
+def mirror(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G20: off; G21: the first axis of the plane changes its sign, G22: the second, G23: both."""
+    if code.number == 20:
+        state.coordinates.mirror = ()
+    else:
+        first, second = plane_axes(channel, state, block.source, code.name)
+        signs = [1.0] * len(channel.axes)
+        signs[first] = -1.0 if code.number in (21, 23) else 1.0
+        signs[second] = -1.0 if code.number in (22, 23) else 1.0
+        state.coordinates.mirror = tuple(signs)
+    refresh(channel, state)
+
+
+def software_limit(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
+    """G98 X-10: negative software limits in machine coordinates, G99: positive ones; within those of the lists."""
+    limits = dict(state.coordinates.limits or {})
+    for index, value in axis_values(channel, state, block, code):
+        low, high = limits.get(index, (float("-inf"), float("inf")))
+        if code.number == 98:
+            low = value if state.absolute or low == float("-inf") else low + value
+        else:
+            high = value if state.absolute or high == float("inf") else high + value
+        if low >= high:
+            name = channel.axes[index]
+            values = {"axis": name, "unit": "deg" if name in channel.rotary else "mm"}
+            column = block.source.column(name)
+            raise faults.LIMIT_ORDER.at(block.source, column, low=number(low), high=number(high), **values)
+        limits[index] = (low, high)
+    state.coordinates.limits = limits
+    return ()

@@ -1,0 +1,326 @@
+"""Commands of coordinates: #ROTATION, #SCALE, #CS, #ACS, #PSET, #PRESET."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+from cnc_ptp.nc.canonical import number
+from cnc_ptp.nc.coordinates import coordinate_faults as faults
+from cnc_ptp.nc.coordinates.coordinates import NO_OFFSETS, System, system_of
+from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
+from cnc_ptp.nc.expressions.nodes import Constant, Node
+from cnc_ptp.nc.expressions.reader import ExpressionReader
+from cnc_ptp.nc.faults import AXIS_UNKNOWN
+from cnc_ptp.nc.flow.lines import Line, Statement
+from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+
+if TYPE_CHECKING:
+    from cnc_ptp.nc.flow.execution import Execution
+
+DEEPEST: Final = 10
+"""Coordinate systems within each other."""
+LAST_SYSTEM: Final = 5
+AXES: Final = "ABCQUVWXYZ"
+ROTATION: Final = "#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5] or #ROTATION OFF"
+SCALE: Final = "#SCALE X2 Y2, #SCALE ON, #SCALE ON X2 Y2 or #SCALE OFF"
+PSET: Final = "#PSET X10 Y20"
+PRESET: Final = "#PRESET or #PRESET X Y"
+
+
+def system_syntax(command: str) -> str:
+    values = "[10, 0, 0, 0, 0, 90]"
+    return f"{command} DEF [1] {values}, {command} ON {values}, {command} ON [1], {command} OFF or {command} OFF ALL"
+
+
+class Words:
+    """The words of a command as they are read."""
+
+    def __init__(self, line: Line, text: str, end: int, command: str, syntax: str) -> None:
+        self.reader = ExpressionReader(text, line.source, end)
+        self.line, self.command, self.syntax = line, command, syntax
+
+    @property
+    def at_end(self) -> bool:
+        return self.reader.skip_blanks() >= len(self.reader.line.rstrip())
+
+    def takes(self, *keywords: str) -> str:
+        """The keyword that is next; empty if none of them is."""
+        begin = self.reader.skip_blanks()
+        word = self.reader.word()
+        if word not in keywords:
+            return ""
+        self.reader.at = begin + len(word)
+        return word
+
+    def require_end(self) -> None:
+        if not self.at_end:
+            raise self.stray()
+
+    def stray(self) -> Exception:
+        at = self.reader.skip_blanks()
+        word = self.reader.line[at:].split()[0]
+        return faults.COMMAND_SYNTAX.at(self.line.source, at + 1, word=word, command=self.command, syntax=self.syntax)
+
+    def missing(self, what: str) -> Exception:
+        column = min(self.reader.skip_blanks(), len(self.reader.line)) + 1
+        return faults.COMMAND_VALUE.at(self.line.source, column, command=self.command, missing=what, syntax=self.syntax)
+
+    def options(self, *names: str) -> dict[str, Node]:
+        """`[ANGLE=30 CENTER1=10]`, empty without a bracket."""
+        found: dict[str, Node] = {}
+        opened = self.reader.skip_blanks()
+        if not self.reader.follows("["):
+            return found
+        while not self.reader.follows("]"):
+            self.reader.follows(",")
+            if self.at_end:
+                self.reader.close(opened)
+            name = self.takes(*[each for each in names if each not in found])
+            if not name or not self.reader.follows("="):
+                raise self.stray()
+            found[name] = self.reader.expression()
+        return found
+
+    def items(self) -> list[Node | None]:
+        """`[10, , 5]`: values with gaps; the bracket is next."""
+        found: list[Node | None] = []
+        opened = self.reader.skip_blanks()
+        self.reader.follows("[")
+        while True:
+            at = self.reader.skip_blanks()
+            gap = self.reader.line[at : at + 1] in (",", "]")
+            found.append(None if gap else self.reader.expression())
+            if not self.reader.follows(","):
+                break
+        self.reader.close(opened)
+        return found
+
+    def axes(self, *, alone: bool = False) -> list[tuple[str, Node, int]]:
+        """`X10 Y=P1`: axis, value, column; with `alone` the value may be missing."""
+        found: list[tuple[str, Node, int]] = []
+        while not self.at_end:
+            begin = self.reader.skip_blanks()
+            character = self.reader.line[begin]
+            if character not in AXES:
+                raise self.stray()
+            self.reader.at = begin + 1
+            self.reader.follows("=")
+            missing = self.at_end or self.reader.line[self.reader.at] in AXES
+            value = Constant(begin + 1, 0.0) if alone and missing else self.reader.expression()
+            found.append((character, value, begin + 1))
+        return found
+
+
+class CoordinateCommand(Statement):
+    """Changes the coordinates when it is executed."""
+
+    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+        values = execution.values
+        self.change(values.channel, values.state, execution, line)
+        refresh(values.channel, values.state)
+        return None
+
+    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+        raise NotImplementedError
+
+
+class Rotation(CoordinateCommand):
+    """#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5]: the contour turns in its plane; not programmed values stay."""
+
+    def __init__(self, column: int, options: dict[str, Node] | None) -> None:
+        super().__init__(column)
+        self.options = options
+
+    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+        coordinates = state.coordinates
+        if self.options is None:
+            coordinates.turn = None
+            return
+        given = {name: node.value(execution.values) for name, node in self.options.items()}
+        plane = plane_axes(channel, state, line.source, "#ROTATION")
+        scale = coordinates.unit
+        coordinates.plane = plane
+        coordinates.turn = (
+            given.get("ANGLE", 0.0), given.get("CENTER1", 0.0) * scale, given.get("CENTER2", 0.0) * scale
+        )  # fmt: skip
+
+
+class Scale(CoordinateCommand):
+    """#SCALE: factors of axes, switched on and off."""
+
+    def __init__(self, column: int, factors: Sequence[tuple[str, Node, int]], switch: str) -> None:
+        super().__init__(column)
+        self.factors, self.switch = factors, switch
+
+    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+        coordinates = state.coordinates
+        if self.factors and coordinates.scaled:
+            raise faults.SCALE_ACTIVE.at(line.source, self.column)
+        scale = list(coordinates.scale or (1.0,) * len(channel.axes))
+        for axis, node, column in self.factors:
+            index = axis_index(channel, line, axis, column)
+            if axis in channel.rotary:
+                raise faults.SCALE_ROTARY.at(line.source, column, axis=axis)
+            value = node.value(execution.values)
+            if value <= 0.0:
+                raise faults.SCALE_FACTOR.at(line.source, column, value=number(value), axis=axis)
+            scale[index] = value
+        coordinates.scale = tuple(scale)
+        if self.switch:
+            coordinates.scaled = self.switch == "ON"
+
+
+def axis_index(channel: Channel, line: Line, axis: str, column: int) -> int:
+    index = channel.axis_index.get(axis)
+    if index is None:
+        raise AXIS_UNKNOWN.at(line.source, column, word=axis, known=", ".join(channel.axes))
+    return index
+
+
+class SystemCommand(CoordinateCommand):
+    """#CS, #ACS: DEF stores a coordinate system, ON switches it on within those that are on, OFF switches one off."""
+
+    def __init__(
+        self, column: int, command: str, action: str, identity: Node | None, values: Sequence[Node | None]
+    ) -> None:
+        super().__init__(column)
+        self.command, self.action, self.identity, self.values = command, action, identity, values
+
+    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+        coordinates = state.coordinates
+        if self.action.startswith("OFF"):
+            self._off(state, line)
+            return
+        key = (self.command, self._number(state, execution, line))
+        defined = dict(coordinates.defined or {})
+        if self.values:
+            given = [0.0 if node is None else node.value(execution.values) for node in self.values]
+            lengths = [value * coordinates.unit for value in given[:3]]
+            defined[key] = (*lengths, *given[3:], *[0.0] * (6 - len(given)))
+            coordinates.defined = defined
+            coordinates.last_defined = {**(coordinates.last_defined or {}), self.command: key[1]}
+        if key not in defined:
+            raise faults.SYSTEM_UNKNOWN.at(line.source, self.column, command=self.command, number=key[1])
+        if self.action == "ON":
+            self._on(channel, state, line, defined[key])
+
+    def _number(self, state: ModalState, execution: Execution, line: Line) -> int:
+        if self.identity is None:
+            return 1 if self.values else (state.coordinates.last_defined or {}).get(self.command, 1)
+        value = self.identity.value(execution.values)
+        if value != int(value) or not 1 <= value <= LAST_SYSTEM:
+            shown = number(value)
+            raise faults.SYSTEM_NUMBER.at(line.source, self.identity.column, number=shown, limit=LAST_SYSTEM)
+        return int(value)
+
+    def _on(self, channel: Channel, state: ModalState, line: Line, values: tuple[float, ...]) -> None:
+        coordinates = state.coordinates
+        depth = len(coordinates.systems) + 1
+        if depth > DEEPEST:
+            raise faults.SYSTEM_DEPTH.at(line.source, self.column, command=self.command, depth=depth, limit=DEEPEST)
+        system = system_of(self.command, values, coordinates.own)
+        for place, index in enumerate(channel.main):
+            mixed = [system.rotation[place][other] for other in range(3) if other != place]
+            if index < 0 and (any(mixed) or system.shift[place]):
+                raise faults.MAIN_AXIS_MISSING.at(line.source, self.column, word=self.command, axis="XYZ"[place])
+        if self.command == "#ACS":
+            coordinates.systems = self._below_workpiece(coordinates.systems, system)
+        else:
+            coordinates.systems = (*coordinates.systems, system)
+            coordinates.own = NO_OFFSETS
+
+    def _below_workpiece(self, systems: tuple[System, ...], system: System) -> tuple[System, ...]:
+        """The fixture lies below all workpiece systems and has no offsets of its own."""
+        fixtures = [each for each in systems if each.command == "#ACS"]
+        others = [each for each in systems if each.command != "#ACS"]
+        return (*fixtures, system._replace(before=NO_OFFSETS), *others)
+
+    def _off(self, state: ModalState, line: Line) -> None:
+        coordinates = state.coordinates
+        of_kind = [place for place, system in enumerate(coordinates.systems) if system.command == self.command]
+        if not of_kind:
+            raise faults.SYSTEM_NONE.at(line.source, self.column, command=self.command)
+        for place in reversed(of_kind if self.action == "OFF ALL" else of_kind[-1:]):
+            if self.command == "#CS":
+                coordinates.own = coordinates.systems[place].before
+            coordinates.systems = (*coordinates.systems[:place], *coordinates.systems[place + 1 :])
+
+
+class Preset(CoordinateCommand):
+    """#PSET X10: the present position of axes gets this value; #PRESET takes that back, for the named axes or all."""
+
+    def __init__(self, column: int, axes: Sequence[tuple[str, Node, int]], *, on: bool) -> None:
+        super().__init__(column)
+        self.axes, self.on = axes, on
+
+    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+        coordinates = state.coordinates
+        command = "#PSET" if self.on else "#PRESET"
+        if coordinates.mirror or coordinates.turn is not None or coordinates.scaled:
+            what = "the contour is mirrored, rotated or scaled"
+            raise faults.MIRROR_PRESET.at(line.source, self.column, command=command, what=what)
+        preset = list(coordinates.own.preset or (0.0,) * len(channel.axes))
+        for axis, node, column in self.axes:
+            index = axis_index(channel, line, axis, column)
+            if not self.on:
+                preset[index] = 0.0
+                continue
+            value = node.value(execution.values) * (1.0 if axis in channel.rotary else coordinates.unit)
+            preset[index] += state.programmed[index] - value
+        if not self.on and not self.axes:
+            preset = [0.0] * len(preset)
+        coordinates.own = coordinates.own._replace(preset=tuple(preset))
+
+
+def read_rotation(line: Line, text: str, end: int, column: int) -> None:
+    words = Words(line, text, end, "#ROTATION", ROTATION)
+    switch = words.takes("ON", "OFF")
+    if not switch:
+        raise words.stray() if not words.at_end else words.missing("ON or OFF")
+    options = words.options("ANGLE", "CENTER1", "CENTER2") if switch == "ON" else None
+    words.require_end()
+    line.statement = Rotation(column, options)
+
+
+def read_scale(line: Line, text: str, end: int, column: int) -> None:
+    words = Words(line, text, end, "#SCALE", SCALE)
+    switch = words.takes("ON", "OFF")
+    factors = [] if switch == "OFF" else words.axes()
+    words.require_end()
+    if not switch and not factors:
+        raise words.missing("ON, OFF or factors")
+    line.statement = Scale(column, factors, switch)
+
+
+def read_system(line: Line, text: str, end: int, column: int) -> None:
+    command = "#ACS" if "ACS" in text[column - 1 : end] else "#CS"
+    words = Words(line, text, end, command, system_syntax(command))
+    action = words.takes("DEF", "ON", "OFF")
+    if not action:
+        raise words.stray() if not words.at_end else words.missing("DEF, ON or OFF")
+    identity: Node | None = None
+    values: list[Node | None] = []
+    if action == "OFF":
+        action = f"OFF {words.takes('ALL')}".rstrip()
+    while not words.at_end and text.startswith("[", words.reader.at):
+        found = words.items()
+        if len(found) == 1 and not values and identity is None:
+            identity = found[0]
+            continue
+        if values or len(found) > 6:
+            raise faults.SYSTEM_VALUES.at(line.source, words.reader.at, command=command)
+        values = found
+    words.require_end()
+    if action == "DEF" and not values:
+        raise words.missing("values")
+    line.statement = SystemCommand(column, command, action, identity, values)
+
+
+def read_preset(line: Line, text: str, end: int, column: int) -> None:
+    on = "PSET" in text[column - 1 : end]
+    words = Words(line, text, end, "#PSET" if on else "#PRESET", PSET if on else PRESET)
+    axes = words.axes(alone=not on)
+    if on and not axes:
+        raise words.missing("an axis")
+    line.statement = Preset(column, axes, on=on)

@@ -1,0 +1,53 @@
+"""Motions from programmed to machine coordinates."""
+
+from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
+from cnc_ptp.nc.coordinates import coordinate_faults as faults
+from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+
+
+def place(
+    channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove | CircularMove
+) -> LinearMove | CircularMove:
+    """The motion in machine coordinates. Raises ProgramError for an arc that is none there."""
+    frame = state.frame
+    if frame is None:
+        return motion
+    target = frame.target(motion.target, state.programmed, state.position)
+    if isinstance(motion, LinearMove):
+        return motion._replace(target=target)
+    first, second = motion.plane
+    scales = frame.in_plane(first, second)
+    code = next((code.name for code in block.codes if code.motion is not None), "")
+    column = block.source.column(code) if code else 1
+    if scales is None:
+        plane = f"G{state.plane}"
+        raise faults.TILTED_ARC.at(block.source, column, plane=plane)
+    if abs(scales[0] - scales[1]) > 1e-12:
+        names = {"first": channel.axes[first], "second": channel.axes[second]}
+        raise faults.SCALED_ARC.at(block.source, column, **names)
+    centre = list(motion.target)
+    centre[first], centre[second] = motion.center
+    placed = frame.to_machine(centre)
+    sweep = -motion.sweep if scales[2] else motion.sweep
+    return motion._replace(
+        target=target, center=(placed[first], placed[second]), radius=motion.radius * scales[0], sweep=sweep
+    )
+
+
+def refresh(channel: Channel, state: ModalState) -> None:
+    """After a change of the coordinates: the path stays where it is, its programmed position is another one."""
+    state.frame = state.coordinates.frame(len(channel.axes), channel.main)
+    state.programmed = state.position if state.frame is None else state.frame.to_programmed(state.position)
+
+
+def plane_axes(channel: Channel, state: ModalState, source: Source, word: str) -> tuple[int, int]:
+    """Places of the two axes of the active plane. Raises ProgramError 21603 if one is missing."""
+    names = PLANE_AXES[state.plane]
+    first, second = (channel.axis_index.get(name) for name in names)
+    if first is None or second is None:
+        values = {"word": word, "needed": " and ".join(names), "plane": f"G{state.plane}"}
+        raise faults.ROTATION_PLANE.at(source, source.column(word), known=", ".join(channel.axes), **values)
+    return first, second
+
+
+PLANE_AXES = {17: ("X", "Y"), 18: ("Z", "X"), 19: ("Y", "Z")}

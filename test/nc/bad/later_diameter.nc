@@ -1,0 +1,3 @@
+; P-ERR-21050 later_diameter.nc line 2 column 1 'G51': G51 is not available yet: programming of diameters
+G51
+M30

@@ -1,0 +1,3 @@
+; P-ERR-21615 rotation_without_switch.nc line 2 column 11 '#ROTATION [ANGLE=30]': '[ANGLE=30]' is not available in #ROTATION; its syntax is #ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5] or #ROTATION OFF
+#ROTATION [ANGLE=30]
+M30

@@ -1,0 +1,3 @@
+; P-ERR-21616 system_definition_without_values.nc line 2 column 8 '#CS DEF': #CS without values; its syntax is #CS DEF [1] [10, 0, 0, 0, 0, 90], #CS ON [10, 0, 0, 0, 0, 90], #CS ON [1], #CS OFF or #CS OFF ALL
+#CS DEF
+M30
