@@ -20,7 +20,7 @@ from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Pairs
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
@@ -100,23 +100,28 @@ class ChannelUnit(Unit):
         self._error_id = 0
         self._apply_override()
 
-    def prepare(self, program: str, text: str) -> None:
+    def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
-        parsed = parse_program(text, program)
+        parsed = parse_program(text, program, files=files)
         state = self._check.state(self._feedback, self._links, self._shared)
         before = state.copy()
         known = self._check.known_blocks(parsed, self._motion.position, state)
-        self._prepared = PreparedProgram(text, parsed, self._motion.position, before, state, known)
+        self._prepared = PreparedProgram(text, dict(files), parsed, self._motion.position, before, state, known)
 
     # commands
 
-    def do_load(self, cycle: int, *, program: str, text: str | None = None) -> None:
+    def do_load(
+        self, cycle: int, *, program: str, text: str | None = None, files: Mapping[str, str] = NO_FILES
+    ) -> None:
         """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'", program=program)
-        prepared = self._prepared is not None and self._prepared.text == text and self._prepared.program.file == program
-        self._program = self._prepared.program if prepared and self._prepared else parse_program(text, program)
+        prepared = self._prepared
+        if prepared is not None and (prepared.text, prepared.files, prepared.program.file) == (text, files, program):
+            self._program = prepared.program
+        else:
+            self._program = parse_program(text, program, files=files)
         self._sequence.source = NO_SOURCE
 
     def do_start(self, cycle: int) -> None:

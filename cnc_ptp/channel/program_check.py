@@ -24,7 +24,7 @@ from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import check, interpret
-from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
 from cnc_ptp.parameters import (
     AxisParameters,
@@ -78,6 +78,7 @@ class PreparedProgram(NamedTuple):
     """A program that was interpreted ahead of its load, from the position `start` and the state `before`."""
 
     text: str
+    files: dict[str, str]
     program: Program
     start: tuple[float, ...]
     before: ProgramState
@@ -112,7 +113,7 @@ class ProgramCheck:
             raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
         return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
 
-    def errors(self, text: str, file: str) -> list[ProgramError]:
+    def errors(self, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> list[ProgramError]:
         """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
         return check(
             text,
@@ -123,11 +124,12 @@ class ProgramCheck:
             check_target=self.check_target,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
-        ) or self._function_errors(text, file)
+            files=files,
+        ) or self._function_errors(text, file, files)
 
-    def _function_errors(self, text: str, file: str) -> list[ProgramError]:
+    def _function_errors(self, text: str, file: str, files: Mapping[str, str]) -> list[ProgramError]:
         try:
-            self.blocks(parse_program(text, file), self.start)
+            self.blocks(parse_program(text, file, files=files), self.start)
         except ProgramError as error:
             return [error]
         return []

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from cnc_ptp.channel.program_check import ProgramCheck
-from cnc_ptp.errors import CncError
+from cnc_ptp.machine.program_files import called_programs, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
-from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.protocol.blocks import Command
-
-UNREADABLE = 26110
 
 
 def read_entries(
@@ -26,10 +26,10 @@ def read_entries(
     """
     entries: list[Entry] = []
     if program is not None:
-        text = read_file("NC program", program)
-        check_program(machine, text, program)
+        text, files = read_program(program)
+        check_program(machine, text, program, files)
         channel = next(iter(machine.channels))
-        entries.append(Entry(0.0, Command(channel, "load", {"program": program, "text": text})))
+        entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files))))
         entries.append(Entry(0.0, Command(channel, "start", {})))
     if scenario is not None:
         folder = Path(scenario).parent
@@ -41,23 +41,26 @@ def read_entries(
             raise ScenarioError(BAD_SCENARIO, f"scenario {scenario} has no entries", "nothing was started")
         for entry in entries[2 if program is not None else 0 :]:
             if entry.command.command == "load":
-                entry.command.arguments["program"] = str(folder / entry.command.arguments["program"])
+                arguments = entry.command.arguments
+                arguments["program"] = str(folder / arguments["program"])
+                add_files(arguments)
     return sorted(entries, key=lambda entry: entry.at)
 
 
-def check_program(machine: MachineParameters, text: str, file: str) -> None:
+def check_program(machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> None:
     """Interprets a program for the first channel as started from the start positions. Raises ProgramError, 26112."""
     check = ProgramCheck.of_first_channel(machine, file)
-    check.blocks(parse_program(text, file), check.start)
+    check.blocks(parse_program(text, file, files=files), check.start)
 
 
-def read_file(what: str, path: str) -> str:
-    """Text of a file. Raises CncError 26110."""
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
-    except UnicodeDecodeError:
-        raise CncError(
-            UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text", "nothing was started"
-        ) from None
+def load_arguments(program: str, text: str, files: Mapping[str, str]) -> dict[str, Any]:
+    """Arguments of the command `load`."""
+    return {"program": program, "text": text, **({"files": dict(files)} if files else {})}
+
+
+def add_files(arguments: dict[str, Any]) -> None:
+    """To a load with the text of its program the texts of those that it calls. Raises CncError 26110, 26122."""
+    if "text" in arguments and "files" not in arguments:
+        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent)])
+        if files:
+            arguments["files"] = files

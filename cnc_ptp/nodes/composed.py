@@ -11,7 +11,8 @@ from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.run_entries import read_entries, read_file
+from cnc_ptp.machine.program_files import read_file
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
 from cnc_ptp.nodes.axis import AxisNode

@@ -10,7 +10,8 @@ import click
 from cnc_ptp import action, msg
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_program
+from cnc_ptp.machine.run_entries import load_arguments
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import convert, node_command_line
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic
@@ -32,7 +33,7 @@ class ChannelNode(UnitNode):
         node_command_line.require_unit(machine, name, ["channel"])
         unit = build_unit(machine, name)
         if program is not None and isinstance(unit, ChannelUnit):
-            unit.prepare(program, read_file("NC program", program))
+            unit.prepare(program, *read_program(program))
         super().__init__(machine, unit, **options)
 
     def setup(self) -> None:
@@ -59,10 +60,10 @@ class ChannelNode(UnitNode):
         if command.command == "load" and "text" not in command.arguments:
             path = command.arguments["program"]
             try:
-                text = read_file("NC program", path)
+                text, files = read_program(path)
             except CncError as error:
                 return self.refuse(command, error.number, error.reason)
-            command = Command(self.unit.name, "load", {"program": path, "text": text})
+            command = Command(self.unit.name, "load", load_arguments(path, text, files))
         return super().command(command)
 
     def complete_commands(self, block: PlcBlock) -> None:
@@ -70,7 +71,8 @@ class ChannelNode(UnitNode):
         for command in block.commands:
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
-                    command.arguments["text"] = read_file("NC program", command.arguments["program"])
+                    path = command.arguments["program"]
+                    command.arguments.update(load_arguments(path, *read_program(path)))
 
     def run_ended(self) -> None:
         self._program_job.end()

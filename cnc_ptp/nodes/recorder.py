@@ -19,7 +19,7 @@ from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher

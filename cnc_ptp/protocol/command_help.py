@@ -159,6 +159,7 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("spindle", "orient", "direction"): ArgumentText("", "of rotation", "the rules of M19"),
     ("spindle", "couple", "master"): ArgumentText("", "name of the master spindle"),
     ("channel", "load", "text"): ArgumentText("", "the program itself", "`program` is read"),
+    ("channel", "load", "files"): ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
 }
 """Kind of unit, command, argument."""
 

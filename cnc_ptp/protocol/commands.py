@@ -18,7 +18,7 @@ UNKNOWN_COMMAND = 22002
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """One argument of a command. `kind`: number, integer, switch, text, rows or source; `choices` limits a text.
+    """One argument of a command. `kind`: number, integer, switch, text, rows, files or source; `choices` limits a text.
 
     `positive`: only a number above 0 makes sense, so that 0 in a service means that it is left out.
     `lenient`: the command is carried out with any value and reports the one it uses.
@@ -149,7 +149,7 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "upstream_lost": SOURCE,
     },
     "channel": {
-        "load": {"program": TEXT, "text": OPTIONAL_TEXT},
+        "load": {"program": TEXT, "text": OPTIONAL_TEXT, "files": Argument("files", required=False)},
         "start": {},
         "feed_hold": {"enabled": SWITCH},
         "set_override": {"percent": NUMBER},
@@ -185,7 +185,15 @@ FILE_CONTENTS = frozenset({"table", "setpoints"})
 FORMER_NAMES = {"on": "enabled"}
 """Arguments with a former name: scenarios and recordings may still use it. (`on:` is true to YAML 1.1.)"""
 
-TYPES = {"number": (int, float), "integer": int, "switch": bool, "text": str, "rows": list, "source": str}
+TYPES = {
+    "number": (int, float),
+    "integer": int,
+    "switch": bool,
+    "text": str,
+    "rows": list,
+    "files": dict,
+    "source": str,
+}
 
 
 def current_names(kind: str, command: str, arguments: Mapping[str, Any]) -> dict[str, Any]:

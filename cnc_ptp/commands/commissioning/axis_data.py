@@ -12,7 +12,7 @@ from cnc_ptp.commissioning.excitation import PAUSE, Motion, Room
 from cnc_ptp.commissioning.faults import NOT_RECORDED, UNKNOWN_AXIS
 from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, load_machine
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.view.control_view import MONITORING_TYPES

@@ -16,7 +16,7 @@ from cnc_ptp.commissioning.curve_fit import CurveFit, curve_fault, fit_curve
 from cnc_ptp.commissioning.curve_points import SPEED_UNITS, parse_point, parse_point_file
 from cnc_ptp.commissioning.faults import BAD_OUTPUT, BAD_SPINDLE_NAME
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.parameters.read.machine_sections import name_trouble
 
 YAML = ("yaml", "yml")

@@ -9,7 +9,7 @@ from rich.console import Console
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.notes import Note
@@ -23,13 +23,13 @@ def check(program: str, machine: str | None) -> int:
 
     Without a machine, axes X Y Z and spindle S are taken.
     """
-    text = read_file("NC program", program)
+    text, files = read_program(program)
     if machine is None:
-        errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE)
+        errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, files=files)
     else:
         parameters = read_machine(machine)
         print_notices(parameters)
-        errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program)
+        errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program, files)
     for error in errors:
         print_error(error)
     if not errors:

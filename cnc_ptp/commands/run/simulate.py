@@ -18,7 +18,8 @@ from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.run_entries import read_entries, read_file
+from cnc_ptp.machine.program_files import read_file
+from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.plc.plc_unit import error_of

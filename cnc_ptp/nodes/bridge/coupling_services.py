@@ -12,7 +12,7 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.run_entries import read_file
+from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.nodes.topics import COMMAND, COUPLING_SERVICES
 from cnc_ptp.nodes.unit.requests import RUN_OVER, given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode

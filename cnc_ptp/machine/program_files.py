@@ -1,0 +1,84 @@
+"""NC programs and those that they call, read before they are loaded: the kernel itself opens no file.
+
+A called program is looked for in the folder of its caller's main program, then among those that ship with cnc_ptp.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from cnc_ptp.errors import CncError
+
+UNREADABLE = 26110
+TOO_MANY_FILES = 26122
+MOST_FILES = 200
+"""Programs that one program may call, directly or through others."""
+SHIPPED = Path(__file__).parent.parent / "nc" / "cycles"
+"""Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
+
+_NAME = r'[^\s"\],#$\[();]+'
+_CALLED = re.compile(rf'(?<![A-Z0-9_])L\s+(?:CYCLE\s*\[.*?NAME\s*=\s*"?({_NAME})|({_NAME}))', re.ASCII | re.IGNORECASE)
+
+
+def read_file(what: str, path: str) -> str:
+    """Text of a file. Raises CncError 26110."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
+    except UnicodeDecodeError:
+        raise CncError(
+            UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text", "nothing was started"
+        ) from None
+
+
+def read_program(path: str) -> tuple[str, dict[str, str]]:
+    """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122."""
+    text = read_file("NC program", path)
+    return text, called_programs(text, [str(Path(path).parent)])
+
+
+def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
+    """By name the texts of the programs that a text calls, directly or through others.
+
+    A name that is in no folder is left out: the parser names its line.
+    """
+    found: dict[str, str] = {}
+    names = called_names(text)
+    while names:
+        name = names.pop()
+        if name.upper() in {known.upper() for known in found}:
+            continue
+        path = find(name, folders)
+        if path is None:
+            continue
+        if len(found) == MOST_FILES:
+            reason = f"the program calls more than {MOST_FILES} other programs"
+            raise CncError(TOO_MANY_FILES, reason, "nothing was started")
+        found[path.name] = read_file("NC program", str(path))
+        names += called_names(found[path.name])
+    return found
+
+
+def called_names(text: str) -> list[str]:
+    """Names behind L and in L CYCLE, also those in comments; without folders."""
+    names = [match[1] or match[2] for match in _CALLED.finditer(text)]
+    return [name for name in names if "/" not in name and "\\" not in name and not name.startswith(".")]
+
+
+def find(name: str, folders: Sequence[str]) -> Path | None:
+    """The file of this name in the first folder that has it; upper and lower case are not distinguished."""
+    for folder in (*map(Path, folders), SHIPPED):
+        exact = folder / name
+        if exact.is_file():
+            return exact
+        try:
+            entries = sorted(folder.iterdir())
+        except OSError:
+            continue
+        for entry in entries:
+            if entry.name.upper() == name.upper() and entry.is_file():
+                return entry
+    return None
