@@ -170,7 +170,16 @@ setup(
     packages=find_packages(
         include=[PACKAGE, f"{PACKAGE}.*"], exclude=[f"{PACKAGE}.{part}" for part in ("msg", "srv", "action")]
     ),
-    package_data={PACKAGE: ["parameters/declare/*.yaml", "nodes/*.xml", "plots/*.js", "py.typed"]},
+    package_data={
+        PACKAGE: [
+            "parameters/declare/*.yaml",
+            "commands/language/*.yaml",
+            "nc/cycles/*.nc",
+            "nodes/*.xml",
+            "plots/*.js",
+            "py.typed",
+        ]
+    },
     ext_modules=[Extension(f"{PACKAGE}._interfaces", sources=[])],
     cmdclass={"build_ext": BuildInterfacesAndKernel},
     distclass=BinaryDistribution,

@@ -186,6 +186,15 @@ def watch_command(machine: str | None, **options: Any) -> None:
     sys.exit(watch(**options))
 
 
+@main.command("explain")
+@click.argument("words", nargs=-1, required=True, metavar="WORD...")
+def explain_command(**options: Any) -> None:
+    """Say what a word of the NC language means: G61, M03, $FOR, #CS, SIN, V.A.ABS."""
+    from cnc_ptp.commands.language.explain import explain
+
+    sys.exit(explain(**options))
+
+
 @main.command("check")
 @click.argument("program", type=click.Path(dir_okay=False))
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")

@@ -35,6 +35,7 @@ TYPES = {
     "switch": "switch",
     "text": "text",
     "rows": "list",
+    "files": "texts by name",
     "source": "name",
 }
 HIDDEN = OF_PLC | OF_CHANNELS

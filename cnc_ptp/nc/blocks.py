@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from cnc_ptp.nc import faults, feedforward, friction_switch
 from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
@@ -17,7 +17,7 @@ from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.calls import call_of
-from cnc_ptp.nc.flow.lines import Call, Line, Statement
+from cnc_ptp.nc.flow.lines import Call, Flow, Line, Statement
 from cnc_ptp.nc.flow.statement_reader import read_statement
 from cnc_ptp.nc.flow.statements import Assignment, Assignments
 from cnc_ptp.nc.hash_commands import hash_line
@@ -33,9 +33,6 @@ from cnc_ptp.nc.vocabulary import (
     VALUE_WORDS,
     m_code,
 )
-
-if TYPE_CHECKING:
-    from cnc_ptp.nc.flow.execution import Execution
 
 MAX_BLOCK_NUMBER = 999_999_999
 LONGEST_BLOCK: Final = 4000
@@ -199,7 +196,7 @@ class ComputedWords(Statement):
         super().__init__(column)
         self.tokens = tokens_
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
         words = BlockWords(line.source)
         for token in self.tokens:

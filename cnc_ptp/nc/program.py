@@ -245,7 +245,7 @@ class ModalState:
         return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates)
 
     def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles stay as they are."""
+        """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles are kept."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
         self.slope, self.coordinates = other.slope, other.coordinates

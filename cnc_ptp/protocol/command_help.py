@@ -90,6 +90,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
 
 ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "enabled": ArgumentText("", "on or off"),
+    "files": ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
     "forward": ArgumentText("", "positive direction released"),
     "backward": ArgumentText("", "negative direction released"),
     "target": ArgumentText("mm, °", "position of the axis"),
@@ -159,7 +160,6 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("spindle", "orient", "direction"): ArgumentText("", "of rotation", "the rules of M19"),
     ("spindle", "couple", "master"): ArgumentText("", "name of the master spindle"),
     ("channel", "load", "text"): ArgumentText("", "the program itself", "`program` is read"),
-    ("channel", "load", "files"): ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
 }
 """Kind of unit, command, argument."""
 

@@ -17,7 +17,7 @@ HERE = Path(__file__).parents[1] / "nc"
 
 def run(text: str, axes: tuple[str, ...] = AXES, **options: Any) -> list[CanonicalBlock]:
     """All canonical blocks of a program text from position 0; the text needs no M30."""
-    program = parse_program(text, "test.nc", mdi=True)
+    program = parse_program(text, "test.nc", mdi=True, files=options.pop("files", {}))
     start = options.pop("start", (0.0,) * len(axes))
     spindles = options.pop("spindles", SPINDLES)
     return list(interpret(program, start, axes, spindles, **options))

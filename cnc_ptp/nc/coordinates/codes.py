@@ -19,7 +19,7 @@ def unit(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> No
 
 def zero_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """G53: none; G54 to G59: the first to the sixth; G159=n: any of them."""
-    index: float = code.number - FIRST_OFFSET_CODE
+    index = float(code.number - FIRST_OFFSET_CODE)
     if code.number == 159:
         index = (block.values or {})[code.name]
         if index != int(index) or not 0 <= index <= LAST_OFFSET:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
@@ -12,11 +12,8 @@ from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
 from cnc_ptp.nc.expressions.nodes import Constant, Node
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.faults import AXIS_UNKNOWN
-from cnc_ptp.nc.flow.lines import Line, Statement
+from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock
-
-if TYPE_CHECKING:
-    from cnc_ptp.nc.flow.execution import Execution
 
 DEEPEST: Final = 10
 """Coordinate systems within each other."""
@@ -115,13 +112,13 @@ class Words:
 class CoordinateCommand(Statement):
     """Changes the coordinates when it is executed."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
         self.change(values.channel, values.state, execution, line)
         refresh(values.channel, values.state)
         return None
 
-    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         raise NotImplementedError
 
 
@@ -132,7 +129,7 @@ class Rotation(CoordinateCommand):
         super().__init__(column)
         self.options = options
 
-    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         if self.options is None:
             coordinates.turn = None
@@ -153,7 +150,7 @@ class Scale(CoordinateCommand):
         super().__init__(column)
         self.factors, self.switch = factors, switch
 
-    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         if self.factors and coordinates.scaled:
             raise faults.SCALE_ACTIVE.at(line.source, self.column)
@@ -187,7 +184,7 @@ class SystemCommand(CoordinateCommand):
         super().__init__(column)
         self.command, self.action, self.identity, self.values = command, action, identity, values
 
-    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         if self.action.startswith("OFF"):
             self._off(state, line)
@@ -205,7 +202,7 @@ class SystemCommand(CoordinateCommand):
         if self.action == "ON":
             self._on(channel, state, line, defined[key])
 
-    def _number(self, state: ModalState, execution: Execution, line: Line) -> int:
+    def _number(self, state: ModalState, execution: Flow, line: Line) -> int:
         if self.identity is None:
             return 1 if self.values else (state.coordinates.last_defined or {}).get(self.command, 1)
         value = self.identity.value(execution.values)
@@ -254,7 +251,7 @@ class Preset(CoordinateCommand):
         super().__init__(column)
         self.axes, self.on = axes, on
 
-    def change(self, channel: Channel, state: ModalState, execution: Execution, line: Line) -> None:
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         command = "#PSET" if self.on else "#PRESET"
         if coordinates.mirror or coordinates.turn is not None or coordinates.scaled:

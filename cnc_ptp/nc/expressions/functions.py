@@ -90,7 +90,7 @@ class Function(NamedTuple):
 
 
 NUMERIC: Final[dict[str, Function]] = {
-    "ABS": Function(1, 1, lambda a: abs(a[0]), "ABS[x]: amount"),
+    "ABS": Function(1, 1, lambda a: abs(a[0]), "ABS[x]: absolute value"),
     "SIGN": Function(1, 1, lambda a: sign(a[0]), "SIGN[x]: -1, 0 or 1"),
     "SQR": Function(1, 1, lambda a: a[0] * a[0], "SQR[x]: square"),
     "SQRT": Function(1, 1, lambda a: square_root(a[0]), "SQRT[x]: square root, x >= 0"),

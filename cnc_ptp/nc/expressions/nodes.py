@@ -35,7 +35,7 @@ class Node:
         return abs(self.value(values)) >= TRUTH
 
     def text(self, values: Values) -> str:
-        """As it stands in a message."""
+        """As a message has it."""
         return plain(self.scalar(values))
 
     def integer(self, values: Values, what: str) -> int:
@@ -234,7 +234,7 @@ class Add(Binary):
 
 
 def plain(value: Scalar) -> str:
-    """As it stands in a message."""
+    """As a message has it."""
     return value if isinstance(value, str) else number(value)
 
 

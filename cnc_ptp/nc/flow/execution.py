@@ -10,7 +10,7 @@ from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
-from cnc_ptp.nc.flow.lines import Call, Line
+from cnc_ptp.nc.flow.lines import Call, Flow, Line
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place, Structure
 from cnc_ptp.nc.program import ModalState, NcBlock
@@ -47,11 +47,12 @@ LINES_AT_ONCE: Final = 5000
 """Lines that are executed before the caller has its turn again."""
 
 
-class Execution:
+class Execution(Flow):
     """The line that is next and how it came there."""
 
     def __init__(self, program: Program, values: Values, *, limits: Limits, block_skip: int = 0) -> None:
-        self.program, self.values, self.limits, self.block_skip = program, values, limits, block_skip
+        super().__init__(values)
+        self.program, self.limits, self.block_skip = program, limits, block_skip
         self.number, self.offset = program.main.line, program.main.offset
         self.frames: list[Frame] = []
         self.ended = False
@@ -137,20 +138,16 @@ class Execution:
     # jumps
 
     def structure(self, line: Line) -> Structure:
-        """The structure that the statement of a line opens, divides, closes or leaves."""
         return self.program.structure_of[line.number]
 
     def go(self, place: Place) -> None:
-        """Forward."""
         self.number, self.offset = place
 
     def back(self, place: Place, line: Line) -> None:
-        """To the next turn of a loop."""
         self._count_repeat(line)
         self.number, self.offset = place
 
     def jump(self, line: Line) -> None:
-        """To the label of the line's $GOTO."""
         place = self.program.targets[line.number]
         if isinstance(place, ProgramError):
             raise place
@@ -188,12 +185,10 @@ class Execution:
         values.level = len(self.frames) + 1
 
     def end_modal_call(self) -> None:
-        """#DISABLE MODAL CYCLE, and the end of the subroutine that has ordered it."""
         self._modal = self._modal_line = None
         self._modal_depth = 0
 
     def leave(self, line: Line) -> None:
-        """M17, M29, $RETURN: back to the caller."""
         if not self.frames:
             raise faults.RETURN_IN_MAIN.at(line.source, 1, word=line.source.text.strip())
         self._return()

@@ -2,16 +2,43 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions.nodes import Node
+from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow.structures import Control
+from cnc_ptp.nc.flow.structures import Control, Place, Structure
 from cnc_ptp.nc.program import NcBlock
 
-if TYPE_CHECKING:
-    from cnc_ptp.nc.flow.execution import Execution
+
+class Flow:
+    """What statements may do with the order of execution; `values` are those of the program."""
+
+    def __init__(self, values: Values) -> None:
+        self.values = values
+
+    def structure(self, line: Line) -> Structure:
+        """The structure that the statement of a line opens, divides, closes or leaves."""
+        raise NotImplementedError
+
+    def go(self, place: Place) -> None:
+        """Forward."""
+        raise NotImplementedError
+
+    def back(self, place: Place, line: Line) -> None:
+        """To the next turn of a loop."""
+        raise NotImplementedError
+
+    def jump(self, line: Line) -> None:
+        """To the label of the line's $GOTO."""
+        raise NotImplementedError
+
+    def leave(self, line: Line) -> None:
+        """M17, M29, $RETURN: back to the caller."""
+        raise NotImplementedError
+
+    def end_modal_call(self) -> None:
+        """#DISABLE MODAL CYCLE, and the end of the subroutine that has ordered it."""
+        raise NotImplementedError
 
 
 class Statement:
@@ -20,7 +47,7 @@ class Statement:
     def __init__(self, column: int) -> None:
         self.column = column
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         """Executes it; a block that it returns is executed as if its words had been written with numbers."""
         raise NotImplementedError
 

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.nodes import Node, Parameter
 from cnc_ptp.nc.expressions.reader import Assignable
 from cnc_ptp.nc.expressions.values import Scalar, Values
 from cnc_ptp.nc.flow import flow_faults as faults
-from cnc_ptp.nc.flow.lines import Line, Statement
+from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import NcBlock
-
-if TYPE_CHECKING:
-    from cnc_ptp.nc.flow.execution import Execution
 
 EQUAL: Final = 0.001
 """Two numbers of $SWITCH and $CASE are equal if they differ by less, as the vendor has it."""
@@ -28,7 +25,7 @@ class Assignment(Statement):
         self.target, self.value = target, value
         self.parameter = target.index if isinstance(target, Parameter) and not value.may_be_text else -1
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         self.assign(execution.values)
         return None
 
@@ -46,7 +43,7 @@ class Assignments(Statement):
         super().__init__(column)
         self.parts = parts
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         for part in self.parts:
             part.assign(execution.values)
         return None
@@ -55,7 +52,7 @@ class Assignments(Statement):
 class If(Statement):
     """$IF: jumps behind the first of its branches whose condition holds, or behind $ENDIF."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         structure = execution.structure(line)
         for branch in structure.branches:
             if branch.condition is None or branch.condition.holds(execution.values):
@@ -72,7 +69,7 @@ class ShortIf(Statement):
         super().__init__(column)
         self.condition = condition
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         if self.condition.holds(execution.values):
             execution.jump(line)
         return None
@@ -85,7 +82,7 @@ class Switch(Statement):
         super().__init__(column)
         self.value, self.assignment = value, assignment
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         if self.assignment is not None:
             self.assignment.assign(execution.values)
         structure = execution.structure(line)
@@ -110,7 +107,7 @@ def same(a: Scalar, b: Scalar) -> bool:
 class EndOfBranch(Statement):
     """$ELSE, $ELSEIF reached from above, $BREAK: execution continues behind the structure."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         execution.go(execution.structure(line).after)
         return None
 
@@ -118,7 +115,7 @@ class EndOfBranch(Statement):
 class Mark(Statement):
     """$ENDIF, $ENDSWITCH, $CASE, $DEFAULT, $DO, $REPEAT: a place alone."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         return None
 
 
@@ -127,14 +124,14 @@ class While(Statement):
         super().__init__(column)
         self.condition = condition
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         if not self.condition.holds(execution.values):
             execution.go(execution.structure(line).after)
         return None
 
 
 class EndWhile(Statement):
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         execution.back(execution.structure(line).begin, line)
         return None
 
@@ -147,7 +144,7 @@ class For(Statement):
         self.counter, self.parameter = counter, counter.index if isinstance(counter, Parameter) else -1
         self.start, self.end, self.step = values
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
         start = self.start.value(values)
         self.counter.assign(values, start)
@@ -173,7 +170,7 @@ class For(Statement):
 
 
 class EndFor(Statement):
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         structure = execution.structure(line)
         statement = structure.statement
         if isinstance(statement, For) and statement.next_turn(execution.values):
@@ -188,7 +185,7 @@ class EndDo(Statement):
         super().__init__(column)
         self.condition, self.until = condition, until
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         if self.condition.holds(execution.values) != self.until:
             execution.back(execution.structure(line).body, line)
         return None
@@ -197,7 +194,7 @@ class EndDo(Statement):
 class Continue(Statement):
     """$CONTINUE: the last line of the loop is next."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         execution.go(execution.structure(line).end)
         return None
 
@@ -209,7 +206,7 @@ class Goto(Statement):
         super().__init__(column)
         self.words, self.block = words, block
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         block = self.block if self.words is None else self.words.run(execution, line)
         execution.jump(line)
         return block
@@ -218,7 +215,7 @@ class Goto(Statement):
 class Return(Statement):
     """$RETURN: ends the subroutine."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         execution.leave(line)
         return None
 
@@ -275,7 +272,7 @@ class Declarations(Statement):
         super().__init__(column)
         self.lines: list[tuple[Line, Declaration]] = []
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
         for declared, declaration in self.lines:
             values.source = declared.source
@@ -286,7 +283,7 @@ class Declarations(Statement):
 class EndOfModalCall(Statement):
     """#DISABLE MODAL CYCLE."""
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         execution.end_modal_call()
         return None
 
@@ -298,7 +295,7 @@ class Delete(Statement):
         super().__init__(column)
         self.names = names
 
-    def run(self, execution: Execution, line: Line) -> NcBlock | None:
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
         for name, column in self.names:
             execution.values.delete(name, column)
         return None

@@ -1,0 +1,27 @@
+"""`cnc_ptp explain G61`: what a word of the NC language means."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from cnc_ptp.commands.language.words import Entry, find
+
+
+def explain(words: Sequence[str]) -> int:
+    """Prints syntax, meaning, group and an example of each word. Raises CncError 26123."""
+    found = [entry for word in words for entry in find(word)]
+    print("\n\n".join("\n".join(lines(entry)) for entry in found))
+    return 0
+
+
+def lines(entry: Entry) -> Iterator[str]:
+    """The text about one word."""
+    yield f"{entry.name} ({entry.kind})"
+    yield f"  syntax:   {entry.explanation.syntax}"
+    yield f"  meaning:  {entry.explanation.meaning}"
+    if entry.group:
+        yield f"  group:    {entry.group}, {'modal' if entry.modal else 'for its block'}"
+    if entry.explanation.example:
+        yield f"  example:  {entry.explanation.example}"
+    if entry.later:
+        yield "  not available yet: a program with it is refused when it is read"

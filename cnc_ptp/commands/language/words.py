@@ -1,0 +1,102 @@
+"""All words of the NC language with their explanations, from the tables of the language."""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cnc_ptp import yaml_text
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import code_name
+from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
+from cnc_ptp.nc.expressions.readable import READABLE, forms
+from cnc_ptp.nc.vocabulary import G_CODES
+
+UNKNOWN_WORD = 26123
+
+
+class Explanation(NamedTuple):
+    """A row of explanations.yaml; `meaning`: one sentence or a few."""
+
+    syntax: str
+    meaning: str
+    example: str = ""
+
+
+class Entry(NamedTuple):
+    """One word: its explanation, the modal group of a code, what is not built yet."""
+
+    name: str
+    kind: str
+    explanation: Explanation
+    group: str = ""
+    modal: bool = True
+    later: str = ""
+
+
+def explanations() -> dict[str, dict[Any, Explanation]]:
+    """The texts of explanations.yaml by kind and word."""
+    sections = yaml_text.load(Path(__file__).with_name("explanations.yaml").read_text(encoding="utf-8"))
+    return {kind: {word: Explanation(*row) for word, row in rows.items()} for kind, rows in sections.items()}
+
+
+def entries() -> list[Entry]:
+    """All words in the order of the reference."""
+    texts = explanations()
+    found = [g_entry(number, texts["G function"][number]) for number in sorted(G_CODES)]
+    found += [Entry(code_name("M", number), "M function", text) for number, text in texts["M function"].items()]
+    for kind in ("word", "control statement"):
+        found += [Entry(name, kind, text) for name, text in texts[kind].items()]
+    found += [Entry(f"#{name}", "command", text) for name, text in texts["command"].items()]
+    found += [Entry(name, "function", function_text(NUMERIC[name].text)) for name in NUMERIC]
+    found += [Entry(name, "function", function_text(TEXTUAL[name].text)) for name in TEXTUAL]
+    found += [Entry(name, "constant", Explanation(name, f"{value:.6g}")) for name, value in CONSTANTS.items()]
+    return found + [readable_entry(name) for name in READABLE]
+
+
+def readable_entry(name: str) -> Entry:
+    rows = [reading for _, reading in READABLE[name]]
+    meaning = "; ".join(reading.text for reading in rows)
+    if any(reading.write for reading in rows):
+        meaning += "; can be assigned"
+    if any(reading.synchronises for reading in rows):
+        meaning += "; the path stands when it is read"
+    return Entry(name, "readable state", Explanation(forms(name), meaning))
+
+
+def g_entry(number: int, text: Explanation) -> Entry:
+    code = G_CODES[number]
+    modal = code.modal and not (code.function is not None or code.spindle or number in BLOCKWISE)
+    return Entry(code.name, "G function", text, code.group, modal, code.later)
+
+
+BLOCKWISE = (9, 60, 61)
+"""Codes without a handler that count for their block alone."""
+
+
+def function_text(text: str) -> Explanation:
+    syntax, _, meaning = text.partition(": ")
+    return Explanation(syntax, meaning)
+
+
+def find(word: str) -> list[Entry]:
+    """The entries of a word as somebody may type it: g1, G01, $if, #cs, sin. Raises CncError 26123."""
+    wanted = normal(word)
+    known = {normal(entry.name): entry for entry in entries()}
+    if wanted in known:
+        return [known[wanted]]
+    found = [entry for name, entry in known.items() if name.lstrip("#$") == wanted.lstrip("#$")]
+    if found:
+        return found
+    close = get_close_matches(wanted, list(known), n=3, cutoff=0.5)
+    nearest = f"; did you mean {', '.join(known[name].name for name in close)}?" if close else ""
+    raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{nearest}")
+
+
+def normal(word: str) -> str:
+    """Upper case, codes without leading zeros."""
+    text = " ".join(word.upper().split())
+    code = re.fullmatch(r"([GM])0*(\d+)(=.*)?", text)
+    return f"{code[1]}{code[2]}" if code else text

@@ -1,0 +1,90 @@
+"""docs/nc_language.md and `cnc_ptp explain`: every word has its text, every example is a program."""
+
+import pytest
+from nc_support import HERE, run
+
+from cnc_ptp.commands.language.explain import explain
+from cnc_ptp.commands.language.reference import reference_markdown
+from cnc_ptp.commands.language.words import entries, explanations, find
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.statement_reader import KEYWORDS
+from cnc_ptp.nc.flow.structures import CLOSING
+from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
+from cnc_ptp.nc.vocabulary import G_CODES, M_CODES, VALUE_WORDS
+
+DOCS = HERE.parents[1] / "docs"
+TEXTS = explanations()
+
+
+def test_document_is_up_to_date():
+    assert (DOCS / "nc_language.md").read_text(encoding="utf-8") == reference_markdown()
+
+
+def test_every_word_has_a_text_and_no_text_is_left_over():
+    assert set(TEXTS["G function"]) == set(G_CODES)
+    assert set(TEXTS["M function"]) == set(M_CODES)
+    assert set(VALUE_WORDS) <= set(TEXTS["word"])
+    ends = {"ENDVAR", "COMMENT END"}
+    assert set(TEXTS["command"]) == (set(COMMANDS) | set(STATEMENTS)) - ends
+    divided = " ".join(row.syntax for row in TEXTS["control statement"].values())
+    assert all(keyword in divided for keyword in KEYWORDS)
+
+
+BEFORE = {"$FOR": "$ENDFOR", "$IF": "$ENDIF", "$WHILE": "$ENDWHILE", "$SWITCH": "$ENDSWITCH"}
+PLACES = {"V.P.F[2][3] = [1, 2, 3]": "#VAR\n{}\n#ENDVAR", "$GOTO [END]": "{}\n[END] X5"}
+FILES = {"drill.nc": "M29", "pocket.nc": "M29"}
+
+
+@pytest.mark.parametrize(
+    "entry", [entry for entry in entries() if entry.explanation.example], ids=lambda entry: entry.name
+)
+def test_every_example_is_a_program(entry):
+    example = entry.explanation.example
+    text = PLACES.get(example, "{}").format(example)
+    if entry.name in CLOSING:
+        text += f"\n{CLOSING[entry.name]}"
+    if entry.name == "%":
+        text = f"{text}\nM29\n%MAIN"
+    if "LL POCKET" in text:
+        text = f"%L POCKET\nM29\n%MAIN\n{text}"
+    before = "" if "%" in text else "P1 = 9 P2 = 2\nF500\n"
+    run(f"{before}{text}\nM30", files=FILES)
+
+
+@pytest.mark.parametrize("number", [number for number, code in G_CODES.items() if code.later])
+def test_what_comes_later_is_refused_and_explained(number, capsys):
+    with pytest.raises(ProgramError, match=f"G{number} is not available yet"):
+        run(f"G{number}")
+    explain([f"G{number}"])
+    assert "not available yet: a program with it is refused when it is read" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [("g1", "G01"), ("G001", "G01"), ("m3", "M03"), ("G159=3", "G159"), ("for", "$FOR"), ("#cs", "#CS"), ("cs", "#CS"),
+     ("flush  wait", "#FLUSH WAIT"), ("atan2", "ATAN2"), ("v.a.abs", "V.A.ABS"), ("l cycle", "L CYCLE"), ("pi", "PI")],
+)  # fmt: skip
+def test_words_are_found_as_people_type_them(typed, name):
+    assert [entry.name for entry in find(typed)] == [name]
+
+
+def test_an_explanation(capsys):
+    explain(["G54", "V.G.NP"])
+    assert capsys.readouterr().out == (
+        "G54 (G function)\n"
+        "  syntax:   G54\n"
+        "  meaning:  Zero offset 1; it acts with the next absolute word of each axis.\n"
+        "  group:    zero offset, modal\n"
+        "  example:  G54 G00 X0\n"
+        "\n"
+        "V.G.NP (readable state)\n"
+        "  syntax:   V.G.NP[<index>].V.<axis>\n"
+        "  meaning:  zero offset of an index and an axis; can be assigned\n"
+    )
+
+
+def test_an_unknown_word():
+    with pytest.raises(CncError) as refused:
+        find("SINUS")
+    assert str(refused.value) == "P-ERR-26123 'SINUS' is no word of the NC language; did you mean SIN, SIGN, ASIN?"
