@@ -27,6 +27,7 @@ from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
+from cnc_ptp.protocol.notes import PROGRAM_MESSAGE
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
 
 NO_PROGRAM = 22003
@@ -286,6 +287,9 @@ class ChannelUnit(Unit):
         return goes_on
 
     def _warn(self, cycle: int) -> None:
+        messages, self._sequence.messages = self._sequence.messages, []
+        for text in messages:
+            self.event(cycle, Severity.INFO, PROGRAM_MESSAGE, text, self._sequence.source.line)
         notes, self._sequence.notes = self._sequence.notes, []
         for number, note in notes:
             self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", self._sequence.source.line)

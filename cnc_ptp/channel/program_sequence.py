@@ -22,7 +22,17 @@ from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
-from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Source
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import (
+    BUSY,
+    CanonicalBlock,
+    CircularMove,
+    ExplicitSynchronisation,
+    LinearMove,
+    Message,
+    OrderedError,
+    Source,
+)
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 
@@ -32,6 +42,7 @@ NO_SOURCE = Source("", 0, 0, "")
 NO_MEASURING_EVENT = 22017
 COMMANDED_BY_OTHERS = 22022
 COUPLING_ENDED = 22025
+ORDERED_ERROR = 22029
 
 
 class Phase(Enum):
@@ -86,6 +97,8 @@ class ProgramSequence:
         self._feedback: Mapping[str, CycleBlock] = {}
         self.notes: list[tuple[int, str]] = []
         """Warnings for the channel to publish: number and text."""
+        self.messages: list[str] = []
+        """Messages of the program for the channel to publish."""
 
     # from outside
 
@@ -281,9 +294,20 @@ class ProgramSequence:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
         block = self._block
         assert block is not None
+        self._tell(block)
         self._queue(self._functions.of_block(block, Moment.BEFORE))
         self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.functions)
         self._wait(Phase.WAIT_BEFORE, *moments_before(block))
+
+    def _tell(self, block: CanonicalBlock) -> None:
+        """Messages of the block. Raises CncError 22029 for an error that the program orders."""
+        for function in block.functions:
+            if isinstance(function, Message):
+                self.messages.append(function.text)
+            elif isinstance(function, OrderedError):
+                if function.severe:
+                    raise CncError(ORDERED_ERROR, function.text)
+                self.notes.append((ORDERED_ERROR, function.text))
 
     def _start_motion(self) -> None:
         motion = self._block.motion if self._block else None

@@ -56,6 +56,6 @@ def print_faults(
         console_of_errors.print(f"error: {text}", style="red", markup=False)
     for note in notes:
         if not (stopped and note.idle_stop):
-            console.print(str(note), style="yellow", markup=False)
+            console.print(str(note), style="yellow" if note.message_at is None else "", markup=False)
     if refused:
         console.print(f"{refused} {'command was' if refused == 1 else 'commands were'} refused", style="yellow")

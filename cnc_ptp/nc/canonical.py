@@ -136,6 +136,20 @@ class WaitForPath(NamedTuple):
     """#FLUSH WAIT; also before a line that reads what only the run knows: the path stands when it is interpreted."""
 
 
+class Message(NamedTuple):
+    """#MSG: a text for the operator."""
+
+    text: str
+
+
+class OrderedError(NamedTuple):
+    """#ERROR: a warning, or (`severe`) an error that stops the program."""
+
+    id: int
+    severe: bool
+    text: str
+
+
 class AuxiliaryFunction(NamedTuple):
     """A function for the PLC or the tool management: letter "M", "T" or "D"; with the `spindle` of S2[M8]."""
 
@@ -189,6 +203,8 @@ Function = (
     | SpindleLink
     | ExplicitSynchronisation
     | WaitForPath
+    | Message
+    | OrderedError
     | AuxiliaryFunction
     | ControlFunction
 )

@@ -7,7 +7,7 @@ vendor's programming manual.
 import re
 from collections.abc import Callable
 
-from cnc_ptp.nc import faults, spindle_faults, spindle_links
+from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links
 from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
@@ -213,6 +213,8 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "ENDVAR": _end_of_variables,
     "DELETE": _delete,
     "DISABLE MODAL CYCLE": _disable_modal_cycle,
+    "MSG": messages.read_message,
+    "ERROR": messages.read_error,
     "ROTATION": commands.read_rotation,
     "SCALE": commands.read_scale,
     "CS": commands.read_system,

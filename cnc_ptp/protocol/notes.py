@@ -10,18 +10,25 @@ from cnc_ptp.errors import read_warning, warning_text
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import Severity
 
+PROGRAM_MESSAGE = 22028
+"""Event of #MSG."""
+
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A refused command, or a warning: of an event, or with which a command was carried out (may have no number)."""
+    """A refused command, a message of a program, or a warning: of an event, or of a command that was carried out."""
 
     number: int
     text: str
     refused: bool = False
     idle_stop: bool = False
     """A stop of an axis that is at a standstill already."""
+    message_at: int | None = None
+    """Cycle of a message of an NC program: each one counts."""
 
     def __str__(self) -> str:
+        if self.message_at is not None:
+            return f"message: {self.text}"
         if self.refused:
             return f"refused: P-ERR-{self.number} {self.text}"
         return f"warning: {warning_text(self.number, self.text)}"
@@ -39,7 +46,9 @@ class Note:
 
     @classmethod
     def of_event(cls, event: Any) -> Note | None:
-        """`event`: an Event or its message; None for one that is no warning."""
+        """`event`: an Event or its message; None for one that is neither a warning nor a message of a program."""
+        if event.severity == Severity.INFO and event.error_id == PROGRAM_MESSAGE:
+            return cls(event.error_id, event.text, message_at=event.cycle)
         return cls(event.error_id, event.text) if event.severity == Severity.WARNING else None
 
 
@@ -50,12 +59,12 @@ class Notes:
     """
 
     def __init__(self) -> None:
-        self._notes: dict[tuple[int, str], Note] = {}
+        self._notes: dict[tuple[int, str, int | None], Note] = {}
 
     def add(self, note: Note | None) -> None:
         if note is None:
             return
-        key = note.number, note.text
+        key = note.number, note.text, note.message_at
         known = self._notes.get(key)
         if known is None or (note.refused and not known.refused):
             self._notes.pop(key, None)

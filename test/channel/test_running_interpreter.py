@@ -100,3 +100,27 @@ def test_two_runs_of_such_a_program_are_equal() -> None:
     text = "G00 X10\nX[V.A.ACT_POS.X * 2]\n$WHILE V.A.ACT_POS.X > 1\nX[V.A.ABS.X / 2]\n$ENDWHILE\nM30"
     first, second = MachineBench(text, machine=machine()).run(), MachineBench(text, machine=machine()).run()
     assert first.blocks == second.blocks and first.errors() == []
+
+
+def test_messages_and_ordered_warnings_go_out_when_the_path_reaches_them() -> None:
+    text = '#MSG ["begin"]\nG00 X1\nP1 = 2.5\n#MSG SYN HMI ["P1 is %f, or %d; 5 %%"  , P1, P1]\n#ERROR [ID=7 RC=0 PV1=P1]\nX2\nM30'
+    bench = MachineBench(text).run()
+    assert bench.errors() == []
+    told = [(event.severity, event.error_id, event.text, event.line) for event in bench.events_of("channel")]
+    assert told == [
+        (0, 22028, "begin", 1),
+        (0, 22028, "P1 is 2.500000, or 3; 5 %", 4),
+        (1, 22029, "channel channel: #ERROR 7 of the program: PV1 = 2.5", 5),
+    ]
+    first, second, _ = (event.cycle for event in bench.events_of("channel"))
+    positions = bench.column("x", "set_position")
+    assert positions[first] == pytest.approx(0.0, abs=1e-4) and positions[second - 1] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_an_ordered_error_stops_the_program() -> None:
+    bench = MachineBench("G00 X1\n#ERROR [ID=455 PV1=3]\nX2\nM30").run()
+    (text,) = bench.errors()
+    effect = "the path stops on its ramp and the program is aborted"
+    place = "in line 2 '#ERROR [ID=455 PV1=3]'"
+    assert text == f"P-ERR-22029 channel channel: #ERROR 455 of the program: PV1 = 3 {place}; {effect}"
+    assert bench.position("x") == 1.0

@@ -48,7 +48,7 @@ def test_every_example_is_a_program(entry):
         text = f"{text}\nM29\n%MAIN"
     if "LL POCKET" in text:
         text = f"%L POCKET\nM29\n%MAIN\n{text}"
-    before = "" if "%" in text else "P1 = 9 P2 = 2\nF500\n"
+    before = "" if text.startswith("%") else "P1 = 9 P2 = 2\nF500\n"
     run(f"{before}{text}\nM30", files=FILES)
 
 

@@ -11,7 +11,9 @@ from cnc_ptp.nc.canonical import (
     Function,
     GearChange,
     LinearMove,
+    Message,
     Motion,
+    OrderedError,
     SpindleCommand,
     SpindleFeedforward,
     SpindleFunction,
@@ -49,6 +51,10 @@ def _function(function: Function) -> str:
             return "wait for MVS_SLP"
         case WaitForPath():
             return "wait for the path"
+        case Message(text):
+            return f"message {text!r}"
+        case OrderedError(code, severe, text):
+            return f"{'error' if severe else 'warning'} {code} {text!r}"
         case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
             return _control(function)
         case SpindleFunction():

@@ -178,6 +178,7 @@ class MachineBench:
         self.offline = OfflineMachine(machine, self.units)
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
         self.events: list[Event] = []
+        self.all_events: list[Event] = []
         self.records: list[CommandRecord] = []
 
     def give(self, unit: str, command: str, **arguments: Any) -> CommandRecord:
@@ -208,6 +209,7 @@ class MachineBench:
         for name, output in outputs.items():
             self.blocks[name].append(output.block)
             self.events += [event for event in output.events if event.severity]
+            self.all_events += output.events
             self.records += output.records
 
     def column(self, unit: str, name: str) -> list[Any]:
@@ -226,6 +228,10 @@ class MachineBench:
     def errors(self) -> list[str]:
         """Texts of the error events in their order."""
         return [f"P-ERR-{event.error_id} {event.text}" for event in self.events if event.severity == 2]
+
+    def events_of(self, unit: str) -> list[Event]:
+        """Events with a number, also those that are only for information."""
+        return [event for event in self.all_events if event.source == unit and event.error_id]
 
     def refusals(self) -> list[str]:
         return [f"P-ERR-{record.error_id} {record.message}" for record in self.records if not record.accepted]

@@ -57,3 +57,14 @@ DECLARATION = Fault(20908, "'{word}' between #VAR and #ENDVAR: only V.P., V.L., 
 DECLARATION_LIST = Fault(21587, "the first values of the array {name} need brackets: = [1, 2, 3]")
 TYPE_UNKNOWN = Fault(21588, "type {word} is not known; known are: {known}")
 STRING_LENGTH = Fault(21589, "STRING needs its length in brackets, 1 to {limit}")
+
+# Words of # commands
+COMMAND_SYNTAX = Fault(21615, "'{word}' is not available in {command}; its syntax is {syntax}")
+COMMAND_VALUE = Fault(21616, "{command} without {missing}; its syntax is {syntax}")
+
+# Messages
+MESSAGE_VALUES = Fault(20721, "the text needs {wanted} for its %d, %f and %s, not {given}")
+MESSAGE_FORMAT = Fault(20726, "'{word}' in the text of a message: there are %d, %f, %s, and %% for a percent sign")
+MESSAGE_MODE = Fault(21593, "#MSG {mode} waits for an acknowledgement, which is not available yet")
+ERROR_ID = Fault(21594, "#ERROR ID={value} is not within 1 ... {limit}")
+ERROR_REACTION = Fault(21595, "#ERROR RC={value}: there are 0 (warning), 2 (error) and 7 (fatal error)")
