@@ -60,6 +60,28 @@ ON_A_PATH_SCENARIO = """
 """
 
 
+LANGUAGE = """#VAR
+V.P.STEP = 4
+#ENDVAR
+G00 X3
+G04 0.3
+P1 = V.A.ACT_POS.X
+#MSG ["it is at %f", P1]
+#ROTATION ON [ANGLE=30]
+$FOR P2 = 0, 400000, 1
+$ENDFOR
+$WHILE P1 < 12
+P1 = P1 + V.P.STEP
+G01 X=P1 F6000 L CYCLE [NAME=side.nc @P1=P1]
+$ENDWHILE
+M30
+"""
+SIDE = """G91 G00 Y[@P1 / 10]
+X[V.A.ACT_POS.Y / 100]
+M29
+"""
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("equality")
@@ -69,6 +91,8 @@ def folder(tmp_path_factory):
     (folder / "setpoints.csv").write_text(SETPOINTS)
     (folder / "slaves.yaml").write_text(SLAVE_SCENARIO)
     (folder / "circle.nc").write_text(ON_A_PATH)
+    (folder / "language.nc").write_text(LANGUAGE)
+    (folder / "side.nc").write_text(SIDE)
     (folder / "circle.yaml").write_text(ON_A_PATH_SCENARIO)
     return folder
 
@@ -117,6 +141,18 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
     coupled = slice(0, 600)
     x, y = (states[f"/{axis}/state"]["set_position"][coupled] for axis in ("x", "y"))
     assert np.abs(y + 0.5 * x).max() <= 1e-9 and x[-1] > 500.0
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(folder, options):
+    """Actual positions, a cycle in a file of its own, a computation of many cycles, a message."""
+    job = (MILL, "--program", folder / "language.nc")
+    told = run("simulate", *job, "--record", folder / "g.mcap").stdout
+    output = run("run", *job, *options, "--record", folder / "h.mcap").stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in output
+    assert "message: it is at " in told and "message: it is at " in output
+    assert states_equal(folder / "g.mcap", folder / "h.mcap") == []
+    verified(folder / "h.mcap")
 
 
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)

@@ -9,7 +9,7 @@ from cnc_ptp.nc.degrees import cosine, sine
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 
-IDENTITY: Final[Matrix] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 SAME: Final = 1e-9
 """mm: an axis that is moved by less because of rounding stays where it is."""
 
