@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 from collections.abc import Iterator
 
 from gcodeparser import parse_gcode_lines
 
 from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
+from bench.jobs import ROOT
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 
 BLOCKS = 100_000
+MANY_BLOCKS = 10_000_000
 
 
 def program_text(blocks: int) -> str:
@@ -60,3 +64,21 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     )
     yield Figure("text to words", 1e6 * parsing, "µs/block")
     yield Figure("modal states, end points", 1e6 * resolving, "µs/block")
+    many = effort.scaled(MANY_BLOCKS)
+    show(f"a file of {many:,} blocks")
+    command = [sys.executable, "-m", "bench.big_program", str(many)]
+    done = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True)
+    memory, time_us = map(float, done.stdout.split())
+    yield Figure(f"largest memory for a file of {many:,} blocks", memory, "MiB", goal=200.0, at_most=True)
+    yield Figure("checked and interpreted line by line", time_us, "µs/block")
+    show("a loop with assignments")
+    yield Figure("assignments in a $FOR loop", medians_of(effort.runs, [assignments])[0], "/s", goal=300_000.0)
+
+
+def assignments() -> float:
+    """P2 = P2 + P1 * 2 for a counter; assignments per second."""
+    program = parse_program(f"P2 = 0\n$FOR P1 = 1, {BLOCKS}, 1\nP2 = P2 + P1 * 2\n$ENDFOR\nM30", "loop.nc")
+    with stopwatch() as watch:
+        for _ in interpret(program, (0.0,), ("X",)):
+            pass
+    return BLOCKS / watch.wall

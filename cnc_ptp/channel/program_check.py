@@ -42,7 +42,7 @@ UNKNOWN_M_FUNCTION = 22011
 NO_CHANNEL = 26112
 
 
-MOST_BLOCKS = 100_000
+MOST_BLOCKS = 50_000
 """Blocks of a program that are kept; a longer one is interpreted again while it runs."""
 
 

@@ -251,7 +251,8 @@ class TokenReader:
         reader = self._reader(position)
         begin = reader.skip_blanks()
         target = reader.target()
-        assert target is not None
+        if target is None:
+            raise reader.operand_missing(begin)
         end = reader.at
         operator = _ASSIGNS.match(self.line, end)
         shown = self.line[begin:end].rstrip()

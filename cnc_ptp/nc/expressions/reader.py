@@ -247,7 +247,8 @@ class ExpressionReader:
                 self.close(opened)
             else:
                 inner = self.target()
-                assert inner is not None
+                if inner is None:
+                    raise self.operand_missing(self.skip_blanks())
                 computed = inner
             return ComputedParameter(begin + 1, computed, self.indices())
         number = int(digits[:9])

@@ -38,6 +38,8 @@ class Words:
             raise self.stray()
 
     def stray(self) -> ProgramError:
+        if self.at_end:
+            return self.missing("a value")
         at = self.reader.skip_blanks()
         word = self.reader.line[at:].split()[0]
         return faults.COMMAND_SYNTAX.at(self.line.source, at + 1, word=word, command=self.command, syntax=self.syntax)

@@ -13,7 +13,7 @@ from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.structures import Place, Structure
 from cnc_ptp.nc.program_text import ProgramText
 
-KEPT: Final = 200_000
+KEPT: Final = 50_000
 """Lines that are kept as they were read; those behind them are read again each time."""
 KEPT_LATER: Final = 10_000
 """Of them, lines of loops and subroutines."""
@@ -63,10 +63,11 @@ class Program:
 
     def keep(self, line: Line) -> None:
         """Notes a line, as long as there is room for it."""
+        if line.number > KEPT:
+            return
         while len(self.kept) < line.number:
             self.kept.append(None)
-        if len(self.kept) == line.number and line.number <= KEPT:
-            self.kept.append(line)
+        self.kept.append(line)
 
     def line(self, number: int, offset: int) -> Line:
         """The line of this number, which begins at this offset."""
