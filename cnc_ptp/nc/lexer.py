@@ -224,6 +224,9 @@ class TokenReader:
         cycle = _CYCLE.match(self.line, position)
         if cycle is not None:
             return self._cycle(cycle)
+        code = _CYCLE_CODE.match(self.line, position)
+        if code is not None:
+            return self._cycle_code(code)
         match = _TOKEN.match(self.line, position)
         if match is None or _VALUED.match(self.line, position):
             return self._computed(position)
@@ -256,6 +259,8 @@ class TokenReader:
         end = reader.at
         operator = _ASSIGNS.match(self.line, end)
         shown = self.line[begin:end].rstrip()
+        if operator is None and _DWELL.search(self.line, 0, begin):
+            return self._bare(position)
         if operator is None:
             raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown)
         value, after = self._read(operator.end())
@@ -293,6 +298,24 @@ class TokenReader:
         scope = f"{begin[1]} CYCLE {modal}".rstrip()
         return Token("call", name, scope, column, shown, arguments=arguments), at
 
+    def _cycle_code(self, begin: "re.Match[str]") -> tuple[Token, int]:
+        """G81[-10, 2]: calls the program of this code with @P1, @P2 ...; gaps leave a parameter out."""
+        at = begin.end()
+        arguments: list[tuple[str, Node]] = []
+        if begin[2]:
+            reader = self._reader(at)
+            for count in range(1, MOST_ARGUMENTS + 1):
+                if not reader.line.startswith((",", "]"), reader.skip_blanks()):
+                    arguments.append((f"P{count}", reader.expression()))
+                if not reader.follows(","):
+                    break
+            reader.close(begin.end() - 1)
+            at = reader.at
+            self.synchronises = self.synchronises or reader.synchronises
+        shown = self.line[begin.start(1) : at]
+        name = f"{begin[1].replace(' ', '')}.NC"
+        return Token("call", name, "L CYCLE", begin.start(1) + 1, shown, arguments=arguments), at
+
     def _computed(self, position: int) -> tuple[Token, int]:
         """A word whose number is an expression."""
         for pattern, kind in _COMPUTED:
@@ -307,7 +330,15 @@ class TokenReader:
             if kind == "valued" or "=" in match[0] or numeric or self._opens(match.end()):
                 value, end = self._read(match.end())
                 return Token(kind, name, "", begin + 1, self.line[begin:end].rstrip(), value), end
+        if _BARE.match(self.line, position):
+            return self._bare(position)
         raise _unreadable(self.line, self.source, position)
+
+    def _bare(self, position: int) -> tuple[Token, int]:
+        """The time of G04 as an expression."""
+        value, end = self._read(position)
+        begin = value.column - 1
+        return Token("bare", "", "", begin + 1, self.line[begin:end].rstrip(), value), end
 
     def _opens(self, at: int) -> bool:
         """Whether an expression begins there; the bracket of a spindle or an axis is none."""
@@ -334,6 +365,9 @@ class TokenReader:
         return token._replace(parts=parts)
 
 
+_CYCLE_CODE = re.compile(r"\s*(G\s*8\d)(?![\d.])\s*(\[)?", re.ASCII)
+"""G80 to G89."""
+MOST_ARGUMENTS: Final = 50
 _CYCLE = re.compile(r"\s*(LL?)\s+CYCLE\s*\[", re.ASCII)
 _CYCLE_WORD = re.compile(
     r"""[\s,]*(?: NAME\s*=\s*"?(?P<name>[^\s"\],#$\[]+)"? | (?P<modal>MODAL(?:_MOVE|_BLOCK)?)(?![A-Z_])
@@ -353,6 +387,8 @@ _COMPUTED: Final = (
     (_COMPUTED_NAME, "named"),
     (_COMPUTED_WORD, "word"),
 )
+_DWELL = re.compile(r"G\s*0*4(?!\d)", re.ASCII)
+_BARE = re.compile(r"\s*\[", re.ASCII)
 _NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)
 _NUMBERED = ("word", "named", "position")
 _COMPUTED_INSIDE = re.compile(r"[A-Z]\s*=?\s*[-+]*\s*(?:\[|P\s*[\d\[]|V\s*\.|@)", re.ASCII)

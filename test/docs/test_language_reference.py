@@ -33,7 +33,8 @@ def test_every_word_has_a_text_and_no_text_is_left_over():
 
 BEFORE = {"$FOR": "$ENDFOR", "$IF": "$ENDIF", "$WHILE": "$ENDWHILE", "$SWITCH": "$ENDSWITCH"}
 PLACES = {"V.P.F[2][3] = [1, 2, 3]": "#VAR\n{}\n#ENDVAR", "$GOTO [END]": "{}\n[END] X5"}
-FILES = {"drill.nc": "M29", "pocket.nc": "M29"}
+CYCLES = {path.name: path.read_text() for path in (HERE.parents[1] / "cnc_ptp" / "nc" / "cycles").glob("*.nc")}
+FILES = {"drill.nc": "M29", "pocket.nc": "M29", **CYCLES}
 
 
 @pytest.mark.parametrize(

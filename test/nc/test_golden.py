@@ -4,6 +4,7 @@ import pytest
 from canonical_text import format_block
 from nc_support import HERE, machine
 
+from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
@@ -13,8 +14,6 @@ from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 
-FILES = {path.name: path.read_text() for path in (HERE / "library").glob("*.nc")}
-"""Programs that the others may call."""
 GOOD = sorted((HERE / "golden").glob("*.nc"))
 BAD = sorted((HERE / "bad").glob("*.nc"))
 
@@ -30,9 +29,14 @@ PARTS = (faults, spindle_faults, expression_faults, flow_faults, coordinate_faul
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
+def files_of(text: str) -> dict[str, str]:
+    """Programs that a text calls: of the test's own library, or of those that ship."""
+    return called_programs(text, [str(HERE / "library")])
+
+
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
-    program = parse_program(text, file, files=FILES)
+    program = parse_program(text, file, files=files_of(text))
     return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
 
 
@@ -46,7 +50,7 @@ def test_canonical_stream_is_the_golden_one(path):
 def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    assert check(text, path.name, axes, spindles, files=FILES) == []
+    assert check(text, path.name, axes, spindles, files=files_of(text)) == []
 
 
 def test_example_bracket_gives_its_golden_stream():
@@ -67,7 +71,7 @@ def test_bad_program_raises_the_text_of_its_first_line(path):
 def test_check_finds_the_same_error(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    found = [str(error) for error in check(text, path.name, axes, spindles, files=FILES)]
+    found = [str(error) for error in check(text, path.name, axes, spindles, files=files_of(text))]
     assert text.split("\n")[0].removeprefix("; ") in found
 
 

@@ -52,7 +52,7 @@ CYCLE_WORD = Fault(
     21591, "'{word}' is not available in a cycle call; there are NAME=..., @P1=..., MODAL_MOVE and MODAL_BLOCK"
 )
 FILE_FOLDER = Fault(21592, "{name}: programs are called by their name alone, they are looked for in the search folders")
-FILE_UNKNOWN = Fault(21586, "no program {name} in the search folders; there are: {known}")
+FILE_UNKNOWN = Fault(21586, "no program {name} in the search folders{nearest}")
 DECLARATION = Fault(20908, "'{word}' between #VAR and #ENDVAR: only V.P., V.L., V.S., V.CYC. and P are declared")
 DECLARATION_LIST = Fault(21587, "the first values of the array {name} need brackets: = [1, 2, 3]")
 TYPE_UNKNOWN = Fault(21588, "type {word} is not known; known are: {known}")

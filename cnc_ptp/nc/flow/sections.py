@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.expressions.values import nearest_name
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Call, Line
@@ -97,6 +98,6 @@ class Program:
             return self, Place(section.line, section.offset)
         program = self.library.get(name)
         if program is None:
-            known = ", ".join(self.library) or "none"
-            raise flow_faults.FILE_UNKNOWN.at(source, call.column, name=call.name, known=known)
+            nearest = nearest_name(name, list(self.library))
+            raise flow_faults.FILE_UNKNOWN.at(source, call.column, name=call.name, nearest=nearest)
         return program, Place(program.main.line, program.main.offset)
