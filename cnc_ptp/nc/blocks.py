@@ -40,6 +40,7 @@ LONGEST_BLOCK: Final = 4000
 SHOWN: Final = 60
 """Characters of a longer one that its error shows."""
 
+_TEXT = re.compile(r'"[^"]*"?')
 _LABEL_NUMBER = re.compile(r"\s*N\s*(\d{1,9})\s*:", re.ASCII)
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})(?![\d.])", re.ASCII)
 _LABEL_NAME = re.compile(r"\s*\[\s*([A-Z_][A-Z0-9_]*)\s*\]", re.ASCII)
@@ -122,9 +123,10 @@ def careful_line(line: Line) -> None:
     text = normalise(line.source)
     line.skip, begin = _skip_level(text, line.source)
     begin = _take_labels(line, text, begin)
-    if "$" in text:
-        read_statement(line, text, begin, read_words)
-    elif "#" in text and hash_line(line, text, begin):
+    outside = _TEXT.sub(lambda found: " " * len(found[0]), text) if '"' in text else text
+    if "$" in outside:
+        read_statement(line, text, begin, outside.index("$"), read_words)
+    elif "#" in outside and hash_line(line, text, begin, outside):
         return
     else:
         line.block = read_words(line, text, begin)

@@ -26,9 +26,12 @@ _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
 
 
-def hash_line(line: Line, text: str, begin: int) -> bool:
-    """Reads a normalised line with a command; False if it has no known command (the tokens say why)."""
-    found = _COMMAND.search(text, begin)
+def hash_line(line: Line, text: str, begin: int, outside: str) -> bool:
+    """Reads a normalised line with a command; False if it has no known command (the tokens say why).
+
+    `outside`: the same with blanks in place of texts.
+    """
+    found = _COMMAND.search(outside, begin)
     if found is None:
         return False
     name = " ".join(found[1].split())

@@ -59,6 +59,8 @@ class Execution(Flow):
         self._repeats = 0
         self._call: Call | None = None
         self._line: Line | None = None
+        self._depth = 0
+        """Calls above the last block."""
         self._paused = -1
         self._modal: Call | None = None
         """The call that follows each motion or block."""
@@ -106,7 +108,7 @@ class Execution(Flow):
                 self.values.source = line.source
                 block = line.statement.run(self, line)
             if block is not None:
-                self._line, self._call = line, line.call
+                self._line, self._call, self._depth = line, line.call, len(self.frames)
                 self._follow(block, line)
                 return block
             if line.call is not None:
@@ -117,7 +119,7 @@ class Execution(Flow):
     def _modal_due(self) -> bool:
         """The modal call follows the last block: not within itself, and not after a block without a motion."""
         assert self._modal is not None
-        return len(self.frames) == self._modal_depth and (self.moved or self._modal.modal == MODAL_BLOCK)
+        return self._depth == self._modal_depth and (self.moved or self._modal.modal == MODAL_BLOCK)
 
     def _follow(self, block: NcBlock, line: Line) -> None:
         """What a block does to the order of execution, when it has been executed."""

@@ -41,9 +41,8 @@ _GOTO = re.compile(r"\s*\$GOTO(?![A-Z])\s*(?:N\s*(\d{1,9})(?![\d.])|\[\s*([A-Z_]
 _ASSIGNS = re.compile(r"\s*=(?!=)", re.ASCII)
 
 
-def read_statement(line: Line, text: str, begin: int, read_words: WithWords) -> None:
-    """The control statement of a normalised line, from place `begin` on."""
-    place = text.index("$", begin)
+def read_statement(line: Line, text: str, begin: int, place: int, read_words: WithWords) -> None:
+    """The control statement of a normalised line, from place `begin` on; `place`: that of its $."""
     match = _KEYWORD.match(text, place)
     assert match is not None
     keyword = match[0]

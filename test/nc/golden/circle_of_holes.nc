@@ -1,0 +1,20 @@
+; A circle of holes with a subroutine and the cycle that drills.
+%L HOLE
+G83[-12, 2, 5]
+M29
+%CIRCLE
+#VAR
+V.P.NUMBER = 5
+V.P.RADIUS = 25
+#ENDVAR
+G90 G17 G71 M03 S1500
+G00 Z10
+G92 X50 Y40
+G01 F250
+$FOR P1 = 0, V.P.NUMBER - 1, 1
+P2 = P1 * 360 / V.P.NUMBER
+G00 X[V.P.RADIUS * COS[P2]] Y[V.P.RADIUS * SIN[P2]]
+LL HOLE
+$ENDFOR
+G00 Z50 M05
+M30

@@ -1,0 +1,16 @@
+; Every operator and function as a position, so that the stream shows its value.
+G00 X[1 + 2 * 3] Y[[1 + 2] * 3]
+X[2 ** 3] Y[-2 ** 2] Z[11 MOD 4]
+X[10 / 4] Y[1 < 2] Z[3 > 4]
+X[1 && 0] Y[1 || 0] Z[1 XOR 1]
+X[6 & 3] Y[6 | 3] Z[6 ^ 3]
+X SIN[30] Y COS[60] Z TAN[45]
+X[ASIN[0.5]] Y[ACOS[0.5]] Z[ATAN2[1, -1]]
+X[SQRT[16]] Y[SQR[3]] Z[ABS[-5]]
+X[INT[2.7]] Y[FRACT[2.75]] Z[ROUND[2.5]]
+X[FLOOR[-1.5]] Y[CEIL[-1.5]] Z[SIGN[-3]]
+X[MIN[3, 1, 2]] Y[MAX[3, 1, 2]] Z[EXP[0]]
+X[DEXP[2]] Y[LOG[1000]] Z[LN[EXP[2]]]
+X['HFF'] Y['B101'] Z[NOT[1] + 2]
+X[LEN["abcd"]] Y[FIND["abcd", "c"]] Z[ORD["A"]]
+M30

@@ -1,0 +1,27 @@
+; machine X Z / S
+; Roughing of a shaft in passes, finishing along its contour.
+%TURNING
+#VAR
+V.P.STOCK = 30
+V.P.FINISHED = 20
+V.P.INFEED = 1.5
+#ENDVAR
+G18 G90 G71
+M04 S1200
+G00 X[V.P.STOCK / 2 + 2] Z2
+P1 = V.P.STOCK / 2
+$WHILE P1 > V.P.FINISHED / 2
+P1 = MAX[P1 - V.P.INFEED, V.P.FINISHED / 2]
+G00 X[P1]
+G01 Z-40 F120
+X[P1 + 1]
+G00 Z2
+$ENDWHILE
+G00 X[V.P.FINISHED / 2 - 2]
+G01 Z0 F80
+G03 X[V.P.FINISHED / 2] Z-2 R2
+G01 Z-40
+X[V.P.STOCK / 2 + 1]
+G00 X50 Z50
+M05
+M30

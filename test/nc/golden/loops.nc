@@ -1,0 +1,42 @@
+; All loops, up and down, with $BREAK and $CONTINUE, within each other.
+$FOR P1 = 1, 3, 1
+G00 X[P1]
+$ENDFOR
+Y[P1]
+$FOR P1 = 3, 1, -1.5
+X[P1]
+$ENDFOR
+$FOR V.P.I = 1, 0, 1
+X1000
+$ENDFOR
+P2 = 0
+$WHILE P2 < 3
+P2 = P2 + 1
+$IF P2 == 2
+$CONTINUE
+$ENDIF
+Z[P2]
+$ENDWHILE
+$DO
+P2 = P2 - 1
+Y[-P2]
+$ENDDO P2 > 1
+$REPEAT
+P2 = P2 + 1
+Z[-P2]
+$UNTIL P2 >= 3
+$FOR P3 = 1, 3, 1
+$FOR P4 = 1, 3, 1
+$IF P4 == 2
+$BREAK
+$ENDIF
+X[P3 * 10 + P4]
+$ENDFOR
+$ENDFOR
+$WHILE TRUE
+$DO
+$GOTO [OUT]
+$ENDDO 1
+$ENDWHILE
+[OUT] X0 Y0 Z0
+M30

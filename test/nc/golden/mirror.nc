@@ -1,0 +1,15 @@
+; Mirror in each plane, with arcs and offsets.
+G92 X100
+G01 X10 Y0 F600
+G21
+X10 Y5
+G02 X20 Y5 I5
+G22
+G01 X10 Y5
+G03 X20 Y5 I5
+G23 G01 X30 Y10
+G20 X30 Y10
+G18 G21
+X1 Z5
+G20
+M30

@@ -1,0 +1,13 @@
+; A subroutine that calls itself: the towers of a binary tree.
+%L BRANCH
+$IF @DEPTH > 3
+$RETURN
+$ENDIF
+G91 G00 X[10 / @DEPTH]
+LL CYCLE [NAME=BRANCH @DEPTH=@DEPTH + 1]
+G91 Y[@DEPTH]
+LL CYCLE [NAME=BRANCH @DEPTH=@DEPTH + 1]
+M29
+%TREE
+LL CYCLE [NAME=BRANCH @DEPTH=1]
+M30

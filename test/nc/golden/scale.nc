@@ -1,0 +1,15 @@
+; Scale with arcs; factors are kept while it is off.
+#SCALE X2 Y2
+G01 X10 Y5 F600
+#SCALE ON
+X10 Y5
+G02 X20 Y5 I5
+#SCALE OFF
+G01 X10 Y5
+#SCALE ON
+G91 X1
+G90
+#SCALE OFF
+#SCALE ON Z0.5
+Z10
+M30

@@ -1,0 +1,33 @@
+; $SWITCH with numbers, texts, fall through, an assignment, no case at all.
+$FOR P1 = 1, 4, 1
+$SWITCH P1
+$CASE 1
+G00 X1
+$BREAK
+$CASE 2
+X2
+$CASE 3
+X3
+$BREAK
+$DEFAULT
+X9
+$ENDSWITCH
+$ENDFOR
+V.P.T = "b"
+$SWITCH V.P.T
+$CASE "a"
+Y1
+$BREAK
+$CASE "b"
+Y2
+$ENDSWITCH
+$SWITCH P2 = INT[7 / 2]
+$CASE 3.0004
+Y3
+$ENDSWITCH
+$SWITCH 5
+$CASE 1
+Y100
+$ENDSWITCH
+Z[P2]
+M30

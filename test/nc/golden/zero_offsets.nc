@@ -1,0 +1,23 @@
+; Zero offsets, G92, by index, as variables, with G91.
+V.G.NP[1].V.X = 100 V.G.NP[1].V.Y = 50
+V.G.NP[2].V.X = 200
+V.G.NP[7].V.Z = -10
+G54 G00 X1 Y1
+Z2
+G55 X1
+G91 X1
+G90 Y1
+G92 X10 Y20
+X0 Y0
+G91
+G92 X5
+G90 X0
+G53 X0
+G92 X0 Y0
+X0
+G159=7 Z0
+X[V.G.NP_AKT.IDX] Y[V.A.BZP.Y]
+V.G.NP_AKT.V.Z = -20
+Z0
+G53 Z0
+M30
