@@ -21,7 +21,7 @@ COMPENSATING, EXTERNAL, HAS_JOB, STOPPED, IN_TARGET = 1 << 13, 1 << 14, 1 << 8, 
 def test_fields_of_services_are_the_arguments_of_commands(kind):
     for command, service in SERVICES[kind].items():
         fields = {name for name in service.Request.get_fields_and_field_types() if not name.startswith("has_")}
-        known = COMMANDS[kind][command].keys() - OF_CHANNELS - {"text", "setpoints", "resume"}
+        known = COMMANDS[kind][command].keys() - OF_CHANNELS - {"text", "files", "setpoints", "resume"}
         assert fields == known or (command == "mdi" and fields == {"text"}), command
 
 

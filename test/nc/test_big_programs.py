@@ -6,6 +6,7 @@ import pytest
 from canonical_text import format_block
 from nc_support import HERE, machine
 
+from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.flow import sections
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program, parse_text
@@ -53,7 +54,8 @@ def test_a_file_gives_what_its_text_gives(path: Path, ending: str, tmp_path: Pat
     file = tmp_path / path.name
     file.write_bytes(b"\xef\xbb\xbf" + text.replace("\n", ending).encode())
     with file.open("rb") as opened:
-        program, errors = parse_text(ProgramFile(opened), path.name)
+        files = called_programs(text, [str(HERE / "library")])
+        program, errors = parse_text(ProgramFile(opened), path.name, files=files)
         assert errors == []
         assert stream(program, text) == path.with_suffix(".txt").read_text().splitlines()
 
