@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from cnc_ptp.nc.canonical import CanonicalBlock, WaitForPath
+from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.expressions.values import Values
+from cnc_ptp.nc.interpreter import awaits_path
 
 
 class BlockStream:
@@ -35,7 +36,7 @@ class BlockStream:
         Raises ProgramError for a fault that only the run shows.
         """
         block = next(self._blocks, None)
-        self.awaited = block is not None and any(isinstance(function, WaitForPath) for function in block.functions)
+        self.awaited = block is not None and awaits_path(block)
         return block
 
     def end(self) -> None:

@@ -79,10 +79,13 @@ class ChannelUnit(Unit):
         self._sequence = ProgramSequence(self._motion, functions, nodes)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._program: Program | None = None
+        self._library: Mapping[str, Program] = {}
+        """The programs that the loaded one may call; manual blocks may call them, too."""
         self._prepared: PreparedProgram | None = None
         self._state = self._check.state({}, {}, {})
         """The state in which an MDI text starts: that of the previous one, if it was carried out in full."""
         self._state_at_end: ProgramState | None = None
+        self._is_mdi = False
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
         self._links: dict[int, Pairs] = {}
         """Coupling groups that programs have defined; they are kept for the next one, as V.S. is."""
@@ -123,6 +126,7 @@ class ChannelUnit(Unit):
             self._program = prepared.program
         else:
             self._program = parse_program(text, program, files=files)
+        self._library = self._program.library
         self._sequence.source = NO_SOURCE
 
     def do_start(self, cycle: int) -> None:
@@ -141,7 +145,7 @@ class ChannelUnit(Unit):
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        self._begin("mdi", parse_program(text, "mdi", mdi=True), state)
+        self._begin("mdi", parse_program(text, "mdi", mdi=True, library=self._library), state)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
@@ -222,7 +226,9 @@ class ChannelUnit(Unit):
         self._axes.give(rows.axes[count - 1], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         if self._sequence.finished and self._state_at_end is not None:
-            self._state, self._state_at_end = self._state_at_end, None
+            ended, self._state_at_end = self._state_at_end, None
+            self._shared = ended.values.shared
+            self._state = ended if self._is_mdi else self._check.state({}, self._links, self._shared)
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
 
@@ -347,9 +353,9 @@ class ChannelUnit(Unit):
         if not known.complete:
             state = before
             stream = BlockStream(self._check.running(program, self._motion.position, state), known.total, state.values)
-        self._links, self._shared = state.modal.spindle.links, state.values.shared
+        self._links = state.modal.spindle.links
         self._state = self._check.state({}, self._links, self._shared)
-        self._state_at_end = state if command == "mdi" else self._check.state({}, self._links, self._shared)
+        self._state_at_end, self._is_mdi = state, command == "mdi"
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 

@@ -18,12 +18,11 @@ from cnc_ptp.nc.canonical import (
     Source,
     SpindleCommand,
     SpindleFunction,
-    WaitForPath,
 )
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.interpreter import awaits_path, check, interpret
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
 from cnc_ptp.parameters import (
@@ -42,7 +41,7 @@ UNKNOWN_M_FUNCTION = 22011
 NO_CHANNEL = 26112
 
 
-MOST_BLOCKS = 50_000
+MOST_BLOCKS = 100_000
 """Blocks of a program that are kept; a longer one is interpreted again while it runs."""
 
 
@@ -177,7 +176,7 @@ class ProgramCheck:
             total += 1
             if len(blocks) < MOST_BLOCKS:
                 blocks.append(block)
-            if any(isinstance(function, WaitForPath) for function in block.functions):
+            if awaits_path(block):
                 return KnownBlocks(blocks, False, None)
         return KnownBlocks(blocks, total == len(blocks), total)
 
@@ -204,14 +203,15 @@ class ProgramCheck:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""
         for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
             unit = "deg" if axis.rotary else "mm"
+            if axis.soft_limit_negative <= position <= axis.soft_limit_positive:
+                continue
             if position > axis.soft_limit_positive:
                 limit = f"positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"
                 text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
                 raise ProgramError(SOFT_LIMIT_POSITIVE, text, source, 1)
-            if position < axis.soft_limit_negative:
-                limit = f"negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
-                text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
-                raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
+            limit = f"negative soft limit {axis.soft_limit_negative:g} {unit} (P-AXIS-00177)"
+            text = f"axis {name}: {position:g} {unit} lies beyond the {limit}"
+            raise ProgramError(SOFT_LIMIT_NEGATIVE, text, source, 1)
 
     def _function(self, function: Function, source: Source) -> None:
         if isinstance(function, (SpindleFunction, SpindleCommand)):

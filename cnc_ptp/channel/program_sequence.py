@@ -32,6 +32,7 @@ from cnc_ptp.nc.canonical import (
     Message,
     OrderedError,
     Source,
+    WaitForPath,
 )
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
@@ -89,6 +90,8 @@ class ProgramSequence:
         self._keep: Container[str] = ()
         self._outgoing = Outgoing()
         self._waits: list[Wait] = []
+        self._waited_at = -1
+        """The block in which a wait for the path ended: the next one has newer reports."""
         self._due: frozenset[Moment] = frozenset()
         """The moments that have come: the path waits for the functions of these moments."""
         self._awaits_event = False
@@ -220,7 +223,7 @@ class ProgramSequence:
         Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
-            return self._begin_block()
+            return self._begin_block(first_cycle)
         if self.phase not in WAITING:
             return False
         waits = self._waited_for()
@@ -236,7 +239,7 @@ class ProgramSequence:
         elif self.phase is Phase.WAIT_END:
             self._finish()
         else:
-            self._end_block()
+            self._end_block(first_cycle)
         return True
 
     def _wait(self, phase: Phase, *moments: Moment) -> None:
@@ -269,8 +272,10 @@ class ProgramSequence:
             expected = Expectation(spindle.node)
             self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
-    def _begin_block(self) -> bool:
-        """False while the interpreter computes. Raises ProgramError."""
+    def _begin_block(self, first_cycle: int) -> bool:
+        """False while the interpreter computes, and behind a wait for the path. Raises ProgramError."""
+        if first_cycle == self._waited_at:
+            return False  # the axes report where they are once in a block
         if self.stream.awaited:
             self.stream.give(actual_positions(self._feedback, self._axes))
         block = self.stream.next()
@@ -317,9 +322,11 @@ class ProgramSequence:
         self._motion.start(motion)
         self.phase = Phase.MOTION
 
-    def _end_block(self) -> None:
+    def _end_block(self, first_cycle: int) -> None:
         stop = self._block.stop if self._block else ""
         self.stream.done += 1
+        if self._block is not None and any(isinstance(function, WaitForPath) for function in self._block.functions):
+            self._waited_at = first_cycle
         if stop == "end":
             self._queue(self._functions.at_program_end(self.source))
             self._finish()

@@ -20,6 +20,7 @@ SHIPPED = Path(__file__).parent.parent / "nc" / "cycles"
 
 _NAME = r'[^\s"\],#$\[();]+'
 _CALLED = re.compile(rf'(?<![A-Z0-9_])L\s+(?:CYCLE\s*\[.*?NAME\s*=\s*"?({_NAME})|({_NAME}))', re.ASCII | re.IGNORECASE)
+_CONTINUED = re.compile(r"\\\s*\n")
 _CYCLE_CODE = re.compile(r"G\s*(8\d)(?![\d.])", re.ASCII | re.IGNORECASE)
 
 
@@ -65,6 +66,7 @@ def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
 
 def called_names(text: str) -> list[str]:
     """Names behind L and in L CYCLE, and those of G80 to G89, also in comments; without folders."""
+    text = _CONTINUED.sub(" ", text)
     names = [match[1] or match[2] for match in _CALLED.finditer(text)]
     names += [f"g{match[1]}.nc" for match in _CYCLE_CODE.finditer(text)]
     return [name for name in names if "/" not in name and "\\" not in name and not name.startswith(".")]

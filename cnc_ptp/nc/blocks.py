@@ -11,13 +11,14 @@ from collections.abc import Sequence
 from typing import Final
 
 from cnc_ptp.nc import faults, feedforward, friction_switch
-from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
+from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, code_name, number
+from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.calls import call_of
-from cnc_ptp.nc.flow.lines import Call, Flow, Line, Statement
+from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.flow.statement_reader import read_statement
 from cnc_ptp.nc.flow.statements import Assignment, Assignments
 from cnc_ptp.nc.hash_commands import hash_line
@@ -35,6 +36,8 @@ from cnc_ptp.nc.vocabulary import (
 )
 
 MAX_BLOCK_NUMBER = 999_999_999
+LARGEST_VALUE: Final = 999_999_999.0
+"""Of a word: nine digits."""
 LONGEST_BLOCK: Final = 4000
 """Characters of a block, as the vendor has it."""
 SHOWN: Final = 60
@@ -97,7 +100,7 @@ def read_line(file: str, text: ProgramText, number: int, offset: int) -> Line:
         line = Line(number, block.source, next_number, next_offset)
         line.block = block
         return line
-    while content.endswith("\\") and ";" not in content and next_offset >= 0:
+    while continues(content) and next_offset >= 0 and len(content) <= LONGEST_BLOCK:
         more, next_offset = text.line_at(next_offset)
         content = content[:-1] + " " + more.rstrip()
         next_number += 1
@@ -118,6 +121,11 @@ def read_line(file: str, text: ProgramText, number: int, offset: int) -> Line:
     return line
 
 
+def continues(content: str) -> bool:
+    """A backslash at the end that is not in a comment: the next line belongs to this one."""
+    return content.endswith("\\") and ";" not in content and content.rfind("(") <= content.rfind(")")
+
+
 def careful_line(line: Line) -> None:
     """Any line: comments, M functions, names, brackets, expressions, statements, calls; raises with the column."""
     text = normalise(line.source)
@@ -134,19 +142,26 @@ def careful_line(line: Line) -> None:
 
 def _take_labels(line: Line, text: str, begin: int) -> int:
     """Block number and label at the start of a line; the place behind them."""
-    for _ in range(3):
-        if match := _LABEL_NUMBER.match(text, begin):
-            line.source = line.source._replace(block_number=int(match[1]))
-            line.label, line.label_column = f"N{int(match[1])}", match.start(1)
-        elif match := _BLOCK_NUMBER.match(text, begin):
-            place = match.end() - len(match[0].lstrip()) + 1
-            line.source = line.source._replace(block_number=int(match[1]), names=("N",), columns=(place,))
-        elif match := _LABEL_NAME.match(text, begin):
-            line.label, line.label_column = f"[{match[1]}]", match.start(1)
+    numbered = False
+    while True:
+        label, block_number = _LABEL_NUMBER.match(text, begin), _BLOCK_NUMBER.match(text, begin)
+        name = _LABEL_NAME.match(text, begin)
+        if label is not None or block_number is not None:
+            found = label or block_number
+            assert found is not None
+            place = found.end() - len(found[0].lstrip()) + 1
+            if numbered:
+                raise faults.BLOCK_NUMBER_TWICE.at(line.source, place, word=found[0].strip())
+            numbered = True
+            line.source = line.source._replace(block_number=int(found[1]), names=("N",), columns=(place,))
+            if label is not None:
+                line.label, line.label_column = f"N{int(found[1])}", place
+        elif name is not None and not line.label:
+            found = name
+            line.label, line.label_column = f"[{name[1]}]", name.start(1)
         else:
-            break
-        begin = match.end()
-    return begin
+            return begin
+        begin = found.end()
 
 
 def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
@@ -159,8 +174,14 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
     names, columns = places(found)
     before = line.source
     line.source = before._replace(names=(*before.names, *names), columns=(*before.columns, *columns))
+    line.flow = flow_of(found)
     if found[-1].kind == "call":
         line.call = call_of(found.pop(), line.source)
+        line.call.synchronises = reader.call_synchronises
+        if line.flow:
+            ending = next(token for token in found if token.name == "M" and token.value is None and is_end(token))
+            word = code_name("M", int(float(ending.text)))
+            raise faults.CALL_AND_END.at(line.source, line.call.column, word=word)
     stray = next((token for token in found if token.kind == "call"), None)
     if stray is not None:
         after = found[found.index(stray) + 1]
@@ -175,14 +196,26 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
     return None
 
 
+def is_end(token: Token) -> bool:
+    code = m_code(int(float(token.text)))
+    return code is not None and code.flow in ("end", "return")
+
+
+def flow_of(found: Sequence[Token]) -> str:
+    """What the M functions of a line do to the order of execution: "end", "return" or nothing."""
+    for token in found:
+        if token.kind == "word" and token.name == "M" and token.value is None and is_end(token):
+            code = m_code(int(float(token.text)))
+            return code.flow if code is not None else ""
+    return ""
+
+
 def _fixed_block(line: Line, found: Sequence[Token]) -> NcBlock | None:
     if not found:
         return None
     words = BlockWords(line.source)
     for token in found:
         words.take(token)
-    if line.call is not None:
-        words.require_no_end(line.call)
     return words.block()
 
 
@@ -205,17 +238,27 @@ class ComputedWords(Statement):
             if token.target is not None:
                 _assignment(token).assign(values)
             elif token.value is not None:
-                words.take(token._replace(text=repr(token.value.value(values))))
+                words.take(token._replace(text=repr(bounded(token, token.value.value(values), values))))
             elif token.parts:
-                words.take(token._replace(text="".join(_part(part, values) for part in token.parts)))
+                words.take(token._replace(text="".join(_part(part, token, values) for part in token.parts)))
             else:
                 words.take(token)
         return words.block()
 
 
-def _part(part: str | Node, values: Values) -> str:
+def bounded(token: Token, value: float, values: Values) -> float:
+    """The value of a word, which may be as large as one that is written with its digits. Raises ProgramError."""
+    if not -LARGEST_VALUE <= value <= LARGEST_VALUE:
+        limit, shown = number(LARGEST_VALUE), number(value)
+        raise values.fault(
+            expression_faults.VALUE_RANGE, token.column, word=token.name or "G04", value=shown, limit=limit
+        )
+    return value
+
+
+def _part(part: str | Node, token: Token, values: Values) -> str:
     """Text of a bracket with the number in place of an expression."""
-    return part if isinstance(part, str) else f"{part.value(values):.12f}"
+    return part if isinstance(part, str) else f"{bounded(token, part.value(values), values):.12f}"
 
 
 def _skip_level(line: str, source: Source) -> tuple[int, int]:
@@ -347,12 +390,6 @@ class BlockWords:
         if self.direct is not None or not any(code.own_words for code in self.codes):
             raise faults.NUMBER_WITHOUT_WORD.at(self.source, token.column, word=token.shown)
         self.direct = float(token.text)
-
-    def require_no_end(self, call: Call) -> None:
-        """Raises ProgramError 21021 when the block of a call also ends the program."""
-        ending = next((code for code in self.m if code.flow in ("end", "return")), None)
-        if ending is not None:
-            raise faults.CALL_AND_END.at(self.source, call.column, word=ending.name)
 
     def block(self) -> NcBlock:
         """The finished block."""

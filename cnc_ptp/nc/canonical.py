@@ -133,7 +133,9 @@ class ExplicitSynchronisation(NamedTuple):
 
 
 class WaitForPath(NamedTuple):
-    """#FLUSH WAIT; also before a line that reads what only the run knows: the path stands when it is interpreted."""
+    """#FLUSH: the path stands. `awaited`: the interpreter needs the actual positions of that instant."""
+
+    awaited: bool = False
 
 
 class Message(NamedTuple):

@@ -93,10 +93,11 @@ def interpret(
             if block is PAUSE:
                 if not runs:
                     raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
-                yield CanonicalBlock(values.source, (WaitForPath(),), None, "")
+                yield CanonicalBlock(values.source, (WaitForPath(True),), None, "")
                 continue
             canonical = _resolve(channel, state, block, check_target)
-            execution.moved = canonical is not None and canonical.motion is not None
+            motion = None if canonical is None else canonical.motion
+            execution.moved = motion is not None and not isinstance(motion, Dwell)
             if canonical is not None:
                 yield canonical
     except ProgramError as error:
@@ -120,7 +121,8 @@ def _resolve(
                 state.path = code.number
         elif code.select is not None:
             code.select(state)
-        elif code.prepare is not None:
+    for code in block.codes:
+        if code.prepare is not None:
             code.prepare(channel, state, block, code)
         elif code.function is not None:
             control += code.function(channel, state, block, code)
@@ -156,6 +158,11 @@ def _resolve(
     if motion is None and not functions and not stop:
         return None
     return CanonicalBlock(block.source, functions, motion, stop)
+
+
+def awaits_path(block: CanonicalBlock) -> bool:
+    """Behind this block the interpreter needs what only the run knows."""
+    return any(isinstance(function, WaitForPath) and function.awaited for function in block.functions)
 
 
 def _require_speed(state: ModalState, motion: Motion | None) -> None:
@@ -206,7 +213,7 @@ def check(
             runs=True,
         )
         for block in blocks:
-            if any(isinstance(function, WaitForPath) for function in block.functions):
+            if awaits_path(block):
                 break
     except ProgramError as error:
         if all((error.file, error.line) != (known.file, known.line) for known in errors):

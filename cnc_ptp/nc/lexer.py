@@ -20,7 +20,7 @@ from cnc_ptp.nc.expressions.nodes import (
     Node,
     Subtract,
 )
-from cnc_ptp.nc.expressions.reader import CONTINUES, FILLS, OPENS, Assignable, ExpressionReader
+from cnc_ptp.nc.expressions.reader import CONTINUES, CONTINUES_BEHIND_EQUALS, FILLS, OPENS, Assignable, ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 
 MAX_DIGITS: Final = 9
@@ -207,6 +207,8 @@ class TokenReader:
         self.length = len(line.rstrip())
         self.synchronises = False
         """One of them reads what only the run knows."""
+        self.call_synchronises = False
+        """The same for the arguments of a call, which are read later."""
 
     def tokens(self, begin: int) -> list[Token]:
         """All tokens from index `begin` on; the first unreadable place raises."""
@@ -221,19 +223,21 @@ class TokenReader:
         """The token at a place, and where it ends."""
         if _TARGET.match(self.line, position):
             return self._assignment(position)
-        cycle = _CYCLE.match(self.line, position)
-        if cycle is not None:
-            return self._cycle(cycle)
-        code = _CYCLE_CODE.match(self.line, position)
-        if code is not None:
-            return self._cycle_code(code)
+        cycle, code = _CYCLE.match(self.line, position), _CYCLE_CODE.match(self.line, position)
+        if cycle is not None or code is not None:
+            before, self.synchronises = self.synchronises, False
+            call = self._cycle(cycle) if cycle is not None else self._cycle_code(code) if code is not None else None
+            assert call is not None
+            self.call_synchronises, self.synchronises = self.synchronises, before
+            return call
         match = _TOKEN.match(self.line, position)
         if match is None or _VALUED.match(self.line, position):
             return self._computed(position)
         kind = match.lastgroup or ""
         if kind == "bracket" and FILLS.match(self.line, self.line.index("[", match.start("bracket"))):
             return self._computed(position)
-        if kind in _NUMBERED and CONTINUES.match(self.line, match.end()):
+        continues = CONTINUES_BEHIND_EQUALS if "=" in match[0] else CONTINUES
+        if kind in _NUMBERED and continues.match(self.line, match.end()):
             return self._computed(position)
         token = _token(match)
         if kind == "bracket" and _COMPUTED_INSIDE.search(token.text):
@@ -254,6 +258,7 @@ class TokenReader:
         reader = self._reader(position)
         begin = reader.skip_blanks()
         target = reader.target()
+        self.synchronises = self.synchronises or reader.synchronises
         if target is None:
             raise reader.operand_missing(begin)
         end = reader.at
@@ -340,6 +345,13 @@ class TokenReader:
         begin = value.column - 1
         return Token("bare", "", "", begin + 1, self.line[begin:end].rstrip(), value), end
 
+    def _computes(self, at: int) -> bool:
+        """Whether an expression that is more than a number begins there."""
+        number_ = _NUMBER_NEXT.match(self.line, at)
+        return (OPENS if number_ is None else CONTINUES).match(
+            self.line, at if number_ is None else number_.end()
+        ) is not None
+
     def _opens(self, at: int) -> bool:
         """Whether an expression begins there; the bracket of a spindle or an axis is none."""
         if self.line.startswith("[", at):
@@ -353,13 +365,15 @@ class TokenReader:
         parts: list[str | Node] = []
         while at < end:
             match = _INSIDE_WORD.match(self.line, at)
-            if match is not None and OPENS.match(self.line, match.end()):
+            if match is not None and self._computes(match.end()):
                 value, after = self._read(match.end())
                 parts += [f"{match[1]}=", value, " "]
                 at = after
             else:
                 step = _INSIDE_REST.match(self.line, at)
                 assert step is not None
+                if step.end() == at:
+                    raise faults.UNEXPECTED_CHARACTER.at(self.source, at + 1, character=self.line[at])
                 parts.append(self.line[at : min(step.end(), end)])
                 at = min(step.end(), end)
         return token._replace(parts=parts)
@@ -391,7 +405,7 @@ _DWELL = re.compile(r"G\s*0*4(?!\d)", re.ASCII)
 _BARE = re.compile(r"\s*\[", re.ASCII)
 _NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)
 _NUMBERED = ("word", "named", "position")
-_COMPUTED_INSIDE = re.compile(r"[A-Z]\s*=?\s*[-+]*\s*(?:\[|P\s*[\d\[]|V\s*\.|@)", re.ASCII)
+_COMPUTED_INSIDE = re.compile(r"[A-Z]\s*=?\s*[-+]*\s*(?:\[|P\s*[\d\[]|V\s*\.|@)|[\d.][-+*/]", re.ASCII)
 _INSIDE_WORD = re.compile(r"\s*([A-Z_]+)\s*=?", re.ASCII)
 _INSIDE_REST = re.compile(r"\s*[A-Z_]*\s*=?\s*[^A-Z\]]*", re.ASCII)
 

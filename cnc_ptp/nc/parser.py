@@ -26,18 +26,29 @@ from cnc_ptp.nc.program_text import ProgramText
 MOST_ERRORS: Final = 1000
 """Errors of a file that are kept; the rest is not looked for."""
 
+RETURNS: Final = ("M17", "M29")
+_NUMBER = r"\s*(?:/\d*\s*)?(?:N\s*\d+\s*)?#\s*"
+_END_OF_VARIABLES = re.compile(_NUMBER + r"ENDVAR(?![A-Z])", re.ASCII | re.IGNORECASE)
+_END_OF_COMMENT = re.compile(_NUMBER + r"COMMENT\s+END(?![A-Z])", re.ASCII | re.IGNORECASE)
 _HEADER = re.compile(r"\s*%(?P<local>L(?=\s|$))?\s*(?P<name>[^\s(;\"\],#$\[]*)\s*(?P<rest>.*)", re.IGNORECASE)
 
 
 NO_FILES: Final[Mapping[str, str]] = {}
 
 
-def parse_program(text: str, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES) -> Program:
+def parse_program(
+    text: str,
+    file: str,
+    *,
+    mdi: bool = False,
+    files: Mapping[str, str] = NO_FILES,
+    library: Mapping[str, Program] | None = None,
+) -> Program:
     """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks).
 
-    `files`: the texts of the programs that it may call, by name.
+    `files`: the texts of the programs that it may call, by name; `library`: such programs that have been read already.
     """
-    program, errors = parse_all(text, file, mdi=mdi, files=files)
+    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library)
     if errors:
         raise errors[0]
     return program
@@ -51,15 +62,21 @@ def parse_all(
 
 
 def parse_text(
-    text: ProgramText, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES
+    text: ProgramText,
+    file: str,
+    *,
+    mdi: bool = False,
+    files: Mapping[str, str] = NO_FILES,
+    library: Mapping[str, Program] | None = None,
 ) -> tuple[Program, list[ProgramError]]:
     """As parse_all, from memory or from a file."""
-    library = {name.upper(): Program(name, ProgramText(content), read_line) for name, content in files.items()}
+    called = {name.upper(): Program(name, ProgramText(content), read_line) for name, content in files.items()}
+    known = {**(library or {}), **called}
     program = Program(file, text, read_line)
     errors: list[ProgramError] = []
     with paused_collector():
-        for each in (program, *library.values()):
-            each.library = library
+        for each in (program, *called.values()):
+            each.library = known
             errors += _Reader(each, mdi=mdi, called=each is not program).read()
     return program, errors
 
@@ -101,14 +118,9 @@ class _Reader:
             self.errors.append(line.error)
         if line.header:
             self._header(line)
-        elif (
-            self.structures.awaits_case
-            and line.control is None
-            and (line.block is not None or line.statement is not None)
-        ):
+        elif self.structures.awaits_case and line.control is None and line.does_something:
             word = line.source.text.split()[0]
-            line.error = flow_faults.BEFORE_CASE.at(line.source, line.source.text.index(word) + 1, word=word)
-            self.errors.append(line.error)
+            self._mark(line, flow_faults.BEFORE_CASE.at(line.source, line.source.text.index(word) + 1, word=word))
         elif line.block is not None and line.statement is None and not line.label:
             self._require_section(line, offset)
             self._note_end(line)
@@ -135,17 +147,15 @@ class _Reader:
 
     def _note_end(self, line: Line) -> None:
         """M30, M02, M29, M17."""
-        block = line.block
-        if block is None or not block.flow:
+        flow = line.flow or (line.block.flow if line.block is not None else "")
+        if flow not in ("end", "return"):
             return
         section = self.sections[-1]
         is_main = section.kind == "main program" and not self.called
-        if block.flow == "return" and is_main:
-            code = next(code for code in block.m if code.flow == "return")
-            column = line.source.column(code.name)
-            line.error = faults.RETURN_IN_MAIN.at(line.source, column, word=code.name)
-            self.errors.append(line.error)
-        elif not line.skip and (block.flow == "end" or (block.flow == "return" and not is_main)):
+        if flow == "return" and is_main:
+            word = next(name for name in line.source.names if name in RETURNS)
+            self._mark(line, faults.RETURN_IN_MAIN.at(line.source, line.source.column(word), word=word))
+        elif not line.skip:
             self.ended = True
 
     # sections
@@ -207,9 +217,14 @@ class _Reader:
             elif line.comment:
                 self.opened = line
         except ProgramError as error:
-            self.errors.append(error)
-            line.error = error
+            self._mark(line, error)
         self._note_end(line)
+
+    def _mark(self, line: Line, error: ProgramError) -> None:
+        """An error that the line alone does not show: the line is kept with it."""
+        self.errors.append(error)
+        line.error = line.error or error
+        self.program.special[line.number] = line
 
     def _control(self, line: Line, begin: Place, behind: Place) -> None:
         control = line.control
@@ -229,14 +244,15 @@ class _Reader:
         else:
             structure = structures.leaves(keyword, line.source, control.column)
         self.program.structure_of[line.number] = structure
+        if control.synchronises or (keyword == "$FOR" and line.synchronises):
+            structure.synchronises = True
 
     def _inside(self, line: Line) -> None:
         """A line between #VAR and #ENDVAR, or of a comment over several lines."""
         opened = self.opened
         assert opened is not None
-        text = line.source.text.upper()
-        closing = "#COMMENT END" if opened.comment else "#ENDVAR"
-        if " ".join(text.split()).startswith(closing):
+        closing = _END_OF_COMMENT if opened.comment else _END_OF_VARIABLES
+        if closing.match(line.source.text):
             opened.next_number, opened.next_offset = line.next_number, line.next_offset
             self.program.special[opened.number] = opened
             self.opened = self.declarations = None
@@ -245,6 +261,7 @@ class _Reader:
                 declared = declaration_of(line)
                 if declared is not None:
                     self.declarations.lines.append((line, declared))
+                    opened.synchronises = opened.synchronises or line.synchronises
             except ProgramError as error:
                 self.errors.append(error)
                 opened.error = opened.error or error

@@ -31,9 +31,8 @@ def zero_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode
 def select_offset(channel: Channel, state: ModalState, index: int) -> None:
     """An offset without values has none: it is 0 for all axes."""
     coordinates = state.coordinates
-    coordinates.zero_index = index
     zero = offset_values(channel, state, index) if index else ()
-    coordinates.own = coordinates.own._replace(zero=zero)
+    coordinates.own = coordinates.own._replace(zero_index=index, zero=zero)
     refresh(channel, state)
 
 

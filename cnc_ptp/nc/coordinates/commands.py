@@ -9,7 +9,9 @@ from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import NO_OFFSETS, System, system_of
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
+from cnc_ptp.nc.expressions.expression_faults import VALUE_RANGE
 from cnc_ptp.nc.expressions.nodes import Node
+from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import AXIS_UNKNOWN
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
@@ -18,6 +20,7 @@ from cnc_ptp.nc.program import Channel, ModalState, NcBlock
 DEEPEST: Final = 10
 """Coordinate systems within each other."""
 LAST_SYSTEM: Final = 5
+LARGEST: Final = 999_999_999.0
 ROTATION: Final = "#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5] or #ROTATION OFF"
 SCALE: Final = "#SCALE X2 Y2, #SCALE ON, #SCALE ON X2 Y2 or #SCALE OFF"
 PSET: Final = "#PSET X10 Y20"
@@ -27,6 +30,14 @@ PRESET: Final = "#PRESET or #PRESET X Y"
 def system_syntax(command: str) -> str:
     values = "[10, 0, 0, 0, 0, 90]"
     return f"{command} DEF [1] {values}, {command} ON {values}, {command} ON [1], {command} OFF or {command} OFF ALL"
+
+
+def bounded(node: Node, values: Values) -> float:
+    """A value that may be as large as a word. Raises ProgramError."""
+    value = node.value(values)
+    if not -LARGEST <= value <= LARGEST:
+        raise values.fault(VALUE_RANGE, node.column, word="the command", value=number(value), limit=number(LARGEST))
+    return value
 
 
 class CoordinateCommand(Statement):
@@ -54,7 +65,7 @@ class Rotation(CoordinateCommand):
         if self.options is None:
             coordinates.turn = None
             return
-        given = {name: node.value(execution.values) for name, node in self.options.items()}
+        given = {name: bounded(node, execution.values) for name, node in self.options.items()}
         plane = plane_axes(channel, state, line.source, "#ROTATION")
         scale = coordinates.unit
         coordinates.plane = plane
@@ -79,7 +90,7 @@ class Scale(CoordinateCommand):
             index = axis_index(channel, line, axis, column)
             if axis in channel.rotary:
                 raise faults.SCALE_ROTARY.at(line.source, column, axis=axis)
-            value = node.value(execution.values)
+            value = bounded(node, execution.values)
             if value <= 0.0:
                 raise faults.SCALE_FACTOR.at(line.source, column, value=number(value), axis=axis)
             scale[index] = value
@@ -112,7 +123,7 @@ class SystemCommand(CoordinateCommand):
         key = (self.command, self._number(state, execution, line))
         defined = dict(coordinates.defined or {})
         if self.values:
-            given = [0.0 if node is None else node.value(execution.values) for node in self.values]
+            given = [0.0 if node is None else bounded(node, execution.values) for node in self.values]
             lengths = [value * coordinates.unit for value in given[:3]]
             defined[key] = (*lengths, *given[3:], *[0.0] * (6 - len(given)))
             coordinates.defined = defined
@@ -125,7 +136,7 @@ class SystemCommand(CoordinateCommand):
     def _number(self, state: ModalState, execution: Flow, line: Line) -> int:
         if self.identity is None:
             return 1 if self.values else (state.coordinates.last_defined or {}).get(self.command, 1)
-        value = self.identity.value(execution.values)
+        value = bounded(self.identity, execution.values)
         if value != int(value) or not 1 <= value <= LAST_SYSTEM:
             shown = number(value)
             raise faults.SYSTEM_NUMBER.at(line.source, self.identity.column, number=shown, limit=LAST_SYSTEM)
@@ -183,7 +194,7 @@ class Preset(CoordinateCommand):
             if not self.on:
                 preset[index] = 0.0
                 continue
-            value = node.value(execution.values) * (1.0 if axis in channel.rotary else coordinates.unit)
+            value = bounded(node, execution.values) * (1.0 if axis in channel.rotary else coordinates.unit)
             preset[index] += state.programmed[index] - value
         if not self.on and not self.axes:
             preset = [0.0] * len(preset)
@@ -198,6 +209,7 @@ def read_rotation(line: Line, text: str, end: int, column: int) -> None:
     options = words.options("ANGLE", "CENTER1", "CENTER2") if switch == "ON" else None
     words.require_end()
     line.statement = Rotation(column, options)
+    line.synchronises = words.reader.synchronises
 
 
 def read_scale(line: Line, text: str, end: int, column: int) -> None:
@@ -208,6 +220,7 @@ def read_scale(line: Line, text: str, end: int, column: int) -> None:
     if not switch and not factors:
         raise words.missing("ON, OFF or factors")
     line.statement = Scale(column, factors, switch)
+    line.synchronises = words.reader.synchronises
 
 
 def read_system(line: Line, text: str, end: int, column: int) -> None:
@@ -232,6 +245,7 @@ def read_system(line: Line, text: str, end: int, column: int) -> None:
     if action == "DEF" and not values:
         raise words.missing("values")
     line.statement = SystemCommand(column, command, action, identity, values)
+    line.synchronises = words.reader.synchronises
 
 
 def read_preset(line: Line, text: str, end: int, column: int) -> None:
@@ -241,3 +255,4 @@ def read_preset(line: Line, text: str, end: int, column: int) -> None:
     if on and not axes:
         raise words.missing("an axis")
     line.statement = Preset(column, axes, on=on)
+    line.synchronises = words.reader.synchronises

@@ -24,8 +24,9 @@ Offsets = tuple[float, ...]
 
 
 class Own(NamedTuple):
-    """Offsets of the workpiece or of one coordinate system: zero offset, G92, #PSET."""
+    """Offsets of the workpiece or of one coordinate system: zero offset (index 0: G53, 1: G54 ...), G92, #PSET."""
 
+    zero_index: int = 0
     zero: Offsets = ()
     added: Offsets = ()
     preset: Offsets = ()
@@ -48,7 +49,6 @@ class Coordinates:
     """The state; `frame` is what it amounts to, None if programmed positions are machine positions.
 
     unit        mm of one programmed length: 1 (G71) or 25.4 (G70)
-    zero_index  0: G53, 1: G54 ...
     tables      zero offsets by index, with what the program has changed
     turn        angle (deg) and centre of #ROTATION, in the plane that was active
     plane       places of the axes of that plane
@@ -61,7 +61,6 @@ class Coordinates:
     """
 
     unit: float = 1.0
-    zero_index: int = 0
     tables: dict[int, Offsets] | None = None
     own: Own = NO_OFFSETS
     turn: tuple[float, float, float] | None = None

@@ -1,4 +1,7 @@
-"""Software limits that a program has set (G98, G99), within those of the axis lists."""
+"""Software limits that a program has set (G98, G99), within those of the axis lists.
+
+An axis that does not move may be beyond a limit that came later.
+"""
 
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CircularMove, LinearMove
@@ -11,9 +14,13 @@ def check_limits(channel: Channel, state: ModalState, block: NcBlock, motion: Li
     points = [motion.target]
     if isinstance(motion, CircularMove):
         points += extreme_points(state.position, motion)
+    ends = zip(motion.target, state.position, strict=True)
+    moving = {place for place, (target, position) in enumerate(ends) if target != position}
+    if isinstance(motion, CircularMove):
+        moving.update(motion.plane)
     for index, (low, high) in (state.coordinates.limits or {}).items():
         for point in points:
-            if low <= point[index] <= high:
+            if low <= point[index] <= high or index not in moving:
                 continue
             name = channel.axes[index]
             fault, limit = (faults.LIMIT_POSITIVE, high) if point[index] > high else (faults.LIMIT_NEGATIVE, low)

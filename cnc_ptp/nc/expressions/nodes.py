@@ -214,23 +214,22 @@ class Add(Binary):
         self.may_be_text = left.may_be_text or right.may_be_text
 
     def value(self, values: Values) -> float:
-        if self.may_be_text:
-            return super().value(values) if isinstance(self.scalar(values), str) else self.sum(values)
-        return self.sum(values)
-
-    def sum(self, values: Values) -> float:
-        return self.finite(values, self.left.value(values) + self.right.value(values), "+")
+        if not self.may_be_text:
+            return self.finite(values, self.left.value(values) + self.right.value(values), "+")
+        found = self.scalar(values)
+        if isinstance(found, str):
+            raise values.fault(faults.NUMBER_EXPECTED, self.column, what=shown(found))
+        return found
 
     def scalar(self, values: Values) -> Scalar:
-        if self.may_be_text:
-            left, right = self.left.scalar(values), self.right.scalar(values)
-            if isinstance(left, str) or isinstance(right, str):
-                joined = plain(left) + plain(right)
-                if len(joined) > LONGEST_TEXT:
-                    words = {"length": len(joined), "limit": LONGEST_TEXT}
-                    raise values.fault(faults.TEXT_TOO_LONG, self.column, name="+", **words)
-                return joined
-        return self.sum(values)
+        left, right = self.left.scalar(values), self.right.scalar(values)
+        if not isinstance(left, str) and not isinstance(right, str):
+            return self.finite(values, left + right, "+")
+        joined = plain(left) + plain(right)
+        if len(joined) > LONGEST_TEXT:
+            words = {"length": len(joined), "limit": LONGEST_TEXT}
+            raise values.fault(faults.TEXT_TOO_LONG, self.column, name="+", **words)
+        return joined
 
 
 def plain(value: Scalar) -> str:
@@ -390,7 +389,9 @@ class TextCall(Node):
             found = argument.scalar(values)
             if kind == "t" and not isinstance(found, str):
                 raise values.fault(faults.TEXT_EXPECTED, argument.column)
-            given.append(found if kind == "t" else argument.value(values))
+            if kind == "n" and isinstance(found, str):
+                raise values.fault(faults.NUMBER_EXPECTED, argument.column, what=shown(found))
+            given.append(found)
         result = self.operation(given)
         if not isinstance(result, str) and result != result:
             of = ", ".join(shown(value) for value in given)
@@ -420,4 +421,4 @@ class Exists(Node):
             return 1.0 if asked.name in values.scope(asked.name) else 0.0
         if isinstance(asked, Argument):
             return 1.0 if asked.name in values.arguments else 0.0
-        return 1.0 if asked.index in values.parameters else 0.0
+        return 1.0 if asked.index in values.parameters or f"P{asked.index}" in values.program else 0.0

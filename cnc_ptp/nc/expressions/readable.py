@@ -91,6 +91,9 @@ def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) ->
 def in_mm(values: Values, axis: int, value: Scalar, column: int) -> float:
     if isinstance(value, str):
         raise values.fault(faults.NUMBER_EXPECTED, column, what="the value of an offset")
+    if not -LARGEST_POSITION <= value <= LARGEST_POSITION:
+        words = {"value": f"{value:g}", "limit": f"{LARGEST_POSITION:g}"}
+        raise values.fault(faults.VALUE_RANGE, column, word="the offset", **words)
     return value if values.channel.axes[axis] in values.channel.rotary else value * values.state.coordinates.unit
 
 
@@ -123,8 +126,12 @@ def feed(values: Values) -> float:
     return values.state.feed * 60.0 / values.state.coordinates.unit
 
 
+def radius(values: Values) -> float:
+    return values.state.radius / values.state.coordinates.unit
+
+
 def zero_index(values: Values) -> float:
-    return float(values.state.coordinates.zero_index)
+    return float(values.state.coordinates.own.zero_index)
 
 
 def turned(values: Values) -> bool:
@@ -193,7 +200,12 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     ),
     "V.G.PROG_ABS": (((), Reading("TRUE with G90", lambda values, u, c: 1.0 if values.state.absolute else 0.0)),),
     "V.G.PROG_LEVEL": (((), Reading("1 in the main program", lambda values, u, c: float(values.level))),),
-    "V.G.R": (((), Reading("last radius of an arc", lambda values, u, c: values.state.radius)),),
+    "V.G.R": (
+        (
+            (),
+            Reading("last radius of an arc", lambda values, u, c: radius(values)),
+        ),
+    ),
     "V.G.@P": ((("*", "VALID"), Reading("TRUE if the call gave @P of this number", argument_given)),),
     "V.SPDL_PROG.SPEED": ((("*",), Reading("programmed speed, rpm", spindle_speed)),),
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),

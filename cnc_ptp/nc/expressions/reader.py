@@ -48,6 +48,8 @@ Assignable = Parameter | ComputedParameter | SelfDefined | Readable
 
 DEEPEST: Final = 40
 """Levels of brackets and operators within each other."""
+MOST_OPERATORS: Final = 150
+"""Operators one after the other."""
 SIGN: Final = 10
 POWER: Final = 11
 
@@ -73,6 +75,8 @@ FILLS = re.compile(rf"\[\s*(?:[-+]\s*)*(?:\[|[\d.]|{_BEGINS})", re.ASCII)
 """Whether a bracket holds an expression and not words of a spindle or an axis."""
 CONTINUES = re.compile(r"[-+*/]|\s+MOD(?![A-Z0-9_])", re.ASCII)
 """Whether an expression continues behind a number: in `X10 -5` the letter of another word is missing."""
+CONTINUES_BEHIND_EQUALS = re.compile(r"\s*(?:[-+*/]|MOD(?![A-Z0-9_]))", re.ASCII)
+"""The same behind `X=10`, where blanks may precede the operator."""
 
 
 class ExpressionReader:
@@ -151,12 +155,16 @@ class ExpressionReader:
         if self._depth > DEEPEST:
             raise self.fault(faults.TOO_DEEP, self.at, limit=DEEPEST)
         node = self._operand()
+        operators = 0
         while True:
             found = _OPERATOR.match(self.line, self.at)
             strength = _OPERATORS[found[1]] if found else 0
             if found is None or strength < weakest:
                 break
             place = found.start(1)
+            operators += 1
+            if operators > MOST_OPERATORS:
+                raise self.fault(faults.TOO_LONG, place, limit=MOST_OPERATORS)
             self.at = found.end()
             right = self.expression(POWER if strength == POWER else strength + 1)
             node = _joined(found[1], place + 1, node, right)
@@ -246,7 +254,11 @@ class ExpressionReader:
                 computed = self.expression()
                 self.close(opened)
             else:
+                self._depth += 1
+                if self._depth > DEEPEST:
+                    raise self.fault(faults.TOO_DEEP, self.at, limit=DEEPEST)
                 inner = self.target()
+                self._depth -= 1
                 if inner is None:
                     raise self.operand_missing(self.skip_blanks())
                 computed = inner

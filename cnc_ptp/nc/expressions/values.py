@@ -1,6 +1,7 @@
 """Values that expressions read and assignments change: P parameters and self-defined variables."""
 
 from difflib import get_close_matches
+from math import floor
 from typing import Final
 
 from cnc_ptp.nc.canonical import Source, number
@@ -47,15 +48,33 @@ def shown(value: Scalar) -> str:
     return f'"{value}"' if isinstance(value, str) else number(value)
 
 
-class Variable:
-    """A self-defined variable or an array: its values in the order of the last index."""
+INTEGERS: Final = {
+    "BOOLEAN": (0.0, 1.0),
+    "SGN08": (-128.0, 127.0),
+    "UNS08": (0.0, 255.0),
+    "SGN16": (-32768.0, 32767.0),
+    "UNS16": (0.0, 65535.0),
+    "SGN32": (-2147483648.0, 2147483647.0),
+    "UNS32": (0.0, 4294967295.0),
+}
+"""Types of integers with their ranges; a value is rounded to the nearest one."""
 
-    def __init__(self, name: str, dimensions: tuple[int, ...], values: list[Scalar]) -> None:
+
+class Variable:
+    """A self-defined variable or an array: its values in the order of the last index.
+
+    `type` of #VAR, "" for none; `longest` text.
+    """
+
+    def __init__(
+        self, name: str, dimensions: tuple[int, ...], values: list[Scalar], type: str = "", longest: int = 0
+    ) -> None:
         self.name, self.dimensions, self.values = name, dimensions, values
+        self.type, self.longest = type, longest or LONGEST_TEXT
         self.is_text = isinstance(values[0], str)
 
     def copy(self) -> "Variable":
-        return Variable(self.name, self.dimensions, list(self.values))
+        return Variable(self.name, self.dimensions, list(self.values), self.type, self.longest)
 
 
 class Values:
@@ -76,6 +95,8 @@ class Values:
         self.shared: dict[str, Variable] = {}
         self.local: dict[str, Variable] = {}
         self.cycle: dict[str, Variable] = {}
+        self.inherited: dict[str, Variable] = {}
+        """V.CYC. of the callers, which are also in `cycle`."""
         self.arguments: dict[str, Scalar] = {}
         """What a call has given its subroutine, by name (@P1)."""
         self.count = 0
@@ -125,11 +146,38 @@ class Values:
             raise self.fault(faults.VARIABLE_UNKNOWN, column, name=name, nearest=nearest)
         return found
 
-    def declare(self, name: str, dimensions: tuple[int, ...], values: list[Scalar], column: int) -> None:
+    def declare(
+        self,
+        name: str,
+        dimensions: tuple[int, ...],
+        values: list[Scalar],
+        column: int,
+        type: str = "",
+        longest: int = 0,
+    ) -> None:
         """Makes a variable."""
         self.reserve(len(values), name, column)
         self.count += len(values)
-        self.scope(name)[name] = Variable(name, dimensions, values)
+        self.scope(name)[name] = Variable(name, dimensions, values, type, longest)
+
+    def conforming(self, variable: Variable, value: Scalar, column: int) -> Scalar:
+        """The value as the variable holds it. Raises ProgramError for one that it does not take."""
+        if isinstance(value, str) != variable.is_text:
+            kind, other = ("text", "number") if variable.is_text else ("number", "text")
+            raise self.fault(faults.TYPE_CHANGE, column, name=variable.name, kind=kind, other=other)
+        if isinstance(value, str):
+            if len(value) > variable.longest:
+                words = {"length": len(value), "limit": variable.longest}
+                raise self.fault(faults.TEXT_TOO_LONG, column, name=variable.name, **words)
+            return value
+        limits = INTEGERS.get(variable.type)
+        if limits is None:
+            return value
+        nearest = floor(value + 0.5)
+        if not limits[0] <= nearest <= limits[1]:
+            words_ = {"type": variable.type, "low": f"{limits[0]:.0f}", "high": f"{limits[1]:.0f}"}
+            raise self.fault(faults.VALUE_OF_TYPE, column, name=variable.name, value=number(value), **words_)
+        return float(nearest)
 
     def reserve(self, count: int, name: str, column: int) -> None:
         """Raises ProgramError 21434 if there is no room for so many values."""
@@ -140,6 +188,8 @@ class Values:
         scope = self.scope(name)
         if name not in scope:
             raise self.fault(faults.DELETED_UNKNOWN, column, name=name, nearest=nearest_name(name, list(scope)))
+        if scope is self.cycle and name in self.inherited:
+            raise self.fault(faults.DELETED_OF_CALLER, column, name=name)
         self.count -= len(scope[name].values)
         del scope[name]
 
@@ -174,22 +224,16 @@ class Values:
         """Gives a variable a value; one that is not an array is declared by that."""
         scope = self.scope(name)
         found = scope.get(name)
-        if found is not None and not indices and not found.dimensions and isinstance(value, str) == found.is_text:
-            found.values[0] = value
+        if found is not None and not indices and not found.dimensions:
+            plain = not found.type and isinstance(value, float) and not found.is_text
+            found.values[0] = value if plain else self.conforming(found, value, column)
             return
-        if isinstance(value, str) and len(value) > LONGEST_TEXT:
-            raise self.fault(faults.TEXT_TOO_LONG, column, name=name, length=len(value), limit=LONGEST_TEXT)
         if found is None and not indices:
             self.declare(name, (), [value], column)
             return
         variable = self.variable(name, column)
-        if variable.is_text != isinstance(value, str):
-            kinds = {
-                "kind": "text" if variable.is_text else "number",
-                "other": "number" if variable.is_text else "text",
-            }
-            raise self.fault(faults.TYPE_CHANGE, column, name=name, **kinds)
-        variable.values[self.place(variable, indices, column)] = value
+        conforming = self.conforming(variable, value, column)
+        variable.values[self.place(variable, indices, column)] = conforming
 
 
 def copies(variables: dict[str, Variable]) -> dict[str, Variable]:

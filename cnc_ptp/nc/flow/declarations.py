@@ -5,12 +5,13 @@ from typing import Final
 
 from cnc_ptp.nc.expressions.nodes import ComputedParameter, Constant, Node, Parameter, SelfDefined, Text
 from cnc_ptp.nc.expressions.reader import ExpressionReader
+from cnc_ptp.nc.expressions.values import INTEGERS
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import Declaration
 from cnc_ptp.nc.lexer import normalise
 
-TYPES: Final = ("BOOLEAN", "SGN08", "UNS08", "SGN16", "UNS16", "SGN32", "UNS32", "REAL64", "STRING")
+TYPES: Final = (*INTEGERS, "REAL64", "STRING")
 LONGEST_STRING: Final = 126
 _TYPE = re.compile(r"\s*:\s*([A-Z][A-Z0-9]*)", re.ASCII)
 _BLOCK_NUMBER = re.compile(r"\s*N\s*\d{1,9}(?![\d.])", re.ASCII)
@@ -33,7 +34,7 @@ def declaration_of(line: Line) -> Declaration | None:
         name, sizes = f"P{target.index}", []
     else:
         raise flow_faults.DECLARATION.at(line.source, begin + 1, word=text[begin:].split()[0])
-    typed, is_text, longest = _type(reader, line)
+    type_name, longest = _type(reader, line)
     values: list[Node] = []
     if reader.follows("="):
         if sizes:
@@ -42,27 +43,29 @@ def declaration_of(line: Line) -> Declaration | None:
             values = reader.items()
         else:
             values = [reader.expression()]
-            is_text = is_text or (not typed and isinstance(values[0], Text))
+            if not type_name and isinstance(values[0], Text):
+                type_name = "STRING"
     if reader.skip_blanks() < len(text.rstrip()):
         raise flow_faults.WORDS_AFTER.at(line.source, reader.at + 1, word=reader.word(), keyword="a declaration")
-    return Declaration(begin + 1, name, sizes, values, is_text=is_text, longest=longest)
+    line.synchronises = reader.synchronises
+    return Declaration(begin + 1, name, sizes, values, type=type_name, longest=longest)
 
 
-def _type(reader: ExpressionReader, line: Line) -> tuple[bool, bool, int]:
-    """Whether the line gives a type, whether that is a text, and its length."""
+def _type(reader: ExpressionReader, line: Line) -> tuple[str, int]:
+    """The type that the line gives, "" for none, and the length of a text."""
     found = _TYPE.match(reader.line, reader.at)
     if found is None:
-        return False, False, 0
+        return "", 0
     if found[1] not in TYPES:
         known = ", ".join(TYPES)
         raise flow_faults.TYPE_UNKNOWN.at(line.source, found.start(1) + 1, word=found[1], known=known)
     reader.at = found.end()
     if found[1] != "STRING":
-        return True, False, 0
+        return found[1], 0
     begin = reader.at
     if not reader.follows("["):
         raise flow_faults.STRING_LENGTH.at(line.source, begin + 1, limit=LONGEST_STRING)
     (length, *more) = reader.items()
     if more or not isinstance(length, Constant) or not 1.0 <= length.constant <= LONGEST_STRING:
         raise flow_faults.STRING_LENGTH.at(line.source, begin + 1, limit=LONGEST_STRING)
-    return True, True, int(length.constant)
+    return found[1], int(length.constant)

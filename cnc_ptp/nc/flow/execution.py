@@ -23,7 +23,17 @@ class Limits(NamedTuple):
     repeats: int = 1_000_000
 
 
+EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
+"""Statements that evaluate what other lines of their structure say."""
 MODAL_BLOCK: Final = "MODAL_BLOCK"
+
+
+class Pending(NamedTuple):
+    """A call that is due as soon as execution is at this depth again."""
+
+    call: Call
+    line: Line
+    depth: int
 
 
 class Frame:
@@ -56,35 +66,42 @@ class Execution(Flow):
         self.number, self.offset = program.main.line, program.main.offset
         self.frames: list[Frame] = []
         self.ended = False
+        self.moved = False
+        """The last block had a motion; who resolves it says so."""
         self._repeats = 0
-        self._call: Call | None = None
         self._line: Line | None = None
+        """Of the last block, until what follows it has been done."""
         self._depth = 0
         """Calls above the last block."""
+        self._returns = False
+        """The last block ends its subroutine."""
+        self._pending: list[Pending] = []
+        """Calls that are due, the next one last."""
         self._paused = -1
         self._modal: Call | None = None
         """The call that follows each motion or block."""
         self._modal_line: Line | None = None
         self._modal_depth = 0
-        self.moved = False
-        """The last block had a motion; who resolves it says so."""
 
     # the next block
 
     def next_block(self) -> NcBlock | None:
         """The next block with words, PAUSE, COMPUTES, or None at the end of the program. Raises ProgramError."""
-        call, line = self._call, self._line
-        if line is not None:
-            self._call = self._line = None
-            if call is not None:
-                self._enter(call, line)
-            elif self._modal is not None and self._modal_line is not None and self._modal_due:
-                self._enter(self._modal, self._modal_line)
+        if self._line is not None:
+            self._after_block(self._line)
         lines = 0
-        while not self.ended:
+        while True:
             lines += 1
             if lines > LINES_AT_ONCE:
                 return COMPUTES
+            if self._pending and self._pending[-1].depth == len(self.frames):
+                if self._pauses(self._pending[-1].call.synchronises, -2):
+                    return PAUSE
+                due = self._pending.pop()
+                self._enter(due.call, due.line)
+                continue
+            if self.ended:
+                return None
             if self.offset < 0:
                 self._end_of_section()
                 continue
@@ -97,38 +114,54 @@ class Execution(Flow):
                 continue
             if line.error is not None:
                 raise line.error
-            if line.synchronises and self._paused != self.number:
-                self._paused = self.number
+            if self._pauses(
+                line.synchronises or (line.control is not None and self._structure_waits(line)), self.number
+            ):
                 self.values.source = line.source
                 return PAUSE
-            self._paused = -1
             self.number, self.offset = line.next_number, line.next_offset
+            if line.source.block_number:
+                self.values.block_number = line.source.block_number
             block = line.block
             if line.statement is not None:
                 self.values.source = line.source
                 block = line.statement.run(self, line)
             if block is not None:
-                self._line, self._call, self._depth = line, line.call, len(self.frames)
-                self._follow(block, line)
+                self._line, self._depth = line, len(self.frames)
+                self._returns = block.flow == "return"
+                self.ended = block.flow == "end"
                 return block
             if line.call is not None:
-                self._enter(line.call, line)
-        return None
+                self._pending.append(Pending(line.call, line, len(self.frames)))
 
-    @property
-    def _modal_due(self) -> bool:
-        """The modal call follows the last block: not within itself, and not after a block without a motion."""
-        assert self._modal is not None
-        return self._depth == self._modal_depth and (self.moved or self._modal.modal == MODAL_BLOCK)
+    def _pauses(self, needed: bool, place: int) -> bool:
+        """Whether the path must stand before what follows; once for each time that it is executed."""
+        if needed and self._paused != place:
+            self._paused = place
+            return True
+        self._paused = -1
+        return False
 
-    def _follow(self, block: NcBlock, line: Line) -> None:
-        """What a block does to the order of execution, when it has been executed."""
-        if block.flow == "end":
-            self.ended = True
-        elif block.flow == "return":
+    def _structure_waits(self, line: Line) -> bool:
+        """A condition or an end value that this line evaluates is in another line, and only the run knows it."""
+        if line.control is None or line.control.keyword not in EVALUATE:
+            return False
+        structure = self.program.structure_of.get(line.number)
+        return structure is not None and structure.synchronises
+
+    def _after_block(self, line: Line) -> None:
+        """What follows a block when it has been resolved: the end of its subroutine, a modal call, its own call."""
+        self._line = None
+        if self._returns:
+            self._returns = False
             self.leave(line)
-        if block.source.block_number:
-            self.values.block_number = block.source.block_number
+        if line.call is not None:
+            self._pending.append(Pending(line.call, line, self._depth))
+        modal, modal_line = self._modal, self._modal_line
+        if modal is not None and modal_line is not None and self._depth == self._modal_depth:
+            due = line.call is None if modal.modal == MODAL_BLOCK else self.moved
+            if due:
+                self._pending.append(Pending(modal, modal_line, self._depth))
 
     def _end_of_section(self) -> None:
         """Without M29 or M30: the subroutine returns, the main program ends."""
@@ -183,6 +216,7 @@ class Execution(Flow):
         self.program, place = self.program.called(call, line.source)
         self.number, self.offset = place
         self.frames.append(frame)
+        values.inherited = values.cycle
         values.local, values.cycle, values.arguments = {}, dict(values.cycle), arguments
         values.level = len(self.frames) + 1
 
@@ -201,6 +235,7 @@ class Execution(Flow):
             self.end_modal_call()
         self.program, self.number, self.offset = frame.program, frame.number, frame.offset
         self.values.leave(frame.local, frame.cycle, frame.arguments)
+        self.values.inherited = self.frames[-1].cycle if self.frames else {}
         self.values.level = len(self.frames) + 1
         if frame.modal is not None:
             self.values.state.restore(frame.modal)

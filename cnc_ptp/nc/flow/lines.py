@@ -64,6 +64,8 @@ class Call:
     ) -> None:
         self.name, self.column, self.arguments = name, column, arguments
         self.local, self.cycle, self.modal = local, cycle, modal
+        self.synchronises = False
+        """Its arguments read what only the run knows."""
 
 
 class Line:
@@ -74,6 +76,7 @@ class Line:
     call          the subroutine that it calls when its block is finished
     control       its control statement, for the structure of the program
     jump          label of its $GOTO
+    flow          "end" or "return" if its words end the program or subroutine
     label         "N100" or "[NAME]", a place to jump to
     skip          bit of its skip level, 0: never skipped
     error         the syntax error of the line, raised when it is reached
@@ -95,6 +98,7 @@ class Line:
         self.skip = 0
         self.error: ProgramError | None = None
         self.synchronises = False
+        self.flow = ""
         self.header = False
         self.comment = False
 

@@ -14,7 +14,7 @@ from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.structures import Place, Structure
 from cnc_ptp.nc.program_text import ProgramText
 
-KEPT: Final = 50_000
+KEPT: Final = 100_000
 """Lines that are kept as they were read; those behind them are read again each time."""
 KEPT_LATER: Final = 10_000
 """Of them, lines of loops and subroutines."""

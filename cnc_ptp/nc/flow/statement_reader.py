@@ -60,6 +60,9 @@ def read_statement(line: Line, text: str, begin: int, place: int, read_words: Wi
     line.control = Control(keyword, place + 1)
     reader = ExpressionReader(text, line.source, match.end())
     _READERS.get(keyword, _alone)(line, reader, keyword, place + 1)
+    if line.control is not None and keyword in ("$ELSEIF", "$CASE"):
+        line.control.synchronises = reader.synchronises
+        return
     line.synchronises = reader.synchronises
 
 

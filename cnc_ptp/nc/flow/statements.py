@@ -13,6 +13,8 @@ from cnc_ptp.nc.flow import flow_faults as faults
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import NcBlock
 
+ROUNDING: Final = 1e-6
+"""Part of the step by which the counter of $FOR may be beyond the end because of rounding."""
 EQUAL: Final = 0.001
 """Two numbers of $SWITCH and $CASE are equal if they differ by less, as the vendor has it."""
 
@@ -157,14 +159,14 @@ class For(Statement):
         step = self.step.value(values)
         if step == 0.0:
             raise values.fault(faults.STEP_ZERO, self.step.column)
-        return count <= self.end.value(values) if step > 0.0 else count >= self.end.value(values)
+        beyond = count - self.end.value(values)
+        return beyond <= ROUNDING * step if step > 0.0 else beyond >= ROUNDING * step
 
     def next_turn(self, values: Values) -> bool:
+        count = self.counter.finite(values, self.counter.value(values) + self.step.value(values), "$FOR")
         if self.parameter >= 0:
-            count = values.parameters[self.parameter] + self.step.value(values)
             values.parameters[self.parameter] = count
         else:
-            count = self.counter.value(values) + self.step.value(values)
             self.counter.assign(values, count)
         return self.turns(values, count)
 
@@ -230,12 +232,12 @@ class Declaration(Statement):
         sizes: Sequence[Node],
         values: Sequence[Node],
         *,
-        is_text: bool,
+        type: str,
         longest: int,
     ) -> None:
         super().__init__(column)
         self.name, self.sizes, self.values = name, sizes, values
-        self.is_text, self.longest = is_text, longest
+        self.type, self.longest, self.is_text = type, longest, type == "STRING"
 
     def declare(self, values: Values) -> None:
         sizes: list[int] = []
@@ -262,7 +264,13 @@ class Declaration(Statement):
                 raise values.fault(fault, node.column)
             given.append(value)
         empty: Scalar = "" if self.is_text else 0.0
-        values.declare(self.name, tuple(sizes), [*given, *[empty] * (count - len(given))], self.column)
+        if self.name.startswith("P") and not sizes:
+            values.parameters[int(self.name[1:])] = float(given[0]) if given else 0.0
+            return
+        values.declare(self.name, tuple(sizes), [empty] * count, self.column, self.type, self.longest)
+        variable = values.variable(self.name, self.column)
+        for place, value in enumerate(given):
+            variable.values[place] = values.conforming(variable, value, self.values[place].column)
 
 
 class Declarations(Statement):

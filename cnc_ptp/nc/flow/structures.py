@@ -49,6 +49,8 @@ class Control:
     def __init__(self, keyword: str, column: int) -> None:
         self.keyword, self.column = keyword, column
         self.condition: Node | None = None
+        self.synchronises = False
+        """What its structure evaluates in another line reads what only the run knows."""
 
 
 class Structure:
@@ -59,6 +61,8 @@ class Structure:
         self.end = NOWHERE
         self.after = NOWHERE
         self.branches: list[Branch] = []
+        self.synchronises = False
+        """One of its conditions or its end value reads what only the run knows."""
         self.statement: object = None
         """The $FOR that counts the turns."""
 

@@ -1,0 +1,3 @@
+; P-ERR-20841 block_number_twice.nc line 2 column 6 'N10: N20: X1': second block number N20: in one block
+N10: N20: X1
+M30
