@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final
 
 from cnc_ptp.nc import faults, feedforward, friction_switch
@@ -175,6 +176,9 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
     before = line.source
     line.source = before._replace(names=(*before.names, *names), columns=(*before.columns, *columns))
     line.flow = flow_of(found)
+    for token, after in pairwise(found):
+        if token.kind == "call":
+            raise faults.WORDS_AFTER_CALL.at(line.source, after.column, word=after.shown)
     if found[-1].kind == "call":
         line.call = call_of(found.pop(), line.source)
         line.call.synchronises = reader.call_synchronises
@@ -182,10 +186,6 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
             ending = next(token for token in found if token.name == "M" and token.value is None and is_end(token))
             word = code_name("M", int(float(ending.text)))
             raise faults.CALL_AND_END.at(line.source, line.call.column, word=word)
-    stray = next((token for token in found if token.kind == "call"), None)
-    if stray is not None:
-        after = found[found.index(stray) + 1]
-        raise faults.WORDS_AFTER_CALL.at(line.source, after.column, word=after.shown)
     if not any(token.dynamic or token.target is not None for token in found):
         return _fixed_block(line, found)
     if all(token.target is not None for token in found):

@@ -57,11 +57,11 @@ def read_statement(line: Line, text: str, begin: int, place: int, read_words: Wi
     if before:
         column = begin + len(text[begin:]) - len(text[begin:].lstrip()) + 1
         raise faults.WORDS_BEFORE.at(line.source, column, keyword=keyword, word=before)
-    line.control = Control(keyword, place + 1)
+    line.control = control = Control(keyword, place + 1)
     reader = ExpressionReader(text, line.source, match.end())
     _READERS.get(keyword, _alone)(line, reader, keyword, place + 1)
-    if line.control is not None and keyword in ("$ELSEIF", "$CASE"):
-        line.control.synchronises = reader.synchronises
+    if keyword in ("$ELSEIF", "$CASE"):
+        control.synchronises = reader.synchronises
         return
     line.synchronises = reader.synchronises
 
