@@ -189,15 +189,33 @@ def watch_command(machine: str | None, **options: Any) -> None:
 @main.command("explain")
 @click.argument("words", nargs=-1, required=True, metavar="WORD...")
 def explain_command(**options: Any) -> None:
-    """Say what a word of the NC language means: G61, M03, $FOR, #CS, SIN, V.A.ABS."""
+    """Say what a word of the NC language means.
+
+    G61, M03, $FOR, #CS, SIN, V.A.ABS ...
+    """
     from cnc_ptp.commands.language.explain import explain
 
     sys.exit(explain(**options))
 
 
+@main.command("format")
+@click.argument("program", type=click.Path(dir_okay=False))
+@click.option("--in-place", is_flag=True, help="Write the file instead of printing it.")
+@click.option("--check", "check_only", is_flag=True, help="Only say whether it would change (status 1).")
+def format_command(**options: Any) -> None:
+    """Print an NC program in one style.
+
+    Capitals, one blank between words, structures indented. Comments, texts and the meaning of each line stay.
+    """
+    from cnc_ptp.commands.language.format import format_program
+
+    sys.exit(format_program(**options))
+
+
 @main.command("check")
 @click.argument("program", type=click.Path(dir_okay=False))
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
+@click.option("--canonical", is_flag=True, help="Print the blocks that result: line, functions, machine positions.")
 def check_command(**options: Any) -> None:
     """Check an NC program: syntax and modal states.
 

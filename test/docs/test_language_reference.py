@@ -1,9 +1,12 @@
 """docs/nc_language.md and `cnc_ptp explain`: every word has its text, every example is a program."""
 
+import re
+
 import pytest
 from nc_support import HERE, run
 
 from cnc_ptp.commands.language.explain import explain
+from cnc_ptp.commands.language.grammar import grammar, grammar_json
 from cnc_ptp.commands.language.reference import reference_markdown
 from cnc_ptp.commands.language.words import entries, explanations, find
 from cnc_ptp.errors import CncError
@@ -15,6 +18,22 @@ from cnc_ptp.nc.vocabulary import G_CODES, M_CODES, VALUE_WORDS
 
 DOCS = HERE.parents[1] / "docs"
 TEXTS = explanations()
+
+
+def test_grammar_is_up_to_date():
+    assert (DOCS.parent / "tools" / "nc.tmLanguage.json").read_text(encoding="utf-8") == grammar_json()
+
+
+@pytest.mark.parametrize(
+    ("text", "scope"),
+    [("G01", "storage.type.g.nc"), ("#CS ON", "keyword.other.command.nc"), ("$ELSEIF P1", "keyword.control.nc"),
+     ("SIN[30]", "support.function.nc"), ("V.P.A", "variable.other.nc"), ("N10:", "entity.name.tag.block.nc"),
+     ("; note", "comment.line.semicolon.nc"), ('"text"', "string.quoted.double.nc"), ("12.5", "constant.numeric.nc"),
+     ("% NAME", "entity.name.function.nc"), ("LL POCKET", "entity.name.function.call.nc"), ("M30", "storage.type.m.nc")],
+)  # fmt: skip
+def test_the_first_rule_of_the_grammar_that_fits_is_the_right_one(text, scope):
+    rules = [rule for rule in grammar()["patterns"] if "match" in rule]
+    assert next(rule["name"] for rule in rules if re.match(rule["match"], text)) == scope
 
 
 def test_document_is_up_to_date():

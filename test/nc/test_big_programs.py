@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from canonical_text import format_block
 from nc_support import HERE, machine
 
+from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.flow import sections
 from cnc_ptp.nc.interpreter import interpret

@@ -1,9 +1,9 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from canonical_text import format_block
 from nc_support import HERE, machine
 
+from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.coordinates import coordinate_faults

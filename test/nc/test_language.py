@@ -1,9 +1,9 @@
 """The language rule by rule: spelling of words, modal state, functions and their order, structure, skip, MDI, veto."""
 
 import pytest
-from canonical_text import format_block
 from nc_support import lines, run
 
+from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError

@@ -2,11 +2,11 @@
 
 import random
 
-from canonical_text import format_block
 from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
+from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.blocks import careful_line, plain_block
 from cnc_ptp.nc.canonical import LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError

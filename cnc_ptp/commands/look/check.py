@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from rich.console import Console
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.commands.console import print_error
-from cnc_ptp.errors import WRONG_INPUT
+from cnc_ptp.commands.language.canonical_text import format_block
+from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import read_program
+from cnc_ptp.nc.canonical import BUSY
+from cnc_ptp.nc.flow.sections import Program
+from cnc_ptp.nc.interpreter import awaits_path, interpret
 from cnc_ptp.nc.interpreter import check as check_text
+from cnc_ptp.nc.parser import parse_all
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.notes import Note
 
@@ -18,10 +24,10 @@ AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
 
 
-def check(program: str, machine: str | None) -> int:
+def check(program: str, machine: str | None, canonical: bool = False) -> int:
     """Prints all syntax errors and the first modal one, and the warnings of the machine file.
 
-    Without a machine, axes X Y Z and spindle S are taken.
+    Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too.
     """
     text, files = read_program(program)
     if machine is None:
@@ -30,11 +36,30 @@ def check(program: str, machine: str | None) -> int:
         parameters = read_machine(machine)
         print_notices(parameters)
         errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program, files)
+    if canonical:
+        print_stream(parse_all(text, program, files=files)[0], machine)
     for error in errors:
         print_error(error)
-    if not errors:
+    if not errors and not canonical:
         print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
     return WRONG_INPUT if errors else 0
+
+
+def print_stream(program: Program, machine: str | None) -> None:
+    """The canonical blocks up to the first error, or to a line that reads what only the run knows."""
+    if machine is None:
+        blocks = interpret(program, (0.0,) * 3, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, runs=True)
+    else:
+        checked = ProgramCheck.of_first_channel(read_machine(machine), program.file)
+        blocks = checked.running(program, checked.start, checked.state({}, {}, {}))
+    with suppress(CncError):
+        for block in blocks:
+            if block is BUSY:
+                continue
+            print(format_block(block))
+            if awaits_path(block):
+                print("what follows is known only while the program runs")
+                return
 
 
 def print_notices(machine: MachineParameters) -> None:

@@ -1,4 +1,4 @@
-"""The canonical stream as text, for golden streams."""
+"""The canonical stream as text: one line for each block, for golden streams and `cnc_ptp check --canonical`."""
 
 from cnc_ptp.nc.canonical import (
     AuxiliaryFunction,

@@ -1,0 +1,102 @@
+"""`cnc_ptp format` and `cnc_ptp check --canonical`: the meaning of every line stays, and a second time changes nothing."""
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from nc_support import HERE, machine
+
+from cnc_ptp.cli import main
+from cnc_ptp.commands.language.canonical_text import format_block
+from cnc_ptp.commands.language.format import format_text
+from cnc_ptp.machine.program_files import called_programs
+from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.parser import parse_program
+
+GOOD = sorted((HERE / "golden").glob("*.nc"))
+
+
+def stream(text: str, name: str) -> list[str]:
+    axes, spindles = machine(text)
+    program = parse_program(text, name, files=called_programs(text, [str(HERE / "library")]))
+    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
+
+
+@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
+def test_a_formatted_program_has_the_same_stream(path: Path) -> None:
+    formatted = format_text(path.read_text())
+    assert stream(formatted, path.name) == path.with_suffix(".txt").read_text().splitlines()
+    assert format_text(formatted) == formatted
+
+
+UGLY = """%L up
+g1x1y2f100
+m29
+%main  ( Main )
+ n10  $if   p1==1   ; Why (not)
+g00   x[ p1+1 ]( left ( inner ) )y3
+$else
+$for p2=1,2,1
+    x1 \\
+ y2
+$endfor
+$endif
+#var
+v.p.text="Not Changed"
+#endvar
+#comment begin
+   keep  THIS
+#comment end
+$if p1 $goto n5
+n5:m30
+"""
+PRETTY = """%L up
+G1 X1 Y2 F100
+M29
+%main  ( Main )
+N10 $IF P1==1 ; Why (not)
+  G00 X[ P1+1 ]( left ( inner ) )Y3
+$ELSE
+  $FOR P2=1,2,1
+    X1 \\
+      Y2
+  $ENDFOR
+$ENDIF
+#VAR
+  V.P.TEXT="Not Changed"
+#ENDVAR
+#comment begin
+   keep  THIS
+#comment end
+$IF P1 $GOTO N5
+N5:M30
+"""
+
+
+def test_the_style() -> None:
+    assert format_text(UGLY.replace("\\\\", "\\")) == PRETTY.replace("\\\\", "\\")
+
+
+def test_the_commands(tmp_path: Path) -> None:
+    file = tmp_path / "part.nc"
+    file.write_text("g1x1f600\nm30\n")
+    run = CliRunner()
+    assert run.invoke(main, ["format", "--check", str(file)]).output == f"{file} would change\n"
+    assert run.invoke(main, ["format", str(file)]).output == "G1 X1 F600\nM30\n"
+    assert run.invoke(main, ["format", "--in-place", str(file)]).exit_code == 0
+    assert file.read_text() == "G1 X1 F600\nM30\n"
+    assert run.invoke(main, ["format", "--check", str(file)]).exit_code == 0
+    assert run.invoke(main, ["check", "--canonical", str(file)]).output == "1:N0 | line (1, 0, 0) feed 10\n2:N0 | end\n"
+    file.write_text("g1x1q\nm30\n")
+    done = run.invoke(main, ["format", str(file)])
+    assert done.exit_code == 2 and file.read_text() == "g1x1q\nm30\n"
+    file.write_text("G00 X1\nX[V.A.ACT_POS.Y]\nX5\nM30\n")
+    told = run.invoke(main, ["check", "--canonical", str(file)]).output.splitlines()
+    assert told == [
+        "1:N0 | rapid (1, 0, 0)",
+        "2:N0 | wait for the path",
+        "what follows is known only while the program runs",
+    ]
+    mill = str(HERE.parents[1] / "config" / "mill.yaml")
+    told = run.invoke(main, ["check", "--canonical", "--machine", mill, str(file)]).output.splitlines()
+    assert told[-1] == "what follows is known only while the program runs"
