@@ -17,8 +17,8 @@ from setuptools.command.build_ext import build_ext
 PACKAGE = "cnc_ptp"
 ROOT = Path(__file__).parent.resolve()
 COMMANDS = (
-    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify", "circle",
-    "curve",
+    "simulate", "run", "status", "jog", "check", "explain", "format", "replay", "report", "plot", "params", "identify",
+    "circle", "curve",
 )  # fmt: skip
 """Executables of their own. Not `do` and `watch`: one is a word of the shell, the other a program of every Linux."""
 NODES = ("nc_channel", "axis", "spindle", "plc_bridge", "clock", "recorder", "player")

@@ -3,7 +3,7 @@
 Positions are absolute, in mm (deg for rotary axes), one value for each axis of the channel in its order; feeds in mm/s.
 All types are immutable and cheap to create (one of each per program block).
 
-Functions of a block are in the order T, D, main spindle (gear first), other spindles, other M, in whatever order
+Functions of a block are in the order T, D, main spindle (gear first), other spindles, other M, H, in whatever order
 the line has them; then feedforward and compensations. When they are output and who waits for them (before the motion,
 after it, at the next G01) is decided at run time by their synchronisation type (P-CHAN-00041, 00043, 00045, 00047,
 00049, 00081), which the language does not know. M00, M01 and the program end are in `stop` and act when motion and
@@ -153,7 +153,7 @@ class OrderedError(NamedTuple):
 
 
 class AuxiliaryFunction(NamedTuple):
-    """A function for the PLC or the tool management: letter "M", "T" or "D"; with the `spindle` of S2[M8]."""
+    """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8]."""
 
     letter: str
     number: int

@@ -1,4 +1,4 @@
-"""M, S, T and D of a block -> canonical functions."""
+"""M, S, T, D and H of a block -> canonical functions."""
 
 from cnc_ptp.nc import faults, gears
 from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, number
@@ -6,25 +6,28 @@ from cnc_ptp.nc.program import Channel, MCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import spindle_functions
 
 MAX_TOOL = 999_999_999
+MAX_H = 65_535
 
 
 def block_functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Function, ...]:
-    """All functions of a block in the order T, D, main spindle, other spindles, free M; keeps speeds in the state."""
-    functions: list[Function] = [tool_function(block, letter) for letter in "TD" if letter in block.words]
+    """All functions of a block in the order T, D, main spindle, other spindles, M, H; keeps speeds in the state."""
+    functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in "TD" if letter in block.words]
     functions += spindle_functions(channel, state, block)
     gear_change = channel.table.gear_change
     for code in block.m:
         if code.handler is not None and not (gear_change and code.number in gears.GEAR_M):
             functions.append(code.handler(channel, state, block, code))
+    if "H" in block.words:
+        functions.append(number_function(block, "H", MAX_H))
     return tuple(functions)
 
 
-def tool_function(block: NcBlock, letter: str) -> AuxiliaryFunction:
-    """T or D with its integer number."""
+def number_function(block: NcBlock, letter: str, limit: int) -> AuxiliaryFunction:
+    """T, D or H with its integer number."""
     value = block.words[letter]
-    if value < 0 or value > MAX_TOOL or value != int(value):
+    if value < 0 or value > limit or value != int(value):
         column = block.source.column(letter)
-        raise faults.NOT_AN_INTEGER.at(block.source, column, word=letter, value=number(value), limit=MAX_TOOL)
+        raise faults.NOT_AN_INTEGER.at(block.source, column, word=letter, value=number(value), limit=limit)
     return AuxiliaryFunction(letter, int(value))
 
 

@@ -20,7 +20,7 @@ from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
 M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
-FUNCTION_WORDS: Final[frozenset[str]] = frozenset("STD")
+FUNCTION_WORDS: Final[frozenset[str]] = frozenset("STDH")
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:

@@ -106,7 +106,7 @@ M_CODES: dict[int, MCode] = {
 
 MAX_M = 999
 
-VALUE_WORDS = frozenset("FSTDIJKR")
+VALUE_WORDS = frozenset("FSTDHIJKR")
 """Words with a number and a meaning of their own, besides axes."""
 
 FUNCTION_WORDS: Final[frozenset[str]] = spindles.FUNCTION_WORDS

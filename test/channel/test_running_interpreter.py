@@ -124,3 +124,9 @@ def test_an_ordered_error_stops_the_program() -> None:
     place = "in line 2 '#ERROR [ID=455 PV1=3]'"
     assert text == f"P-ERR-22029 channel channel: #ERROR 455 of the program: PV1 = 3 {place}; {effect}"
     assert bench.position("x") == 1.0
+
+
+def test_h_functions_go_to_the_plc_and_the_path_does_not_wait() -> None:
+    bench = MachineBench("G00 X1 H5\nH65535\nX2\nM30").run()
+    requests = [(request.kind, request.number) for block in bench.blocks["channel"] for request in block.requests]
+    assert bench.errors() == [] and requests == [("H", 5), ("H", 65535)]

@@ -61,7 +61,7 @@ def axis_values(channel: Channel, state: ModalState, block: NcBlock, code: GCode
         index = channel.axis_index.get(word)
         if index is None:
             column = block.source.column(word)
-            if word in "FSTDIJKR":
+            if word in "FSTDHIJKR":
                 raise nc_faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
             raise nc_faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
         found.append((index, value if word in channel.rotary else value * state.coordinates.unit))
