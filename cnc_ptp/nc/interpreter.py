@@ -20,6 +20,7 @@ from cnc_ptp.nc.coordinates.placement import place, refresh
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.feeds import timed
 from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
@@ -137,7 +138,7 @@ def _resolve(
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None and not isinstance(motion, Dwell):
         programmed = motion.target
-        motion = place(channel, state, block, motion)
+        motion = timed(channel, state, place(channel, state, block, motion))
         if motion.target == state.position and not isinstance(motion, CircularMove):
             motion = None
             state.programmed = programmed

@@ -7,7 +7,7 @@ motion with an absolute target, or None if the block goes nowhere. The interpret
 from typing import NamedTuple
 
 from cnc_ptp.errors import Value
-from cnc_ptp.nc import arcs, faults
+from cnc_ptp.nc import arcs, faults, feeds
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
@@ -46,7 +46,10 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
         elif word == "F":
             if value < 0.0:
                 raise faults.FEED_NEGATIVE.at(block.source, block.source.column("F"), value=number(value))
-            state.feed = value * unit / MM_PER_MIN
+            if state.feed_mode == feeds.TIME:
+                state.block_time = value
+            else:
+                state.feed = value * unit / MM_PER_MIN
         elif word not in FUNCTION_WORDS and word not in code.words:
             raise _unused(channel, block, code, word)
     return target
@@ -70,13 +73,8 @@ def straight(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -
     target = target_of(channel, state, block, code)
     if target is None:
         return None
-    if state.feed == 0.0:
-        raise _no_feed(block, code)
+    feeds.require_feed(state, block, code)
     return LinearMove(tuple(target), False, state.feed)
-
-
-def _no_feed(block: NcBlock, code: GCode) -> faults.ProgramError:
-    return faults.FEED_MISSING.at(block.source, block.source.column(code.name), g=code.name)
 
 
 def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> CircularMove | None:
@@ -93,8 +91,7 @@ def circular(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -
         state.radius = words["R"] * state.coordinates.unit
     if target is None and not given:
         return None
-    if state.feed == 0.0:
-        raise _no_feed(block, code)
+    feeds.require_feed(state, block, code)
     arc = _Arc(channel, state, block, code, target or list(state.programmed))
     return arc.by_centre(given) if given else arc.by_radius()
 

@@ -220,9 +220,10 @@ class SpindleModes:
 class ModalState:
     """Modal state from one block to the next: mm, mm/s, rpm; the defaults are the initial state of a program.
 
-    `path`, `plane`: numbers of the active G codes; `radius`: last R (mm, signed, 0.0 none); `speeds`: S by spindle;
-    `slope`: #SLOPE, "" is that of P-CHAN-00071; `position` in machine coordinates, `programmed`: the same point as
-    programs name it, by `frame` (None: they are equal), which is what `coordinates` amount to.
+    `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
+    signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
+    coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
+    `coordinates` amount to.
     """
 
     position: tuple[float, ...] = ()
@@ -231,6 +232,8 @@ class ModalState:
     absolute: bool = True
     centre_absolute: bool = False
     feed: float = 0.0
+    feed_mode: int = 94
+    block_time: float = 0.0
     radius: float = 0.0
     speeds: dict[str, float] = field(default_factory=dict)
     spindle: SpindleModes = field(default_factory=SpindleModes)
@@ -248,4 +251,5 @@ class ModalState:
         """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles are kept."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
+        self.feed_mode, self.block_time = other.feed_mode, other.block_time
         self.slope, self.coordinates = other.slope, other.coordinates

@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, functions, motions, spindles
+from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState
 
@@ -74,8 +74,8 @@ G_CODES: dict[int, GCode] = {
         GCode(70, "units", prepare=codes.unit),
         GCode(71, "units", prepare=codes.unit),
         GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
-        GCode(93, "feed", later="the time of a block"),
-        GCode(94, "feed"),
+        GCode(93, "feed", select=feeds.time_of_block),
+        GCode(94, "feed", select=feeds.per_minute),
         GCode(95, "feed", later="feed per revolution"),
         GCode(96, "cutting speed", later="constant cutting speed"),
         GCode(97, "cutting speed"),

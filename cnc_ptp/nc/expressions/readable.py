@@ -198,6 +198,7 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
             ),
         ),
     ),
+    "V.G.FEEDRATE_MODE": (((), Reading("93 or 94", lambda values, u, c: float(values.state.feed_mode))),),
     "V.G.PROG_ABS": (((), Reading("TRUE with G90", lambda values, u, c: 1.0 if values.state.absolute else 0.0)),),
     "V.G.PROG_LEVEL": (((), Reading("1 in the main program", lambda values, u, c: float(values.level))),),
     "V.G.R": (

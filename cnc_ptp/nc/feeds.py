@@ -1,0 +1,45 @@
+"""Feeds: G94 in mm/min, G93 as the time of a block."""
+
+from math import hypot, radians
+from typing import Final
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import CircularMove, LinearMove
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+
+TIME: Final = 93
+PER_MINUTE: Final = 94
+
+
+def per_minute(state: ModalState) -> None:
+    """G94: F is the feed that was programmed last with G94 until the next one."""
+    state.feed_mode = PER_MINUTE
+
+
+def time_of_block(state: ModalState) -> None:
+    """G93: F is the time of each block in s."""
+    state.feed_mode = TIME
+
+
+def require_feed(state: ModalState, block: NcBlock, code: GCode) -> None:
+    """Raises ProgramError 20008 for a motion without a feed."""
+    if state.block_time if state.feed_mode == TIME else state.feed:
+        return
+    raise faults.FEED_MISSING.at(block.source, block.source.column(code.name), g=code.name)
+
+
+def timed(channel: Channel, state: ModalState, motion: LinearMove | CircularMove) -> LinearMove | CircularMove:
+    """With G93: the motion (machine coordinates) with the feed that takes the programmed time at a constant speed."""
+    if state.feed_mode != TIME or (isinstance(motion, LinearMove) and motion.rapid):
+        return motion
+    return motion._replace(feed=path_length(channel, state.position, motion) / state.block_time)
+
+
+def path_length(channel: Channel, start: tuple[float, ...], motion: LinearMove | CircularMove) -> float:
+    """Of the main axes; of all axes if these do not move."""
+    distances = [target - begin for begin, target in zip(start, motion.target, strict=True)]
+    if isinstance(motion, CircularMove):
+        others = [distances[index] for index in channel.main if index >= 0 and index not in motion.plane]
+        return hypot(motion.radius * radians(motion.sweep), *others)
+    main = hypot(*[distances[index] for index in channel.main if index >= 0])
+    return main or hypot(*distances)
