@@ -9,13 +9,14 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import cnc_ptp
 from cnc_ptp.errors import CncError
 
 UNREADABLE = 26110
 TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
-SHIPPED = Path(__file__).parent.parent / "nc" / "cycles"
+SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
 _NAME = r'[^\s"\],#$\[();]+'
