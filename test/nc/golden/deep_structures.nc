@@ -1,0 +1,30 @@
+; Structures within each other down to ten levels.
+P1 = 0
+$FOR P2 = 1, 2, 1
+$WHILE P1 < P2 * 3
+$DO
+$REPEAT
+$IF P1 >= 0
+$SWITCH P1 MOD 3
+$CASE 0
+$IF P2 == 1
+G00 X[P1]
+$ELSE
+Y[P1]
+$ENDIF
+$BREAK
+$CASE 1
+$FOR P3 = 1, 2, 1
+Z[P1 * 10 + P3]
+$ENDFOR
+$BREAK
+$DEFAULT
+Z0
+$ENDSWITCH
+$ENDIF
+P1 = P1 + 1
+$UNTIL 1
+$ENDDO 0
+$ENDWHILE
+$ENDFOR
+M30

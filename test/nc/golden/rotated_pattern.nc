@@ -1,0 +1,15 @@
+; A slot in six directions by rotation about a centre.
+%L SLOT
+G00 X40 Y20
+G01 Z-2 F200
+X55 F800
+G00 Z2
+M29
+%STAR
+G00 Z2
+$FOR P1 = 0, 300, 60
+#ROTATION ON [ANGLE=P1 CENTER1=30 CENTER2=20]
+LL SLOT
+#ROTATION OFF
+$ENDFOR
+M30

@@ -1,0 +1,20 @@
+; One letter in three sizes.
+%L LETTER
+G00 X0 Y0
+G01 Z-0.2 F100
+Y7 F500
+X5
+G02 X5 Y3.5 J-1.75
+G01 X0
+X5 Y0
+G00 Z1
+M29
+%TEXT
+$FOR P1 = 1, 3, 1
+#CS ON [[P1 - 1] * 15, 0]
+#SCALE ON X=P1 / 2 Y=P1 / 2
+LL LETTER
+#SCALE OFF
+#CS OFF
+$ENDFOR
+M30

@@ -1,0 +1,8 @@
+; Units and planes changed in one program.
+G71 G17 G01 X10 F600
+G70 X1 F20
+G18 G02 X2 Z0 I0.5
+G71 G19 G03 Y10 Z0 J5
+G01 G70 Z[10 / 25.4]
+G71 G17 X0 Y0 Z0
+M30
