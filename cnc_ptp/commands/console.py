@@ -29,12 +29,14 @@ def print_lines(console: Console, lines: Iterable[str]) -> None:
 
 
 def print_error(error: CncError) -> None:
-    """The text of a refusal on standard error, with the program line and a mark below the column if it has one."""
+    """The text of a refusal on standard error; of a program the line, a mark below its column, and who has called it."""
     console = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     console.print(str(error), style="red", markup=False)
     caret = getattr(error, "caret", "")
     if caret:
         console.print(caret, markup=False)
+    for place in getattr(error, "calls", ()):
+        console.print(f"called in {place}", markup=False)
 
 
 def print_note_of_idle_run(*job: object, options: str = "--program, --scenario or --duration") -> None:

@@ -75,3 +75,4 @@ def test_a_fault_of_a_called_program_is_told_before_anything_moves(
         assert ended.value.code == 2
         told = capsys.readouterr().err
         assert "P-ERR-20797 up.nc line 1 column 5 'G00 Q5': axis Q is not in the machine" in told
+        assert told.endswith(f"G00 Q5\n    ^\ncalled in {tmp_path / 'main.nc'} line 2\n")
