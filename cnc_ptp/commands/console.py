@@ -29,7 +29,7 @@ def print_lines(console: Console, lines: Iterable[str]) -> None:
 
 
 def print_error(error: CncError) -> None:
-    """The text of a refusal on standard error; of a program the line, a mark below its column, and who has called it."""
+    """The text of a refusal on standard error; of a program its line, a mark below the column, and its callers."""
     console = Console(stderr=True, highlight=False, soft_wrap=True, emoji=False)
     console.print(str(error), style="red", markup=False)
     caret = getattr(error, "caret", "")
