@@ -36,6 +36,7 @@ from cnc_ptp.nc.canonical import (
 )
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
+from cnc_ptp.protocol.notes import ORDERED_ERROR
 
 ENDS = ("stop", "decouple")
 """Commands that are sent although the program was aborted."""
@@ -43,7 +44,6 @@ NO_SOURCE = Source("", 0, 0, "")
 NO_MEASURING_EVENT = 22017
 COMMANDED_BY_OTHERS = 22022
 COUPLING_ENDED = 22025
-ORDERED_ERROR = 22029
 
 
 class Phase(Enum):

@@ -12,6 +12,8 @@ from cnc_ptp.protocol.blocks import Severity
 
 PROGRAM_MESSAGE = 22028
 """Event of #MSG."""
+ORDERED_ERROR = 22029
+"""Warning or error of #ERROR."""
 
 
 @dataclass(frozen=True, slots=True)

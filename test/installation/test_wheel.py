@@ -31,6 +31,8 @@ COMMANDS = {
     "status",
     "jog",
     "check",
+    "explain",
+    "format",
     "replay",
     "report",
     "plot",

@@ -28,7 +28,7 @@ class ExampleRun(MachineBench):
         self.units = build_units(self.machine, scenario=job)
         self.offline = OfflineMachine(self.machine, self.units)
         self.blocks: dict[str, list[Any]] = {name: [] for name in self.units}
-        self.events, self.records = [], []
+        self.events, self.all_events, self.records = [], [], []
         self.run()
 
     def path_begin(self, number: int, unit: str = "channel") -> int:
