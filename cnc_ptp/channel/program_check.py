@@ -103,7 +103,9 @@ class ProgramCheck:
         self._units = spindles
         indices = {name: index for index, name in enumerate(self._axis_names)}
         ratio = channel.circle_center_ratio
-        self._nc = Channel(self._axis_names, indices, self._spindles, channel.circle_center_tolerance, ratio)
+        self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
+        tolerance = channel.circle_center_tolerance
+        self._nc = Channel(self._axis_names, indices, self._spindles, tolerance, ratio, self._rotary)
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -123,6 +125,7 @@ class ProgramCheck:
             check_target=self.check_target,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
+            rotary=self._rotary,
             files=files,
         ) or self._function_errors(text, file, files)
 
@@ -192,6 +195,7 @@ class ProgramCheck:
             check_target=self.check_target,
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
+            rotary=self._rotary,
             runs=True,
         )
         for block in stream:

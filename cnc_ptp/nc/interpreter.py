@@ -192,6 +192,7 @@ def check(
     check_target: CheckTarget | None = None,
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
+    rotary: Collection[str] = (),
     files: Mapping[str, str] = NO_FILES,
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
@@ -211,6 +212,7 @@ def check(
             check_target=check_target,
             centre_offset=centre_offset,
             centre_offset_ratio=centre_offset_ratio,
+            rotary=rotary,
             runs=True,
         )
         for block in blocks:

@@ -6,6 +6,7 @@ import pytest
 from machine_support import MachineBench, machine
 
 from cnc_ptp.channel import program_check
+from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
 
@@ -130,3 +131,12 @@ def test_h_functions_go_to_the_plc_and_the_path_does_not_wait() -> None:
     bench = MachineBench("G00 X1 H5\nH65535\nX2\nM30").run()
     requests = [(request.kind, request.number) for block in bench.blocks["channel"] for request in block.requests]
     assert bench.errors() == [] and requests == [("H", 5), ("H", 65535)]
+
+
+def test_inch_does_not_scale_rotary_axes_of_the_machine() -> None:
+    """The channel tells the interpreter which axes are in degrees."""
+    turning = machine(x={"rotary": True})
+    check = program_check.ProgramCheck.of_first_channel(turning, "a.nc")
+    (block, _) = check.blocks(parse_program("G70 G00 X1 Y1\nM30", "a.nc"), (0.0, 0.0, 0.0))
+    assert block.motion is not None and block.motion.target == (1.0, 25.4, 0.0)
+    assert check.errors("#SCALE X2\nM30", "a.nc")[0].number == 21607
