@@ -12,8 +12,7 @@ from itertools import pairwise
 from typing import Final
 
 from cnc_ptp.nc import faults, feedforward, friction_switch
-from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, code_name, number
-from cnc_ptp.nc.expressions import expression_faults
+from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
@@ -37,8 +36,6 @@ from cnc_ptp.nc.vocabulary import (
 )
 
 MAX_BLOCK_NUMBER = 999_999_999
-LARGEST_VALUE: Final = 999_999_999.0
-"""Of a word: nine digits."""
 LONGEST_BLOCK: Final = 4000
 """Characters of a block, as the vendor has it."""
 SHOWN: Final = 60
@@ -175,17 +172,16 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
     names, columns = places(found)
     before = line.source
     line.source = before._replace(names=(*before.names, *names), columns=(*before.columns, *columns))
-    line.flow = flow_of(found)
+    ending = ending_of(found)
+    line.flow = "" if ending is None else ending.flow
     for token, after in pairwise(found):
         if token.kind == "call":
             raise faults.WORDS_AFTER_CALL.at(line.source, after.column, word=after.shown)
     if found[-1].kind == "call":
         line.call = call_of(found.pop(), line.source)
         line.call.synchronises = reader.call_synchronises
-        if line.flow:
-            ending = next(token for token in found if token.name == "M" and token.value is None and is_end(token))
-            word = code_name("M", int(float(ending.text)))
-            raise faults.CALL_AND_END.at(line.source, line.call.column, word=word)
+        if ending is not None:
+            raise faults.CALL_AND_END.at(line.source, line.call.column, word=ending.name)
     if not any(token.dynamic or token.target is not None for token in found):
         return _fixed_block(line, found)
     if all(token.target is not None for token in found):
@@ -196,18 +192,14 @@ def read_words(line: Line, text: str, begin: int) -> NcBlock | None:
     return None
 
 
-def is_end(token: Token) -> bool:
-    code = m_code(int(float(token.text)))
-    return code is not None and code.flow in ("end", "return")
-
-
-def flow_of(found: Sequence[Token]) -> str:
-    """What the M functions of a line do to the order of execution: "end", "return" or nothing."""
+def ending_of(found: Sequence[Token]) -> MCode | None:
+    """The M function of a line that ends the program or the subroutine."""
     for token in found:
-        if token.kind == "word" and token.name == "M" and token.value is None and is_end(token):
+        if token.kind == "word" and token.name == "M" and token.value is None:
             code = m_code(int(float(token.text)))
-            return code.flow if code is not None else ""
-    return ""
+            if code is not None and code.flow in ("end", "return"):
+                return code
+    return None
 
 
 def _fixed_block(line: Line, found: Sequence[Token]) -> NcBlock | None:
@@ -248,12 +240,7 @@ class ComputedWords(Statement):
 
 def bounded(token: Token, value: float, values: Values) -> float:
     """The value of a word, which may be as large as one that is written with its digits. Raises ProgramError."""
-    if not -LARGEST_VALUE <= value <= LARGEST_VALUE:
-        limit, shown = number(LARGEST_VALUE), number(value)
-        raise values.fault(
-            expression_faults.VALUE_RANGE, token.column, word=token.name or "G04", value=shown, limit=limit
-        )
-    return value
+    return values.bounded(value, token.column, token.name or "G04")
 
 
 def _part(part: str | Node, token: Token, values: Values) -> str:

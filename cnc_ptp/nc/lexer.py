@@ -318,7 +318,7 @@ class TokenReader:
             at = reader.at
             self.synchronises = self.synchronises or reader.synchronises
         shown = self.line[begin.start(1) : at]
-        name = f"{begin[1].replace(' ', '')}.NC"
+        name = f"{''.join(begin[1].split())}.NC"
         return Token("call", name, "L CYCLE", begin.start(1) + 1, shown, arguments=arguments), at
 
     def _computed(self, position: int) -> tuple[Token, int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Final
 
@@ -9,7 +10,6 @@ from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import NO_OFFSETS, System, system_of
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
-from cnc_ptp.nc.expressions.expression_faults import VALUE_RANGE
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import AXIS_UNKNOWN
@@ -20,7 +20,6 @@ from cnc_ptp.nc.program import Channel, ModalState, NcBlock
 DEEPEST: Final = 10
 """Coordinate systems within each other."""
 LAST_SYSTEM: Final = 5
-LARGEST: Final = 999_999_999.0
 ROTATION: Final = "#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5] or #ROTATION OFF"
 SCALE: Final = "#SCALE X2 Y2, #SCALE ON, #SCALE ON X2 Y2 or #SCALE OFF"
 PSET: Final = "#PSET X10 Y20"
@@ -34,10 +33,7 @@ def system_syntax(command: str) -> str:
 
 def bounded(node: Node, values: Values) -> float:
     """A value that may be as large as a word. Raises ProgramError."""
-    value = node.value(values)
-    if not -LARGEST <= value <= LARGEST:
-        raise values.fault(VALUE_RANGE, node.column, word="the command", value=number(value), limit=number(LARGEST))
-    return value
+    return values.bounded(node.value(values), node.column, "the command")
 
 
 class CoordinateCommand(Statement):
@@ -49,8 +45,9 @@ class CoordinateCommand(Statement):
         refresh(values.channel, values.state)
         return None
 
+    @abstractmethod
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
-        raise NotImplementedError
+        """The change alone; the frame follows from it."""
 
 
 class Rotation(CoordinateCommand):

@@ -13,6 +13,8 @@ Scalar = float | str
 
 LARGEST_PARAMETER: Final = 9999
 """P0 ... P9999."""
+LARGEST_VALUE: Final = 999_999_999.0
+"""Of a word: nine digits."""
 LONGEST_TEXT: Final = 1000
 """Characters of a text in a variable."""
 MOST_VALUES: Final = 100_000
@@ -136,6 +138,13 @@ class Values:
 
     def fault(self, fault: Fault, column: int, **values: float | str) -> ProgramError:
         return fault.at(self.source, column, **values)
+
+    def bounded(self, value: float, column: int, word: str) -> float:
+        """A value that may be as large as a word with its digits. Raises ProgramError 21441."""
+        if not -LARGEST_VALUE <= value <= LARGEST_VALUE:
+            words = {"value": number(value), "limit": number(LARGEST_VALUE)}
+            raise self.fault(faults.VALUE_RANGE, column, word=word, **words)
+        return value
 
     def variable(self, name: str, column: int) -> Variable:
         found = self.scope(name).get(name)

@@ -114,9 +114,7 @@ class Execution(Flow):
                 continue
             if line.error is not None:
                 raise line.error
-            if self._pauses(
-                line.synchronises or (line.control is not None and self._structure_waits(line)), self.number
-            ):
+            if self._pauses(line.synchronises or self._structure_waits(line), self.number):
                 self.values.source = line.source
                 return PAUSE
             self.number, self.offset = line.next_number, line.next_offset

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
@@ -10,46 +12,46 @@ from cnc_ptp.nc.flow.structures import Control, Place, Structure
 from cnc_ptp.nc.program import NcBlock
 
 
-class Flow:
+class Flow(ABC):
     """What statements may do with the order of execution; `values` are those of the program."""
 
     def __init__(self, values: Values) -> None:
         self.values = values
 
+    @abstractmethod
     def structure(self, line: Line) -> Structure:
         """The structure that the statement of a line opens, divides, closes or leaves."""
-        raise NotImplementedError
 
+    @abstractmethod
     def go(self, place: Place) -> None:
         """Forward."""
-        raise NotImplementedError
 
+    @abstractmethod
     def back(self, place: Place, line: Line) -> None:
         """To the next turn of a loop."""
-        raise NotImplementedError
 
+    @abstractmethod
     def jump(self, line: Line) -> None:
         """To the label of the line's $GOTO."""
-        raise NotImplementedError
 
+    @abstractmethod
     def leave(self, line: Line) -> None:
         """M17, M29, $RETURN: back to the caller."""
-        raise NotImplementedError
 
+    @abstractmethod
     def end_modal_call(self) -> None:
         """#DISABLE MODAL CYCLE, and the end of the subroutine that has ordered it."""
-        raise NotImplementedError
 
 
-class Statement:
+class Statement(ABC):
     """What a line does besides, or in place of, fixed words."""
 
     def __init__(self, column: int) -> None:
         self.column = column
 
+    @abstractmethod
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
         """Executes it; a block that it returns is executed as if its words had been written with numbers."""
-        raise NotImplementedError
 
 
 class Call:

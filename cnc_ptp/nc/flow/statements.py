@@ -222,7 +222,7 @@ class Return(Statement):
         return None
 
 
-class Declaration(Statement):
+class Declaration:
     """One line between #VAR and #ENDVAR: a variable or an array, its type and first values."""
 
     def __init__(
@@ -235,7 +235,7 @@ class Declaration(Statement):
         type: str,
         longest: int,
     ) -> None:
-        super().__init__(column)
+        self.column = column
         self.name, self.sizes, self.values = name, sizes, values
         self.type, self.longest, self.is_text = type, longest, type == "STRING"
 
