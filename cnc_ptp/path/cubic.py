@@ -1,0 +1,64 @@
+"""A cubic piece of a path: what corners and smoothed contours consist of.
+
+Each axis is q(u) = q0 + q1·u + q2·u²/2 + q3·u³/6 over the parameter u, which is nearly the path length. Pieces follow each
+other with continuous q1 and q2, so the acceleration of the axes is continuous and their jerk has a limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+
+AxisState = tuple[float, float, float, float]
+"""Position, velocity, acceleration, jerk of one axis."""
+Shape = tuple[float, float, float, float]
+"""q, q1, q2, q3 of one axis at a place of the path."""
+
+
+class Cubic:
+    """A piece over 0 … `length` (mm of u); `start`: q, q1, q2, q3 of each axis at u = 0."""
+
+    __slots__ = ("length", "start", "target")
+
+    def __init__(self, start: Sequence[Shape], length: float) -> None:
+        self.start = tuple(start)
+        self.length = length
+        self.target = tuple([shape[0] for shape in self.shape(length)])
+
+    def shape(self, u: float) -> list[Shape]:
+        """q, q1, q2, q3 of each axis at u."""
+        return [
+            (q + u * (q1 + u * (0.5 * q2 + u * (q3 / 6.0))), q1 + u * (q2 + 0.5 * u * q3), q2 + u * q3, q3)
+            for q, q1, q2, q3 in self.start
+        ]
+
+    def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
+        """State of each axis at u that moves with u' = v, u'' = a, u''' = j.
+
+        q' = q1·v, q'' = q1·a + q2·v², q''' = q1·j + 3·q2·v·a + q3·v³.
+        """
+        square, cross, cube = v * v, 3.0 * v * a, v * v * v
+        return tuple(
+            [
+                (q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube)
+                for q, q1, q2, q3 in self.shape(u)
+            ]
+        )
+
+    def bounds(self, begin: float, end: float) -> list[tuple[float, float, float]]:
+        """Largest |q1|, |q2|, |q3| of each axis from u = `begin` to `end`.
+
+        q2 is linear; q1 is a parabola, whose vertex counts if it is between the two.
+        """
+        found = []
+        for (_, first0, second0, third), (_, first1, second1, _) in zip(self.shape(begin), self.shape(end), strict=True):
+            first = max(abs(first0), abs(first1))
+            if second0 * second1 < 0.0:
+                first = max(first, abs(first0 - 0.5 * second0 * second0 / third))
+            found.append((first, max(abs(second0), abs(second1)), abs(third)))
+        return found
+
+    def speed(self, u: float, axes: Sequence[int]) -> float:
+        """|dq/du| of the given axes: the path velocity is u' times that."""
+        shape = self.shape(u)
+        return hypot(*[shape[axis][1] for axis in axes])

@@ -1,0 +1,134 @@
+"""Places along the path at which its velocity is planned, with what the axes permit around each of them.
+
+Along the path, u is its parameter (mm; the path length on lines and arcs), y = u'² the squared velocity and b = dy/du
+twice the acceleration, c = d²y/du². An axis with the derivatives q1, q2, q3 by u has
+
+    velocity      q1·√y
+    acceleration  q1·b/2 + q2·y
+    jerk          √y·(q1·c/2 + 3/2·q2·b + q3·y)
+
+so that its limits are linear in y, b and c but for the factor √y of the jerk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, sqrt
+from typing import Final
+
+THIRD_SHARE: Final = 0.7
+"""Largest part of an axis's jerk that q3·v³ may take."""
+CROSS_SHARE: Final = 0.3
+"""Largest part of an axis's jerk that 3·q2·v·a may take while the path accelerates as hard as it can."""
+LEAST_SHARE: Final = 0.05
+"""Part of an axis's jerk that a change of the acceleration may always take; what that breaks is planned again."""
+
+
+class AxisLoad:
+    """What the path asks of one axis around a node, and the limits of that axis.
+
+    first, second, third   largest |q1|, |q2|, |q3| around the node
+    bend                   q2 at the node, with the sign of q1: above 0 the axis is being accelerated
+    spread                 largest difference of q2 from that at the node
+    """
+
+    __slots__ = ("acceleration", "bend", "first", "jerk", "second", "spread", "third", "velocity")
+
+    def __init__(
+        self,
+        first: float,
+        second: float,
+        third: float,
+        bend: float,
+        spread: float,
+        velocity: float,
+        acceleration: float,
+        jerk: float,
+    ) -> None:
+        self.first, self.second, self.third = first, second, third
+        self.bend, self.spread = bend, spread
+        self.velocity, self.acceleration, self.jerk = velocity, acceleration, jerk
+
+
+class PathNode:
+    """A place u of the path. Its limits hold from the middle of the cell before it to the middle of the one behind it.
+
+    limit      largest y that the axes permit
+    feed       y of the programmed feed at override 1, inf in rapid traverse
+    up, down   largest acceleration and deceleration of a straight path
+    jerk       of a straight path
+    loads      of the axes where the path is curved, else empty
+    """
+
+    __slots__ = ("down", "feed", "jerk", "limit", "loads", "u", "up")
+
+    def __init__(
+        self,
+        u: float,
+        limit: float,
+        feed: float,
+        up: float,
+        down: float,
+        jerk: float,
+        loads: Sequence[AxisLoad] = (),
+    ) -> None:
+        self.u, self.limit, self.feed = u, limit, feed
+        self.up, self.down, self.jerk = up, down, jerk
+        self.loads = loads
+
+    def acceleration(self, square: float, braking: bool) -> float:
+        """Largest acceleration, or deceleration, along the path at y = `square`; never below 0."""
+        if not self.loads:
+            return self.down if braking else self.up
+        least = inf
+        speed = sqrt(square) if square > 0.0 else 0.0
+        for load in self.loads:
+            if load.first > 0.0:
+                bend = load.bend if braking else -load.bend
+                least = min(least, (load.acceleration + (bend - load.spread) * square) / load.first)
+            if load.second > 0.0 and speed > 0.0:
+                least = min(least, CROSS_SHARE * load.jerk / (3.0 * load.second * speed))
+        return max(least, 0.0)
+
+    def bending(self, square: float, slope: float) -> float:
+        """Largest |c| at y = `square` and |b| = `slope`."""
+        speed = sqrt(max(square, SMALLEST_SQUARE))
+        if not self.loads:
+            return 2.0 * self.jerk / speed
+        least = inf
+        for load in self.loads:
+            if load.first > 0.0:
+                whole = load.jerk / speed
+                left = whole - 1.5 * load.second * slope - load.third * square
+                least = min(least, 2.0 * max(left, LEAST_SHARE * whole) / load.first)
+        return least
+
+    def excess(self, square: float, slope: float, bend: float) -> float:
+        """The largest part of a limit that y, b and c take; above 1 one of them is exceeded."""
+        speed = sqrt(square) if square > 0.0 else 0.0
+        if not self.loads:
+            along = 0.5 * slope / self.up if slope > 0.0 else -0.5 * slope / self.down
+            return max(along, 0.5 * speed * abs(bend) / self.jerk)
+        most = 0.0
+        for load in self.loads:
+            along = abs(0.5 * load.first * slope + load.bend * square) + load.spread * square
+            jerk = 0.5 * load.first * abs(bend) + 1.5 * load.second * abs(slope) + load.third * square
+            most = max(most, load.first * speed / load.velocity, along / load.acceleration, speed * jerk / load.jerk)
+        return most
+
+
+SMALLEST_SQUARE: Final = 1e-12
+"""y of a path that is practically at rest."""
+
+
+def largest_square(loads: Sequence[AxisLoad]) -> float:
+    """Largest y on a curve at which no axis exceeds its limits while the velocity is constant."""
+    square = inf
+    for load in loads:
+        if load.first > 0.0:
+            square = min(square, (load.velocity / load.first) ** 2)
+        if load.second > 0.0:
+            square = min(square, load.acceleration / load.second)
+        if load.third > 0.0:
+            square = min(square, (THIRD_SHARE * load.jerk / load.third) ** (2.0 / 3.0))
+    return square
