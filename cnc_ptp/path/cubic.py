@@ -1,7 +1,7 @@
 """A cubic piece of a path: what corners and smoothed contours consist of.
 
-Each axis is q(u) = q0 + q1·u + q2·u²/2 + q3·u³/6 over the parameter u, which is nearly the path length. Pieces follow each
-other with continuous q1 and q2, so the acceleration of the axes is continuous and their jerk has a limit.
+Each axis is q(u) = q0 + q1·u + q2·u²/2 + q3·u³/6 over the parameter u, which is nearly the path length. Pieces follow
+each other with continuous q1 and q2, so the acceleration of the axes is continuous and their jerk has a limit.
 """
 
 from __future__ import annotations
@@ -39,10 +39,7 @@ class Cubic:
         """
         square, cross, cube = v * v, 3.0 * v * a, v * v * v
         return tuple(
-            [
-                (q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube)
-                for q, q1, q2, q3 in self.shape(u)
-            ]
+            [(q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube) for q, q1, q2, q3 in self.shape(u)]
         )
 
     def bounds(self, begin: float, end: float) -> list[tuple[float, float, float]]:
@@ -51,7 +48,8 @@ class Cubic:
         q2 is linear; q1 is a parabola, whose vertex counts if it is between the two.
         """
         found = []
-        for (_, first0, second0, third), (_, first1, second1, _) in zip(self.shape(begin), self.shape(end), strict=True):
+        at_begin, at_end = self.shape(begin), self.shape(end)
+        for (_, first0, second0, third), (_, first1, second1, _) in zip(at_begin, at_end, strict=True):
             first = max(abs(first0), abs(first1))
             if second0 * second1 < 0.0:
                 first = max(first, abs(first0 - 0.5 * second0 * second0 / third))

@@ -58,9 +58,10 @@ class PathNode:
     up, down   largest acceleration and deceleration of a straight path
     jerk       of a straight path
     loads      of the axes where the path is curved, else empty
+    planned    y of the last plan, 0 without: what the axes are known to bear
     """
 
-    __slots__ = ("down", "feed", "jerk", "limit", "loads", "u", "up")
+    __slots__ = ("down", "feed", "jerk", "limit", "loads", "planned", "u", "up")
 
     def __init__(
         self,
@@ -75,6 +76,7 @@ class PathNode:
         self.u, self.limit, self.feed = u, limit, feed
         self.up, self.down, self.jerk = up, down, jerk
         self.loads = loads
+        self.planned = 0.0
 
     def acceleration(self, square: float, braking: bool) -> float:
         """Largest acceleration, or deceleration, along the path at y = `square`; never below 0."""

@@ -7,7 +7,7 @@ sets out from the lowest point with an acceleration of 0, so that the bottom of 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cbrt
+from math import cbrt, sqrt
 from typing import Final
 
 from cnc_ptp.path.lookahead.nodes import PathNode
@@ -25,15 +25,24 @@ def from_rest(first: PathNode, second: PathNode, *, braking: bool) -> float:
     u = j·t³/6 and y = (j·t²/2)², so y = j^⅔·(6u)^(4/3)/4 and a = 2y/(3u).
     """
     half = 0.5 * abs(second.u - first.u)
-    jerk = 0.5 * min(first.bending(1.0, 0.0), second.bending(1.0, 0.0))
-    acceleration = min(first.acceleration(0.0, braking), second.acceleration(0.0, braking))
+    bend = min(first.bending(1.0, 0.0), second.bending(1.0, 0.0))
+    square = square_from_rest(0.5 * bend, half)
+    square = min(square, 1.5 * half * min(first.acceleration(square, braking), second.acceleration(square, braking)))
+    slope = 4.0 * square / (3.0 * half)
+    bend = min(first.bending(square, slope), second.bending(square, slope))
+    return min(square, square_from_rest(0.5 * sqrt(square) * bend, half)) / REST_SHARE
+
+
+def square_from_rest(jerk: float, distance: float) -> float:
+    """y after a distance with constant jerk from rest."""
     root = cbrt(jerk)
-    six = cbrt(6.0 * half)
-    square = min(0.25 * root * root * six * six * six * six, 1.5 * acceleration * half)
-    return square / REST_SHARE
+    six = cbrt(6.0 * distance)
+    return 0.25 * root * root * six * six * six * six
 
 
-def one_pass(nodes: Sequence[PathNode], caps: Sequence[float], square: float, slope: float, *, braking: bool) -> list[float]:
+def one_pass(
+    nodes: Sequence[PathNode], caps: Sequence[float], square: float, slope: float, *, braking: bool
+) -> list[float]:
     """y at each node, coming from the first: from rest if `square` is 0, else from y = `square` with dy/du = `slope`.
 
     `braking`: the nodes are in reverse order, so that the pass brakes for the last one of the path.
@@ -85,9 +94,10 @@ def steepest_slope(
 
     What is permitted depends on the velocity that is reached with it, so it is found in two steps from above.
     """
+    behind = square - slope * (width - 0.5 * cell)
     steepest = slope + here.bending(square, abs(slope)) * width
     steepest = min(steepest, 2.0 * here.acceleration(square, braking), 2.0 * there.acceleration(square, braking))
-    highest = max(square, min(square + 0.5 * steepest * cell, max(cap, there.limit)))
+    highest = max(square, behind, min(square + 0.5 * steepest * cell, max(cap, there.limit)))
     bend = here.bending(highest, max(abs(slope), abs(steepest)))
     steepest = min(steepest, slope + bend * width)
     return min(steepest, 2.0 * here.acceleration(highest, braking), 2.0 * there.acceleration(highest, braking))

@@ -80,33 +80,32 @@ LARGEST_RATIO: Final = 1.0 - 1e-12
 
 
 class PathProfile:
-    """The pieces of a plan in time.
+    """Pieces of a plan in time, one after the other, to rest.
 
-    duration   s from the start of the plan to rest
+    duration   s at which the path is at rest
     """
 
-    def __init__(self, plan: VelocityPlan, start: MovingStart) -> None:
-        self.pieces = pieces_of(plan, start)
-        self._starts = [piece.begin for piece in self.pieces]
-        last = self.pieces[-1]
+    def __init__(self, pieces: list[PathPiece]) -> None:
+        self._pieces = pieces
+        self._starts = [piece.begin for piece in pieces]
+        last = pieces[-1]
         self.duration = last.begin + last.duration
-        self.end = plan.nodes[-1].u
 
     def state_at(self, t: float) -> MotionState:
-        """(u, u', u'', u''') at t seconds after the start; before it as at 0, at rest behind the end."""
-        if t >= self.duration:
-            return self.end, 0.0, 0.0, 0.0
-        if t < 0.0:
-            t = 0.0
-        piece = self.pieces[bisect_right(self._starts, t) - 1]
-        return piece.state_after(t - piece.begin)
+        """(u, u', u'', u''') at time t; before the first piece as at its start."""
+        piece = self._pieces[max(0, bisect_right(self._starts, t) - 1)]
+        return piece.state_after(max(0.0, t - piece.begin))
+
+    def piece_and_next(self, t: float) -> tuple[PathPiece, PathPiece | None]:
+        """The piece that is active at t, and the one behind it."""
+        index = max(0, bisect_right(self._starts, t) - 1)
+        return self._pieces[index], self._pieces[index + 1] if index + 1 < len(self._pieces) else None
 
 
-def pieces_of(plan: VelocityPlan, start: MovingStart) -> list[PathPiece]:
-    """From the middle of one cell to that of the next, between the two at rest."""
+def pieces_of(plan: VelocityPlan, start: MovingStart, time: float) -> list[PathPiece]:
+    """From the middle of one cell to that of the next, between the two at rest; the first begins at `time`."""
     nodes, places, squares = plan
     pieces: list[PathPiece] = []
-    time = 0.0
     slope = (squares[1] - squares[0]) / (places[1] - places[0])
     if start.square > 0.0:
         u, square, slope = start
@@ -114,9 +113,9 @@ def pieces_of(plan: VelocityPlan, start: MovingStart) -> list[PathPiece]:
     else:
         u = 0.5 * (nodes[0].u + nodes[1].u)
         velocity = sqrt(squares[0] + slope * (u - places[0]))
-        first = rest_piece(0.0, nodes[0].u, u - nodes[0].u, velocity)
+        first = rest_piece(time, nodes[0].u, u - nodes[0].u, velocity)
         pieces.append(first)
-        time = first.duration
+        time += first.duration
     for index in range(1, len(nodes) - 1):
         following = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
         middle = 0.5 * (nodes[index].u + nodes[index + 1].u)

@@ -48,9 +48,7 @@ def round_peaks(places: Sequence[float], squares: Sequence[float], bend: Sequenc
     return rounded
 
 
-def chord(
-    places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, end: int
-) -> float:
+def chord(places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, end: int) -> float:
     """Slope of K + C from one node to another."""
     rise = squares[end] - squares[begin] + (raised[end] - raised[begin])
     return rise / (places[end] - places[begin])

@@ -6,7 +6,7 @@ straight lines between the nodes (a quadratic B-spline): y and dy/du are continu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 from cnc_ptp.path.lookahead.nodes import PathNode
@@ -16,8 +16,8 @@ from cnc_ptp.path.lookahead.peaks import bends, round_peaks
 ROUNDS: Final = 8
 """Plans with lower limits where one was exceeded, before the whole plan is slowed down."""
 ROUNDINGS: Final = 3
-"""Peaks are rounded with the bend that the velocities of the rounding before permit: from too high ones too strongly, then
-not enough, then with the bend of velocities that are a little too high, which is never too much."""
+"""Peaks are rounded with the bend that the velocities of the rounding before permit: too strongly at first, then not
+enough, then from velocities that are a little too high, which is never too little."""
 EXCESS: Final = 1e-9
 """Part of a limit that counts as rounding."""
 ROOM: Final = 1e-7
@@ -51,22 +51,24 @@ def plan_velocity(
     At least three nodes. The feed counts from node `delay` on: what is faster at the start slows down before it.
     """
     moving = start.square > 0.0
+    squares: list[float] | None = None
+    worst = 0.0
     caps = [caps_of(node, override if index >= delay else None) for index, node in enumerate(nodes)]
     places, widths = polygon(nodes, moving=moving)
     for _ in range(ROUNDS):
         squares = highest(nodes, places, widths, caps, start)
         if squares is None:
             return None
-        excesses = exceeded(nodes, places, widths, squares)
+        excesses = exceeded(nodes, places, widths, squares, moving)
         worst = max(excesses)
         if worst <= 1.0 + EXCESS:
             return VelocityPlan(nodes, places, squares)
-        lower(caps, squares, excesses)
-    if moving:
+        lower(nodes, caps, squares, excesses)
+    if moving or squares is None:
         return None
     while worst > 1.0 + EXCESS:
         squares = [square / worst for square in squares]
-        worst = max(exceeded(nodes, places, widths, squares))
+        worst = max(exceeded(nodes, places, widths, squares, moving))
     return VelocityPlan(nodes, places, squares)
 
 
@@ -119,12 +121,16 @@ def highest(
 
 
 def exceeded(
-    nodes: Sequence[PathNode], places: Sequence[float], widths: Sequence[float], squares: Sequence[float]
+    nodes: Sequence[PathNode], places: Sequence[float], widths: Sequence[float], squares: Sequence[float], moving: bool
 ) -> list[float]:
     """For each node the largest part of a limit that the plan takes around it."""
     parts = [0.0] * len(nodes)
     before = (squares[1] - squares[0]) / (places[1] - places[0])
     square = squares[1] - before * (places[1] - 0.5 * (nodes[0].u + nodes[1].u))
+    if moving:
+        square = squares[0]
+    else:
+        parts[0] = excess_at_rest(nodes[0], nodes[1], square, before)
     for index in range(1, len(nodes) - 1):
         after = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
         ahead = squares[index] + after * (0.5 * (nodes[index].u + nodes[index + 1].u) - places[index])
@@ -132,13 +138,48 @@ def exceeded(
         node = nodes[index]
         parts[index] = max(node.excess(square, before, bend), node.excess(ahead, after, bend))
         before, square = after, ahead
+    parts[-1] = excess_at_rest(nodes[-1], nodes[-2], square, before)
     return parts
 
 
-def lower(caps: list[float], squares: Sequence[float], excesses: Sequence[float]) -> None:
-    """Lowers the limits where one was exceeded, and of the neighbours."""
+def excess_at_rest(rest: PathNode, other: PathNode, square: float, slope: float) -> float:
+    """The same for the half cell at rest, with constant jerk 2v³/(9u²): u''' = c·u'/2."""
+    half = 0.5 * (other.u - rest.u)
+    return rest.excess(square, slope, 4.0 * square / (9.0 * half * half))
+
+
+def lower(nodes: Sequence[PathNode], caps: list[float], squares: Sequence[float], excesses: Sequence[float]) -> None:
+    """Lowers the limits where one was exceeded, and of the neighbours; not below what was planned there before."""
     for index, excess in enumerate(excesses):
         if excess > 1.0 + EXCESS:
             part = excess**-0.7
-            for near in (index - 1, index, index + 1):
-                caps[near] = min(caps[near], squares[near] * part)
+            for near in range(max(index - 1, 0), min(index + 2, len(nodes))):
+                caps[near] = min(caps[near], max(squares[near] * part, nodes[near].planned))
+
+
+def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> VelocityPlan | None:
+    """The plan of the first number 1 … `count` for which there is one, if there is one for all behind it, too."""
+    low, high, found = 0, 1, plan_at(1)
+    while found is None and high < count:
+        low, high = high, min(2 * high, count)
+        found = plan_at(high)
+    if found is None:
+        return None
+    while high - low > 1:
+        middle = (low + high) // 2
+        plan = plan_at(middle)
+        if plan is None:
+            low = middle
+        else:
+            high, found = middle, plan
+    return found
+
+
+def stop_soon(nodes: Sequence[PathNode], start: MovingStart) -> VelocityPlan | None:
+    """To rest at the first node at which that is possible; the feed does not count any more."""
+    last = len(nodes) - 1
+
+    def stop_at(node: int) -> VelocityPlan | None:
+        return plan_velocity(nodes[: min(node + 1, last) + 1], start, 0.0, len(nodes))
+
+    return earliest(last, stop_at)
