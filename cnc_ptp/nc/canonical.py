@@ -13,6 +13,8 @@ functions have finished.
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.nc.contour import Contour
+
 
 class Source(NamedTuple):
     """The source of a block: file, line (1-based), block number (N word, 0 if none) and the line's text.
@@ -51,13 +53,16 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
-    `slope` of its acceleration, "" is that of P-CHAN-00071.
+    `slope` of its acceleration, "" is that of P-CHAN-00071. `exact`: the path stops at the end; `contour`: the corner
+    there may be rounded like that.
     """
 
     target: tuple[float, ...]
     rapid: bool
     feed: float
     slope: str = ""
+    exact: bool = False
+    contour: Contour | None = None
 
 
 class CircularMove(NamedTuple):
@@ -65,7 +70,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope` as in LinearMove.
+    `slope`, `exact` and `contour` as in LinearMove.
     """
 
     target: tuple[float, ...]
@@ -75,6 +80,8 @@ class CircularMove(NamedTuple):
     sweep: float
     feed: float
     slope: str = ""
+    exact: bool = False
+    contour: Contour | None = None
 
 
 class Dwell(NamedTuple):

@@ -90,6 +90,15 @@ class PathInterpolator:
         """Path length (mm) from the last cycle given out to the end of the element."""
         return 0.0 if self.done else self._length - self.state[0]
 
+    @property
+    def next_offset(self) -> float:
+        """s by which the next cycle's predecessor is behind the exact end of the last element; 0 or less."""
+        return self._next_offset
+
+    def go_on(self, offset: float) -> None:
+        """What has moved the path meanwhile has ended; `offset` as above."""
+        self._next_offset = offset
+
     def start(
         self, element: Element, limits: Limits, feed: float | None = None, *, planner: Planner = JERK_LIMITED
     ) -> None:

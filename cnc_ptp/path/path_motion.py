@@ -9,6 +9,9 @@ from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, AxisState, Line
 from cnc_ptp.path.interpolator import PathInterpolator
+from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
+from cnc_ptp.path.lookahead.look_ahead import LookAhead
+from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import JERK_LIMITED, STEPS
 
 CARTESIAN = ("X", "Y", "Z")
@@ -37,9 +40,12 @@ class PathMotion:
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
+        self._builder = PathBuilder(sorted(self._path_axes), cycle_time)
         self._element: Line | Arc | None = None
         self._evaluate: Evaluation | None = None
         """States of the axes on the active element."""
+        self._linked: LinkedPath | None = None
+        """The path of several blocks that is active, in place of an element."""
         self.states = standing([a.start_position for a in axes])
         self.velocity = 0.0
         self.distance_to_go = 0.0
@@ -53,22 +59,35 @@ class PathMotion:
     @property
     def on_path(self) -> bool:
         """An element is active (a dwell is none)."""
-        return self._element is not None
+        return self._element is not None or self._linked is not None
 
     @property
     def held(self) -> bool:
         """Feed hold or override 0 act; the path is at a standstill, or is on its ramp to standstill."""
-        return self._element is not None and self._interpolator.override == 0.0
+        return self.on_path and self._interpolator.override == 0.0
 
     @property
     def can_be_held(self) -> bool:
         """An element is active that a feed hold would stop before its end."""
+        if self._linked is not None:
+            return not self._linked.look_ahead.brakes_for_end
         return self._element is not None and not self._interpolator.ends_by_itself
 
     @property
     def stopped(self) -> bool:
         """True when `stop` was called and the path is at a standstill."""
-        return self._interpolator.stopped
+        return self._linked.look_ahead.stopped if self._linked is not None else self._interpolator.stopped
+
+    @property
+    def passes(self) -> bool:
+        """The active block is finished; the path goes on in the next one without a stop."""
+        return self._linked is not None and self._linked.passes
+
+    def pass_block(self) -> None:
+        """The next block of the path is the active one."""
+        assert self._linked is not None
+        self._linked.pass_block()
+        self.feed = self._programmed(self._linked.feed)
 
     @property
     def point(self) -> PathPoint:
@@ -80,42 +99,81 @@ class PathMotion:
         if position != self.states[index][0]:
             self.states = (*self.states[:index], (position, 0.0, 0.0, 0.0), *self.states[index + 1 :])
 
-    def start(self, motion: Motion) -> None:
+    def start(self, motion: Motion, source: MotionSource | None = None) -> None:
         """Starts a motion, directly after another one at its exact end inside a cycle.
 
+        With a `source` the path goes on with the motions that follow, as far as nothing needs a stop between them.
         Raises CncError (22101–22112, 23001) for impossible motions; then nothing is started.
         """
         if isinstance(motion, Dwell):
             self._interpolator.dwell(motion.seconds)
             return
-        element = self._make_element(motion)
-        rapid = isinstance(motion, LinearMove) and motion.rapid
-        axis_limits = self._rapid_limits if rapid else self._feed_limits
-        steps = (motion.slope or self._default_slope) == STEP
-        if steps:
-            axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
+        element = self._make_element(self.position, motion)
+        if source is not None and self._link(element, motion, source):
+            return
+        rapid = is_rapid(motion)
+        axis_limits = self._axis_limits(motion)
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
         feed = limits.velocity if rapid else motion.feed
+        steps = self._steps(motion)
         self._interpolator.start(element, limits, feed, planner=STEPS if steps else JERK_LIMITED)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=steps)
 
-    def _make_element(self, motion: LinearMove | CircularMove) -> Line | Arc:
-        start = self.position
+    def _steps(self, motion: Path) -> bool:
+        """The acceleration of the path may step."""
+        return (motion.slope or self._default_slope) == STEP
+
+    def _axis_limits(self, motion: Path) -> list[AxisLimits]:
+        axis_limits = self._rapid_limits if is_rapid(motion) else self._feed_limits
+        return [axis._replace(jerk=math.inf) for axis in axis_limits] if self._steps(motion) else axis_limits
+
+    def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):
             return Line(start, motion.target, self._path_axes)
         return Arc(start, motion.target, motion.center, motion.plane, motion.radius, motion.sweep, self._path_axes)
 
+    def _link(self, element: Line | Arc, motion: Path, source: MotionSource) -> bool:
+        """Starts a path of several blocks if the next motion can be linked to this one."""
+        following = source.peek()
+        if following is None:
+            return False
+        first = self._linked_motion(element, motion, 0)
+        path = LinkedPath(self._look_ahead(), self._builder, source, self._make_linked)
+        if not path.begin(first, motion, following):
+            return False
+        self._linked, self.feed = path, self._programmed(path.feed)
+        return True
+
+    def _look_ahead(self) -> LookAhead:
+        return LookAhead(self._interpolator.override, self._interpolator.next_offset)
+
+    def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
+        return self._linked_motion(self._make_element(start, motion), motion, block)
+
+    def _linked_motion(self, element: Line | Arc, motion: Path, block: int) -> LinkedMotion:
+        rapid = is_rapid(motion)
+        return LinkedMotion(element, self._axis_limits(motion), math.inf if rapid else motion.feed, block)
+
+    def _programmed(self, feed: float) -> float:
+        """In rapid traverse the velocity that the axes allow on the first part of the path."""
+        return feed
+
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before."""
+        points = self._points(count)
+        if points:
+            self.states, self.velocity, self.distance_to_go = points[-1]
+        return points
+
+    def _points(self, count: int) -> list[PathPoint]:
+        if self._linked is not None:
+            return self._linked.follow(count, self._cycle_time)
         rows = self._interpolator.step(count, self._cycle_time)
         element, evaluate = self._element, self._evaluate
         if element is None or evaluate is None:
             return [(self.states, 0.0, 0.0)] * len(rows)
-        points = [(evaluate(*row[:4]), row[1], element.length - row[0]) for row in rows]
-        if points:
-            self.states, self.velocity, self.distance_to_go = points[-1]
-        return points
+        return [(evaluate(*row[:4]), row[1], element.length - row[0]) for row in rows]
 
     def stand(self) -> None:
         """A cycle passes in which no motion is active."""
@@ -124,15 +182,25 @@ class PathMotion:
     def set_override(self, override: float) -> None:
         """Override of the path, 1 is 100 %, 0 is feed hold; acts from the last cycle given out."""
         self._interpolator.set_override(override)
+        if self._linked is not None:
+            self._linked.look_ahead.set_override(override)
 
     def stop(self) -> None:
         """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
-        self._interpolator.stop()
+        if self._linked is not None:
+            self._linked.look_ahead.stop()
+        else:
+            self._interpolator.stop()
 
     def finish(self) -> None:
         """The motion has finished: the axes are exactly at its target, or at the end of its stop ramp."""
-        element = self._element
-        self.states = standing(element.target if element and self._interpolator.done else self.position)
+        linked, element = self._linked, self._element
+        if linked is not None:
+            self.states = standing(linked.target if linked.done else self.position)
+            self._interpolator.go_on(linked.look_ahead.remaining_time - self._cycle_time if linked.done else 0.0)
+            self._linked = None
+        else:
+            self.states = standing(element.target if element and self._interpolator.done else self.position)
         self._element = None
         self.velocity = self.distance_to_go = 0.0
 

@@ -75,7 +75,10 @@ class LookAhead:
         for place in cells(part):
             middle = 0.5 * (before + place)
             first = HalfCell(part, before, middle)
-            self._nodes.append(node_between(begin + before, self._behind or first, first))
+            node = node_between(begin + before, self._behind or first, first)
+            if before == 0.0:
+                node.limit = min(node.limit, part.entry)
+            self._nodes.append(node)
             self._behind = HalfCell(part, place, middle)
             before = place
         self.end = begin + part.length
@@ -127,6 +130,15 @@ class LookAhead:
     def stopped(self) -> bool:
         """`stop` was called and the path is at rest."""
         return self._stopping and self._profile is None
+
+    @property
+    def brakes_for_end(self) -> bool:
+        """The override no longer acts: the path is at its end or in the last piece of its plan before it."""
+        if self.done or self._stopping:
+            return True
+        if self._profile is None or self._planned_end < self.end or not self.closed:
+            return False
+        return self._profile.piece_and_next(self._time)[1] is None
 
     @property
     def _factor(self) -> float:

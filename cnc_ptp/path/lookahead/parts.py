@@ -46,15 +46,22 @@ class PathPart:
     axes   limits of the axes of the channel in this part
     feed   mm/s at override 1; inf in rapid traverse, where the override acts on what the axes permit
     block  number of the program block within the path, from 0
+    entry  largest y = u'² at its begin
     """
 
-    __slots__ = ("axes", "block", "feed", "geometry", "length", "path_axes")
+    __slots__ = ("axes", "block", "entry", "feed", "geometry", "length", "path_axes")
 
     def __init__(
-        self, geometry: Geometry, axes: Sequence[AxisLimits], path_axes: Sequence[int], feed: float, block: int
+        self,
+        geometry: Geometry,
+        axes: Sequence[AxisLimits],
+        path_axes: Sequence[int],
+        feed: float,
+        block: int,
+        entry: float = inf,
     ) -> None:
         self.geometry, self.axes, self.path_axes = geometry, axes, path_axes
-        self.feed, self.block = feed, block
+        self.feed, self.block, self.entry = feed, block, entry
         self.length = geometry.length
 
 

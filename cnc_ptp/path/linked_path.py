@@ -1,0 +1,156 @@
+"""A path of several blocks that is run through without a stop: what the channel sees of the look-ahead."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Protocol
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion.setpoints import MotionState
+from cnc_ptp.nc.canonical import CircularMove, LinearMove
+from cnc_ptp.path.lookahead.look_ahead import LookAhead
+from cnc_ptp.path.lookahead.parts import PathPart
+from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
+from cnc_ptp.path.shape import AxisState
+
+Path = LinearMove | CircularMove
+
+
+class MotionSource(Protocol):
+    """The motions that follow the active one without a reason to stop between them."""
+
+    @property
+    def busy(self) -> bool:
+        """The next one is not known yet."""
+
+    def peek(self) -> Path | None:
+        """The next motion; None if the path has to stop before what comes next, or while it is not known."""
+
+    def accept(self) -> None:
+        """The motion that `peek` has shown belongs to the path now."""
+
+
+LinkedPoint = tuple[tuple[AxisState, ...], float, float]
+"""States of the axes, path velocity (mm/s), distance to the end of the block (mm)."""
+Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
+"""Makes an element of the position at which a motion begins, the motion and the number of its block."""
+
+
+def can_follow(motion: Path, following: Path) -> bool:
+    """Nothing in the two motions asks for a stop between them."""
+    return not motion.exact and is_rapid(motion) == is_rapid(following)
+
+
+def is_rapid(motion: Path) -> bool:
+    """G00."""
+    return isinstance(motion, LinearMove) and motion.rapid
+
+
+class LinkedPath:
+    """Runs linked motions.
+
+    block   number of the active block within the path, from 0
+    feed    programmed feed of the active block, mm/s
+    """
+
+    def __init__(self, look_ahead: LookAhead, builder: PathBuilder, source: MotionSource, make: Maker) -> None:
+        self.look_ahead = look_ahead
+        self._builder, self._source, self._make = builder, source, make
+        self.block = 0
+        self._blocks = 1
+        """Number of blocks that belong to the path."""
+        self._ends: deque[float] = deque([0.0])
+        """u at the ends of the active block and of those behind it, as far as they are known."""
+        self._feeds: deque[float] = deque()
+        self._rows: deque[MotionState] = deque()
+
+    def begin(self, first: LinkedMotion, motion: Path, following: Path) -> bool:
+        """Links the first two motions; False if they cannot be linked."""
+        self._last = motion
+        self._feeds.append(first.feed)
+        self._builder.begin(first)
+        return self._extend(following)
+
+    @property
+    def feed(self) -> float:
+        return self._feeds[0]
+
+    @property
+    def target(self) -> tuple[float, ...]:
+        """End of the last block."""
+        return self._last.target
+
+    @property
+    def done(self) -> bool:
+        """All blocks are finished."""
+        return self.look_ahead.done and not self._rows and self.block == self._blocks - 1
+
+    @property
+    def passes(self) -> bool:
+        """The active block is finished, and the path is in the next one already."""
+        return self._block_ahead() > self.block
+
+    def pass_block(self) -> None:
+        """The next block is the active one."""
+        self.block += 1
+        self._ends.popleft()
+        self._feeds.popleft()
+
+    def follow(self, count: int, cycle_time: float) -> list[LinkedPoint]:
+        """The next `count` cycles of the active block; fewer when it ends before."""
+        points: list[LinkedPoint] = []
+        while len(points) < count:
+            if not self._rows:
+                self._fill()
+                self._rows.extend(self.look_ahead.step(count - len(points), cycle_time))
+                if not self._rows:
+                    break
+            if self.passes:
+                break
+            u, v, a, j = self._rows.popleft()
+            begin, part = self.look_ahead.locate(u)
+            states = part.geometry.evaluate(u - begin, v, a, j)
+            speed = part.geometry.speed(u - begin, part.path_axes)
+            points.append((states, v * speed, max(0.0, self._ends[0] - u)))
+        return points
+
+    def _block_ahead(self) -> int:
+        if self._rows:
+            return self.look_ahead.locate(self._rows[0][0])[1].block
+        return self._blocks - 1 if self.look_ahead.done else self.block
+
+    def _fill(self) -> None:
+        """Appends motions until the window is full."""
+        while self.look_ahead.wants:
+            motion = self._source.peek()
+            if motion is None and self._source.busy:
+                return
+            if motion is None or not self._extend(motion):
+                self._append(self._builder.finish())
+                self.look_ahead.closed = True
+
+    def _extend(self, motion: Path) -> bool:
+        """Links the next motion; False if the path has to stop before it."""
+        last = self._last
+        if not can_follow(last, motion):
+            return False
+        try:
+            linked = self._make(last.target, motion, self._blocks)
+        except CncError:
+            return False  # it is told when the path gets there
+        parts = self._builder.link(linked, last.contour)
+        if parts is None:
+            return False
+        self._source.accept()
+        self._blocks += 1
+        self._last = motion
+        self._feeds.append(linked.feed)
+        self._ends.append(0.0)
+        self._append(parts)
+        return True
+
+    def _append(self, parts: list[PathPart]) -> None:
+        for part in parts:
+            self.look_ahead.append(part)
+            self._ends[part.block - self.block] = self.look_ahead.end
