@@ -7,12 +7,8 @@ each other with continuous q1 and q2, so the acceleration of the axes is continu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
 
-AxisState = tuple[float, float, float, float]
-"""Position, velocity, acceleration, jerk of one axis."""
-Shape = tuple[float, float, float, float]
-"""q, q1, q2, q3 of one axis at a place of the path."""
+from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of, states
 
 
 class Cubic:
@@ -33,16 +29,10 @@ class Cubic:
         ]
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
-        """State of each axis at u that moves with u' = v, u'' = a, u''' = j.
+        """State of each axis at u that moves with u' = v, u'' = a, u''' = j."""
+        return states(self.shape(u), v, a, j)
 
-        q' = q1·v, q'' = q1·a + q2·v², q''' = q1·j + 3·q2·v·a + q3·v³.
-        """
-        square, cross, cube = v * v, 3.0 * v * a, v * v * v
-        return tuple(
-            [(q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube) for q, q1, q2, q3 in self.shape(u)]
-        )
-
-    def bounds(self, begin: float, end: float) -> list[tuple[float, float, float]]:
+    def bounds(self, begin: float, end: float) -> list[Bounds]:
         """Largest |q1|, |q2|, |q3| of each axis from u = `begin` to `end`.
 
         q2 is linear; q1 is a parabola, whose vertex counts if it is between the two.
@@ -58,5 +48,4 @@ class Cubic:
 
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes: the path velocity is u' times that."""
-        shape = self.shape(u)
-        return hypot(*[shape[axis][1] for axis in axes])
+        return speed_of(self.shape(u), axes)

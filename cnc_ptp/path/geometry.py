@@ -1,8 +1,9 @@
 """Geometric elements of a path: lines, arcs and helices over any number of axes.
 
-An element is run through by its path length s (mm). `evaluate(s, v, a, j)` gives each axis its own position and
-derivatives by the chain rule, from the path's velocity v, acceleration a and jerk j. `limits(feed, axes)` gives the
-path's dynamics at which no axis exceeds its own limits.
+An element is run through by its path length s (mm). `shape(s)` gives position and derivatives of each axis by s, and
+`bounds(begin, end)` how large these derivatives become on a part of it. `evaluate(s, v, a, j)` gives each axis its own
+position and derivatives by the chain rule, from the path's velocity v, acceleration a and jerk j. `limits(feed, axes)`
+gives the path's dynamics at which no axis exceeds its own limits.
 
 The feed refers to the path of the axes with the indices `path_axes` (X, Y, Z, in any order); further axes travel
 along and arrive together. If only further axes move, the path is theirs.
@@ -11,20 +12,18 @@ along and arrive together. If only further axes move, the path is theirs.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from math import atan2, cbrt, cos, hypot, inf, isfinite, radians, sin, sqrt
+from math import atan2, cbrt, ceil, cos, hypot, inf, isfinite, pi, radians, sin, sqrt, tau
 from typing import NamedTuple, Protocol
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_LIMIT
+from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of, states
 
 BAD_POINTS = 22100
 TARGET_OFF_ARC = 22101
 EMPTY_ARC = 22102
 BAD_FEED = 22103
-
-AxisState = tuple[float, float, float, float]
-"""Position, velocity, acceleration, jerk of one axis."""
 
 CENTRIPETAL_SHARE = 0.8
 """Largest part of the weakest plane axis's acceleration that the curvature may take: v²/r <= 0.8·A.
@@ -94,6 +93,20 @@ class Line:
             return tuple([(p, k * v, k * a, k * j) for p, (_, k) in zip(self.target, self._axes, strict=True)])
         return tuple([(p + k * s, k * v, k * a, k * j) for p, k in self._axes])
 
+    def shape(self, s: float) -> list[Shape]:
+        """q, q1, q2, q3 of each axis at path length s; exactly the target at the end."""
+        if s >= self.length:
+            return [(p, k, 0.0, 0.0) for p, (_, k) in zip(self.target, self._axes, strict=True)]
+        return [(p + k * s, k, 0.0, 0.0) for p, k in self._axes]
+
+    def bounds(self, begin: float, end: float) -> list[Bounds]:
+        """Largest |q1|, |q2|, |q3| of each axis; the same everywhere."""
+        return [(abs(k), 0.0, 0.0) for _, k in self._axes]
+
+    def speed(self, s: float, axes: Sequence[int]) -> float:
+        """|dq/ds| of the given axes."""
+        return speed_of(self.shape(0.0), axes)
+
     def limits(self, feed: float, axes: Sequence[AxisLimits], override_max: float = 1.0) -> Limits:
         """Path dynamics by projection: each axis gives its limit divided by its share |k| of the path.
 
@@ -112,14 +125,15 @@ class Arc:
     center      centre in these two axes, mm (absolute)
     sweep_deg   signed angle, deg; several turns allowed
     length      √(arc² + linear²): the arc and the linear motion of the remaining axes among `path_axes`
+    rate        rad by which the arc turns in 1 mm of path length, with the sign of the sweep
 
     The circle runs through `start` around `center`. A closing error at the target (rounded I, J, K) is spread evenly
     over the path; more than 0.01 mm + radius/10000 is refused with CncError 22101, an arc without length with 22102.
     """
 
     __slots__ = (
-        "_angle", "_center", "_drift", "_linear", "_rate",
-        "center", "length", "plane", "radius", "start", "sweep_deg", "target",
+        "_angle", "_center", "_drift", "_linear",
+        "center", "length", "plane", "radius", "rate", "start", "sweep_deg", "target",
     )  # fmt: skip
 
     def __init__(
@@ -153,7 +167,7 @@ class Arc:
         others = [(n, b - a) for n, (a, b) in enumerate(zip(start, target, strict=True)) if n not in self.plane]
         self.length = hypot(self.radius * sweep, *(distance for n, distance in others if n in path_axes))
         self._angle = atan2(y, x)
-        self._rate = sweep / self.length
+        self.rate = sweep / self.length
         self._linear = tuple([(n, self.start[n], distance / self.length) for n, distance in others])
         self._set_drift(x, y, sweep, radius)
 
@@ -180,40 +194,58 @@ class Arc:
         )
 
     def evaluate(self, s: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
-        """State of each axis at path length s; exactly the target at the end.
+        """State of each axis at path length s; exactly the target at the end."""
+        return states(self.shape(s), v, a, j)
 
-        The linear axes as on a line; with θ = θ0 + w·s the plane axes have θ' = w·v, θ'' = w·a, θ''' = w·j and
-        x = cx + r·cosθ, x' = -r·sinθ·θ', x'' = -r·sinθ·θ'' - r·cosθ·θ'², x''' = -r·sinθ·(θ''' - θ'³) - 3·r·cosθ·θ'·θ''.
+    def shape(self, s: float) -> list[Shape]:
+        """q, q1, q2, q3 of each axis at path length s; exactly the target at the end.
+
+        The linear axes as on a line; with θ = θ0 + w·s and its drift k the first plane axis has
+        q = cx + r·cosθ + k·s, q1 = k - w·r·sinθ, q2 = -w²·r·cosθ, q3 = w³·r·sinθ.
         """
-        angle = self._angle + self._rate * s
+        w = self.rate
+        angle = self._angle + w * s
         x = self.radius * cos(angle)
         y = self.radius * sin(angle)
-        rate = self._rate * v
-        swing = self._rate * a
-        square = rate * rate
-        turn = self._rate * j - square * rate
-        cross = 3.0 * rate * swing
+        square = w * w
+        cube = square * w
         dx, dy = self._drift
         cx, cy = self._center
         first, second = self.plane
-        states: list[AxisState] = [(0.0, 0.0, 0.0, 0.0)] * len(self.start)
+        shape: list[Shape] = [(0.0, 0.0, 0.0, 0.0)] * len(self.start)
         for n, p, k in self._linear:
-            states[n] = (p + k * s, k * v, k * a, k * j)
-        states[first] = (
-            cx + x + dx * s,
-            dx * v - y * rate,
-            dx * a - y * swing - x * square,
-            dx * j - y * turn - x * cross,
-        )
-        states[second] = (
-            cy + y + dy * s,
-            dy * v + x * rate,
-            dy * a + x * swing - y * square,
-            dy * j + x * turn - y * cross,
-        )
+            shape[n] = (p + k * s, k, 0.0, 0.0)
+        shape[first] = (cx + x + dx * s, dx - y * w, -x * square, y * cube)
+        shape[second] = (cy + y + dy * s, dy + x * w, -y * square, -x * cube)
         if s >= self.length:
-            return tuple([(p, *state[1:]) for p, state in zip(self.target, states, strict=True)])
-        return tuple(states)
+            return [(p, q1, q2, q3) for p, (_, q1, q2, q3) in zip(self.target, shape, strict=True)]
+        return shape
+
+    def bounds(self, begin: float, end: float) -> list[Bounds]:
+        """Largest |q1|, |q2|, |q3| of each axis from s = `begin` to `end`, from the ranges of sine and cosine there."""
+        w, r = self.rate, self.radius
+        least, most = self._angle + w * begin, self._angle + w * end
+        if w < 0.0:
+            least, most = most, least
+        low_sine, high_sine = _range(least, most, sin(least), sin(most), 0.5 * pi)
+        low_cosine, high_cosine = _range(least, most, cos(least), cos(most), 0.0)
+        sine, cosine = r * max(-low_sine, high_sine), r * max(-low_cosine, high_cosine)
+        square = w * w
+        cube = abs(square * w)
+        dx, dy = self._drift
+        first, second = self.plane
+        found: list[Bounds] = [(0.0, 0.0, 0.0)] * len(self.start)
+        for n, _, k in self._linear:
+            found[n] = (abs(k), 0.0, 0.0)
+        along = max(abs(dx - r * low_sine * w), abs(dx - r * high_sine * w))
+        found[first] = (along, cosine * square, sine * cube)
+        along = max(abs(dy + r * low_cosine * w), abs(dy + r * high_cosine * w))
+        found[second] = (along, sine * square, cosine * cube)
+        return found
+
+    def speed(self, s: float, axes: Sequence[int]) -> float:
+        """|dq/ds| of the given axes."""
+        return speed_of(self.shape(s), axes)
 
     def limits(self, feed: float, axes: Sequence[AxisLimits], override_max: float = 1.0) -> Limits:
         """Path dynamics under which no axis exceeds its limits at any angle, at any velocity up to the returned one.
@@ -233,7 +265,7 @@ class Arc:
         up = min(first.acceleration, second.acceleration)
         down = min(first.deceleration, second.deceleration)
         jerk = min(first.jerk, second.jerk)
-        k = abs(self._rate) * r + hypot(*self._drift)
+        k = abs(self.rate) * r + hypot(*self._drift)
         linear = _project([abs(slope) for _, _, slope in self._linear], [axes[n] for n, _, _ in self._linear])
         u = min(
             velocity,
@@ -248,6 +280,16 @@ class Arc:
         cross = 3.0 * u * max(up, down) / r
         free = sqrt(jerk * jerk - cross * cross) - normal * u / r
         return _combine(u / k, [linear, Limits(inf, up / k, down / k, free / k)])
+
+
+def _range(least: float, most: float, at_least: float, at_most: float, crest: float) -> tuple[float, float]:
+    """Smallest and largest value between two angles, of a sine wave that has a crest at the angle `crest`."""
+    low, high = min(at_least, at_most), max(at_least, at_most)
+    if crest + tau * ceil((least - crest) / tau) <= most:
+        high = 1.0
+    if crest + pi + tau * ceil((least - crest - pi) / tau) <= most:
+        low = -1.0
+    return low, high
 
 
 def _project(slopes: Sequence[float], axes: Sequence[AxisLimits]) -> Limits:

@@ -10,9 +10,9 @@ from math import ceil, inf, sqrt
 from typing import Final, Protocol
 
 from cnc_ptp.motion.limits import LARGEST_LIMIT
-from cnc_ptp.path.cubic import Shape
-from cnc_ptp.path.geometry import AxisLimits, AxisState
+from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.lookahead.nodes import AxisLoad, PathNode, largest_square
+from cnc_ptp.path.shape import AxisState, Shape
 
 CELL_TIME: Final = 0.004
 """s that a cell may take at the largest velocity."""

@@ -1,0 +1,30 @@
+"""Contouring of corners as a program asks for it: G61, G261, #CONTOUR MODE."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+DEV: Final = "DEV"
+"""The distance to the programmed path is given."""
+DIST: Final = "DIST"
+"""Where the path is left and met again is given."""
+
+
+class Contour(NamedTuple):
+    """Words of #CONTOUR MODE; those of the TwinCAT CNC programming manual with its defaults.
+
+    path_dev     PATH_DEV: largest distance of the path axes to the programmed path, mm; in DEV
+    track_dev    TRACK_DEV: largest deviation of each other axis, mm or deg; 0 none is given
+    pre_dist     PRE_DIST: mm of path length before the corner at which the path is left; in DIST
+    post_dist    POST_DIST: mm behind the corner at which it is met again; in DIST
+    remain_part  REMAIN_PART: % of a block that its two corners leave as they are
+    max_angle    MAX_ANGLE: largest change of direction between two lines at which there is a curve, deg; 0 always
+    """
+
+    mode: str = DEV
+    path_dev: float = 1.0
+    track_dev: float = 0.0
+    pre_dist: float = 1.0
+    post_dist: float = 1.0
+    remain_part: float = 0.0
+    max_angle: float = 0.0
