@@ -16,7 +16,7 @@ from cnc_ptp.channel.control_functions import control_commands, reset_commands
 from cnc_ptp.channel.handshake import UNSENT
 from cnc_ptp.channel.spindle_functions import SpindleFunctions
 from cnc_ptp.channel.spindle_reports import NOTHING, Expectation
-from cnc_ptp.channel.waits import OUTPUT, WAITING, Moment, Outgoing, Wait, goes_out
+from cnc_ptp.channel.waits import OUTPUT, WAITING, Moment, Outgoing, Wait, goes_out, waits_until
 from cnc_ptp.nc.canonical import (
     AuxiliaryFunction,
     AxisFeedforward,
@@ -24,6 +24,8 @@ from cnc_ptp.nc.canonical import (
     CompensationSwitch,
     Function,
     GearChange,
+    Message,
+    OrderedError,
     Source,
     SpindleCommand,
     SpindleFeedforward,
@@ -64,6 +66,26 @@ class FunctionOutput:
     def moment(self, function: Function) -> Moment:
         """When a function goes out."""
         return goes_out(self._synchronisation(function))
+
+    def without_stop(self, block: CanonicalBlock) -> bool:
+        """The path may go on into the block: all its functions go out as it passes, and it waits for none of them."""
+        return all(self._passes(function) for function in block.functions)
+
+    def _passes(self, function: Function) -> bool:
+        match function:
+            case SpindleFunction() | AuxiliaryFunction():
+                synchronisation = self._synchronisation(function)
+                waits = waits_until(synchronisation)
+                return goes_out(synchronisation) is Moment.BEFORE and waits in (None, Moment.EXPLICIT)
+            case Message():
+                return True
+            case OrderedError():
+                return not function.severe
+        return False
+
+    def goes_out_behind(self, block: CanonicalBlock) -> bool:
+        """A function of the block goes out when its motion has ended, or with the measuring event."""
+        return any(self.moment(function) is not Moment.BEFORE for function in block.functions)
 
     def gear_change(self, block: CanonicalBlock) -> Outgoing:
         """The gear that the block needs: everything else of the block follows when the spindle is in that gear."""

@@ -18,6 +18,7 @@ from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
+from cnc_ptp.channel.following_blocks import LATER_WAITS, FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
@@ -87,6 +88,7 @@ class ProgramSequence:
         self.single_block = False
         self.optional_stop = False
         self._block: CanonicalBlock | None = None
+        self._following = FollowingBlocks(functions, self._stops_before_next)
         self._keep: Container[str] = ()
         self._outgoing = Outgoing()
         self._waits: list[Wait] = []
@@ -111,6 +113,7 @@ class ProgramSequence:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
         self.stream, self.finished = stream, False
+        self._following.begin(stream)
         self.phase = Phase.NEXT
 
     def resume(self) -> None:
@@ -253,6 +256,9 @@ class ProgramSequence:
             self._end_program()
             self._stop_spindles()
             return
+        if self._motion.passes:
+            self._pass_block()
+            return
         self._motion.finish()
         if self._awaits_event:
             text = "no measuring event has come in the block; its functions go out after the motion"
@@ -278,7 +284,7 @@ class ProgramSequence:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
             self.stream.give(actual_positions(self._feedback, self._axes))
-        block = self.stream.next()
+        block = self._following.take()
         if block is BUSY:
             return False
         if block is None:
@@ -319,8 +325,25 @@ class ProgramSequence:
         if motion is None:
             self.motion_ended()
             return
-        self._motion.start(motion)
+        self._motion.start(motion, self._following)
         self.phase = Phase.MOTION
+
+    def _stops_before_next(self) -> bool:
+        """The path has to stop behind the active block, whatever follows."""
+        return self.single_block or any(wait.until in LATER_WAITS for wait in self._waits)
+
+    def _pass_block(self) -> None:
+        """The path goes on into the next block without a stop; blocks without motion in between are done at once."""
+        moves = False
+        while not moves:
+            self.stream.done += 1
+            block = self._following.take()
+            assert block is not None
+            self._block, self.source = block, block.source
+            self._tell(block)
+            self._queue(self._functions.of_block(block, Moment.BEFORE))
+            moves = block.motion is not None
+        self._motion.pass_block()
 
     def _end_block(self, first_cycle: int) -> None:
         stop = self._block.stop if self._block else ""

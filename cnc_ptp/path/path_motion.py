@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
+from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove, Motion
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.interpolator import PathInterpolator

@@ -195,8 +195,7 @@ class LookAhead:
         self._take(plan, [piece, *pieces_of(plan, start, following.begin)], nodes)
 
     def _knot(self, u: float, node: PathNode) -> PathNode:
-        knot = PathNode(u, node.limit, node.feed, node.up, node.down, node.jerk, node.loads)
-        return knot
+        return PathNode(u, node.limit, node.feed, node.up, node.down, node.jerk, node.loads)
 
     def _slow_down(self, nodes: list[PathNode], start: MovingStart) -> VelocityPlan | None:
         plan = plan_velocity(nodes, start, self._factor)

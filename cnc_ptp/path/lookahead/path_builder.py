@@ -75,4 +75,7 @@ class PathBuilder:
 
 def narrower(axes: Sequence[AxisLimits], others: Sequence[AxisLimits]) -> list[AxisLimits]:
     """The smaller limits of each axis."""
-    return [AxisLimits(*[min(pair) for pair in zip(one, other, strict=True)]) for one, other in zip(axes, others, strict=True)]
+    return [
+        AxisLimits(*[min(pair) for pair in zip(one, other, strict=True)])
+        for one, other in zip(axes, others, strict=True)
+    ]

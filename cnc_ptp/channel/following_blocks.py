@@ -1,0 +1,94 @@
+"""The blocks behind the active one: which of them the path may go through without a stop."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
+from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.waits import Moment
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, LinearMove
+from cnc_ptp.nc.faults import ProgramError
+
+
+class FollowingBlocks:
+    """Takes blocks from the stream, and looks ahead in it.
+
+    busy   the interpreter has not found the next block yet
+    """
+
+    def __init__(self, functions: FunctionOutput, held: Callable[[], bool]) -> None:
+        """`held`: the path has to stop before whatever follows."""
+        self._functions, self._held = functions, held
+        self.stream = NO_BLOCKS
+        self.busy = False
+        self._active: CanonicalBlock | None = None
+        self._ahead: deque[CanonicalBlock] = deque()
+        self._accepted = 0
+        """Blocks of `_ahead` that belong to the active path."""
+        self._shown = 0
+        self._fault: ProgramError | None = None
+        """A fault behind the blocks that are known: it counts when the path gets there."""
+
+    def begin(self, stream: BlockStream) -> None:
+        """A program starts."""
+        self.stream = stream
+        self._active, self._fault = None, None
+        self._ahead.clear()
+        self._accepted = 0
+
+    def take(self) -> CanonicalBlock | None:
+        """The next block, which is the active one then; as BlockStream.next. Raises ProgramError."""
+        if self._ahead:
+            block: CanonicalBlock | None = self._ahead.popleft()
+            self._accepted = max(0, self._accepted - 1)
+        elif self._fault is not None:
+            raise self._fault
+        else:
+            block = self.stream.next()
+        self._active = block
+        return block
+
+    def peek(self) -> LinearMove | CircularMove | None:
+        """The next motion; None if the path stops before it, or (`busy`) while it is not known."""
+        self.busy = False
+        place = self._accepted
+        before = self._ahead[place - 1] if place else self._active
+        if before is None or before.stop or self._held() or self._functions.goes_out_behind(before):
+            return None
+        while True:
+            block = self._block(place)
+            if block is None or not self._functions.without_stop(block):
+                return None
+            place += 1
+            if isinstance(block.motion, (LinearMove, CircularMove)):
+                self._shown = place
+                return block.motion
+            if block.motion is not None or block.stop:
+                return None
+
+    def accept(self) -> None:
+        """The path goes on with the motion that `peek` has shown."""
+        self._accepted = self._shown
+
+    def _block(self, place: int) -> CanonicalBlock | None:
+        if place < len(self._ahead):
+            return self._ahead[place]
+        if self._fault is not None:
+            return None
+        try:
+            block = self.stream.next()
+        except ProgramError as fault:
+            self._fault = fault
+            return None
+        if block is BUSY:
+            self.busy = True
+            return None
+        if block is not None:
+            self._ahead.append(block)
+        return block
+
+
+LATER_WAITS = (Moment.NEXT_MOTION, Moment.NEXT_CUT)
+"""Waits that hold the next motion."""
