@@ -2,7 +2,7 @@
 
 Parts are appended while the path moves. The velocity is planned over all that are known, to rest at the end of the last
 one, and planned again from a knot ahead as the path gets on: what is appended can only make it faster. Override, feed
-hold and stop are plans with another feed, which counts from the first node from which it can be kept.
+hold and stop are plans with another feed, which counts from the first cell from which it can be kept.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from typing import Final
 
 from cnc_ptp.motion import stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
-from cnc_ptp.path.lookahead.nodes import PathNode
-from cnc_ptp.path.lookahead.parts import HalfCell, PathPart, cells, node_between
+from cnc_ptp.path.lookahead.parts import PathPart, cell_of, cells_of
+from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import BETWEEN, PathPiece, PathProfile, pieces_of
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, earliest, plan_velocity, stop_soon
 
 AT_REST: Final = 1e-6
 """Override below which the path stops."""
-MOST_NODES: Final = 4000
-"""Nodes that are planned at once."""
-FEWEST_NODES: Final = 3
+MOST_CELLS: Final = 4000
+"""Cells that are planned at once."""
+FEWEST_CELLS: Final = 3
 WINDOW: Final = 4.0
 """What is planned at once, in stopping distances on a straight path."""
 RENEWAL: Final = 0.5
@@ -49,9 +49,8 @@ class LookAhead:
         self.state: MotionState = (0.0, 0.0, 0.0, 0.0)
         self._time = offset
         self._parts: deque[tuple[float, PathPart]] = deque()
-        self._nodes: list[PathNode] = []
-        """Of the window, from the last rest or knot on; without the one at its end."""
-        self._behind: HalfCell | None = None
+        self._cells: list[PathCell] = []
+        """From the last rest or knot on."""
         self._profile: PathProfile | None = None
         self._planned_end = 0.0
         self._renew = 0.0
@@ -63,26 +62,16 @@ class LookAhead:
     @property
     def wants(self) -> bool:
         """The next part should be appended: less than a window is ahead."""
-        if self.closed or len(self._nodes) >= MOST_NODES:
+        if self.closed or len(self._cells) >= MOST_CELLS:
             return False
-        return self.end - self.state[0] < WINDOW * self._reach or len(self._nodes) < FEWEST_NODES
+        return self.end - self.state[0] < WINDOW * self._reach or len(self._cells) < FEWEST_CELLS
 
     def append(self, part: PathPart) -> None:
         """The path continues with `part`, which begins where the last one ends, with its direction and curvature."""
-        begin = self.end
-        self._parts.append((begin, part))
-        before = 0.0
-        for place in cells(part):
-            middle = 0.5 * (before + place)
-            first = HalfCell(part, before, middle)
-            node = node_between(begin + before, self._behind or first, first)
-            if before == 0.0:
-                node.limit = min(node.limit, part.entry)
-            self._nodes.append(node)
-            self._behind = HalfCell(part, place, middle)
-            before = place
-        self.end = begin + part.length
-        whole = HalfCell(part, 0.0, part.length)
+        self._parts.append((self.end, part))
+        self._cells += cells_of(part, self.end, FEWEST_CELLS if not self._cells else 1)
+        self.end += part.length
+        whole = cell_of(part, 0.0, 0.0, part.length)
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
 
@@ -152,7 +141,7 @@ class LookAhead:
             self.done = True
             self.remaining_time = surplus
             return True
-        self._nodes = [node for node in self._nodes if node.u >= self._planned_end]
+        self._cells = [cell for cell in self._cells if cell.middle > self._planned_end]
         self._plan_from_rest()
         return False
 
@@ -165,48 +154,55 @@ class LookAhead:
             self._plan_from_knot()
 
     def _plan_from_rest(self) -> None:
-        if self._factor <= AT_REST or self._behind is None:
+        if self._factor <= AT_REST or not self._cells:
             return
-        nodes = [*self._nodes, node_between(self.end, self._behind, self._behind)]
-        if len(nodes) < FEWEST_NODES:
-            return
-        start = MovingStart(nodes[0].u)
-        plan = plan_velocity(nodes, start, self._factor)
+        self._cells = enough(self._cells)
+        start = MovingStart(self._cells[0].begin)
+        plan = plan_velocity(self._cells, start, self._factor)
         assert plan is not None
-        self._take(plan, pieces_of(plan, start, 0.0), nodes)
+        self._take(plan, pieces_of(plan, start, 0.0), self._cells)
 
     def _plan_from_knot(self) -> None:
         """A new plan from the end of the active piece; the old one stays if there is none that the axes permit."""
         profile = self._profile
-        if profile is None or self._behind is None:
+        if profile is None:
             return
         piece, following = profile.piece_and_next(self._time)
         if following is None or following.kind != BETWEEN:
             return
         start = MovingStart(following.u, following.velocity * following.velocity, 2.0 * following.acceleration)
-        ahead = [node for node in self._nodes if node.u > following.u]
-        first = self._knot(following.u, ahead[0])
-        nodes = [first, *ahead, node_between(self.end, self._behind, self._behind)]
-        if len(nodes) < FEWEST_NODES:
+        ahead = [cell for cell in self._cells if cell.middle > following.u]
+        cells = [ahead[0].part(following.u, following.u), *ahead]
+        if len(cells) < FEWEST_CELLS:
             return
-        plan = self._slow_down(nodes, start) if self._factor > AT_REST else stop_soon(nodes, start)
+        plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start)
         if plan is None:
             return
-        self._take(plan, [piece, *pieces_of(plan, start, following.begin)], nodes)
+        self._take(plan, [piece, *pieces_of(plan, start, following.begin)], ahead)
 
-    def _knot(self, u: float, node: PathNode) -> PathNode:
-        return PathNode(u, node.limit, node.feed, node.up, node.down, node.jerk, node.loads)
-
-    def _slow_down(self, nodes: list[PathNode], start: MovingStart) -> VelocityPlan | None:
-        plan = plan_velocity(nodes, start, self._factor)
+    def _slow_down(self, cells: list[PathCell], start: MovingStart) -> VelocityPlan | None:
+        plan = plan_velocity(cells, start, self._factor)
         if plan is not None:
             return plan
-        return earliest(len(nodes), lambda delay: plan_velocity(nodes, start, self._factor, delay))
+        return earliest(len(cells), lambda delay: plan_velocity(cells, start, self._factor, delay))
 
-    def _take(self, plan: VelocityPlan, pieces: list[PathPiece], nodes: list[PathNode]) -> None:
+    def _take(self, plan: VelocityPlan, pieces: list[PathPiece], cells: list[PathCell]) -> None:
         self._profile = PathProfile(pieces)
-        begin, self._planned_end = plan.nodes[0].u, plan.nodes[-1].u
-        self._nodes = nodes[:-1]
-        for index, node in enumerate(nodes):
-            node.planned = plan.squares[index] if index < len(plan.squares) else 0.0
+        begin, self._planned_end = plan.cells[0].begin, plan.cells[-1].end
+        self._cells = cells
+        for cell in cells:
+            cell.planned = 0.0
+        for cell, square in zip(plan.cells, plan.squares, strict=True):
+            cell.planned = square
         self._renew = begin + RENEWAL * (self._planned_end - begin)
+
+
+def enough(cells: list[PathCell]) -> list[PathCell]:
+    """The cells, the last one divided if they are too few for a plan."""
+    missing = FEWEST_CELLS - len(cells)
+    if missing <= 0:
+        return cells
+    last = cells[-1]
+    ends = [last.begin + last.length * (index + 1) / (missing + 1) for index in range(missing)] + [last.end]
+    parts = [last.part(begin, end) for begin, end in zip([last.begin, *ends], ends, strict=False)]
+    return cells[:-1] + parts

@@ -1,7 +1,4 @@
-"""Parts of the path that are run through without a stop, and the nodes that the velocity planner needs of them.
-
-A node stands between two cells. What it permits holds for the half cells on both of its sides.
-"""
+"""Parts of the path that are run through without a stop, and the cells into which the velocity planner divides them."""
 
 from __future__ import annotations
 
@@ -11,8 +8,8 @@ from typing import Final, Protocol
 
 from cnc_ptp.motion.limits import LARGEST_LIMIT
 from cnc_ptp.path.geometry import AxisLimits
-from cnc_ptp.path.lookahead.nodes import AxisLoad, PathNode, largest_square
-from cnc_ptp.path.shape import AxisState, Shape
+from cnc_ptp.path.lookahead.path_cell import AxisLoad, PathCell, largest_square
+from cnc_ptp.path.shape import AxisState, Bounds, Shape
 
 CELL_TIME: Final = 0.004
 """s that a cell may take at the largest velocity."""
@@ -33,7 +30,7 @@ class Geometry(Protocol):
 
     def shape(self, u: float) -> list[Shape]: ...
 
-    def bounds(self, begin: float, end: float) -> list[tuple[float, float, float]]: ...
+    def bounds(self, begin: float, end: float) -> list[Bounds]: ...
 
     def speed(self, u: float, axes: Sequence[int]) -> float: ...
 
@@ -65,80 +62,67 @@ class PathPart:
         self.length = geometry.length
 
 
-class HalfCell:
-    """What half a cell permits: of a straight part at once, of a curved one for each axis.
-
-    `node`: u of the part at the node to which the half cell belongs, `end` its other end.
-    """
-
-    __slots__ = ("bounds", "curved", "down", "feed", "jerk", "limit", "node", "part", "up", "width")
-
-    def __init__(self, part: PathPart, node: float, end: float) -> None:
-        self.part, self.node, self.width = part, node, abs(end - node)
-        self.bounds = part.geometry.bounds(min(node, end), max(node, end))
-        self.curved = False
-        self.limit = self.up = self.down = self.jerk = LARGEST_LIMIT
-        for (first, second, third), axis in zip(self.bounds, part.axes, strict=True):
-            if second > 0.0 or third > 0.0:
-                self.curved = True
-            if first > 0.0:
-                self.limit = min(self.limit, (axis.velocity / first) ** 2)
-                self.up = min(self.up, axis.acceleration / first)
-                self.down = min(self.down, axis.deceleration / first)
-                self.jerk = min(self.jerk, axis.jerk / first)
-        speed = max(part.geometry.speed(node, part.path_axes), part.geometry.speed(end, part.path_axes))
-        self.feed = (part.feed / speed) ** 2 if speed > 0.0 and part.feed < inf else inf
-
-
-def node_between(u: float, before: HalfCell, after: HalfCell) -> PathNode:
-    """The node at u of the path with the half cells on its two sides."""
-    limit = min(before.limit, after.limit)
+def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell:
+    """What the part permits from `begin` to `end`; `origin`: u of the path at which the part begins."""
+    geometry = part.geometry
+    bounds = geometry.bounds(begin, end)
+    curved = False
+    limit = up = down = jerk = LARGEST_LIMIT
+    for (first, second, third), axis in zip(bounds, part.axes, strict=True):
+        curved = curved or second > 0.0 or third > 0.0
+        if first > 0.0:
+            limit = min(limit, (axis.velocity / first) ** 2)
+            up = min(up, axis.acceleration / first)
+            down = min(down, axis.deceleration / first)
+            jerk = min(jerk, axis.jerk / first)
     loads: list[AxisLoad] = []
-    if before.curved or after.curved:
-        loads = loads_between(before, after)
+    if curved:
+        loads = loads_of(part, bounds, 0.5 * (begin + end), 0.5 * (end - begin))
         limit = min(limit, largest_square(loads))
-    feed = min(limit if before.feed == inf else before.feed, limit if after.feed == inf else after.feed)
-    up, down, jerk = min(before.up, after.up), min(before.down, after.down), min(before.jerk, after.jerk)
-    return PathNode(u, limit, feed, up, down, jerk, loads)
+    if begin == 0.0:
+        limit = min(limit, part.entry)
+    speed = max(geometry.speed(begin, part.path_axes), geometry.speed(end, part.path_axes))
+    feed = limit if part.feed == inf or speed == 0.0 else (part.feed / speed) ** 2
+    return PathCell(origin + begin, origin + end, limit, feed, up, down, jerk, loads)
 
 
-def loads_between(before: HalfCell, after: HalfCell) -> list[AxisLoad]:
-    """For each axis that the path moves around a node.
+def loads_of(part: PathPart, bounds: Sequence[Bounds], middle: float, half: float) -> list[AxisLoad]:
+    """For each axis that the path moves in a cell.
 
-    Where the sign of q1 is not certain, the bend counts for both signs.
+    Where the sign of q1 changes in the cell, the bend counts for both signs.
     """
     loads: list[AxisLoad] = []
-    shape = before.part.geometry.shape(before.node)
-    behind = shape if after.part is before.part else after.part.geometry.shape(after.node)
-    for index, (_, direction, bend, _) in enumerate(shape):
-        first0, second0, third0 = before.bounds[index]
-        first1, second1, third1 = after.bounds[index]
-        first, second, third = max(first0, first1), max(second0, second1), max(third0, third1)
+    for index, (_, direction, bend, _) in enumerate(part.geometry.shape(middle)):
+        first, second, third = bounds[index]
         if first == 0.0 and second == 0.0:
             continue
-        spread = max(third0 * before.width, abs(behind[index][2] - bend) + third1 * after.width)
-        if abs(direction) <= second * max(before.width, after.width):
+        axis, spread = part.axes[index], third * half
+        if abs(direction) <= second * half:
             bend, spread = 0.0, second
-        one, other = before.part.axes[index], after.part.axes[index]
-        acceleration = min(one.acceleration, one.deceleration, other.acceleration, other.deceleration)
-        velocity, jerk = min(one.velocity, other.velocity), min(one.jerk, other.jerk)
+        acceleration = min(axis.acceleration, axis.deceleration)
         signed = bend if direction > 0.0 else -bend
-        loads.append(AxisLoad(first, second, third, signed, spread, velocity, acceleration, jerk))
+        loads.append(AxisLoad(first, second, third, signed, spread, axis.velocity, acceleration, axis.jerk))
     return loads
 
 
-def cells(part: PathPart) -> list[float]:
-    """Where the cells of a part end, the last at its length; short ones at both ends of a straight part."""
+def cells_of(part: PathPart, origin: float, fewest: int = 1) -> list[PathCell]:
+    """The cells of a part, at least `fewest`; short ones at both ends of a straight part."""
     length = part.length
-    whole = HalfCell(part, 0.0, length)
-    largest = CELL_TIME * sqrt(min(whole.limit, whole.feed))
-    turn = max(sqrt(sum([second * second for _, second, _ in whole.bounds])), 0.0)
+    whole = cell_of(part, 0.0, 0.0, length)
+    largest = min(CELL_TIME * sqrt(min(whole.limit, whole.feed)), length / fewest)
+    turn = sqrt(sum([second * second for _, second, _ in part.geometry.bounds(0.0, length)]))
     if turn > 0.0:
-        largest = min(largest, CELL_TURN / turn)
-        count = max(1, ceil(length / largest))
-        return [length * (index + 1) / count for index in range(count)]
-    smallest = max(length / MOST_END_CELLS, whole.jerk * FIRST_CELL_TIME**3 / 6.0)
-    return graded(length, min(smallest, largest), largest)
+        count = max(1, ceil(length / min(largest, CELL_TURN / turn)))
+        ends = [length * (index + 1) / count for index in range(count)]
+    else:
+        smallest = max(length / MOST_END_CELLS, whole.jerk * FIRST_CELL_TIME**3 / 6.0)
+        ends = graded(length, min(smallest, largest), largest)
+    cells: list[PathCell] = []
+    begin = 0.0
+    for end in ends:
+        cells.append(cell_of(part, origin, begin, end))
+        begin = end
+    return cells
 
 
 def graded(length: float, smallest: float, largest: float) -> list[float]:

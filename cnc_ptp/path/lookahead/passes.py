@@ -1,6 +1,6 @@
-"""The two passes over the nodes: how fast the path can be at most when it comes from its start, and for its end.
+"""The two passes over the cells: how fast the path can be at most when it comes from its start, and for its end.
 
-Both follow the limits of the nodes from below. Where these fall, the other pass decides; where they rise again, a pass
+Both follow the limits of the cells from below. Where these fall, the other pass decides; where they rise again, a pass
 sets out from the lowest point with an acceleration of 0, so that the bottom of a valley is round.
 """
 
@@ -8,29 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import cbrt, sqrt
-from typing import Final
 
-from cnc_ptp.path.lookahead.nodes import PathNode
-
-REST_POINT: Final = 0.125
-"""From rest with constant jerk over half a cell: y is then as on a straight line over u that begins after this part of
-the cell (its tangent in the middle of the cell)."""
-REST_SHARE: Final = 3.0 / 7.0
-"""y in the middle of the first cell against y at its end."""
+from cnc_ptp.path.lookahead.path_cell import PathCell
 
 
-def from_rest(first: PathNode, second: PathNode, *, braking: bool) -> float:
-    """Largest y at the end of the first cell, of which the first half takes constant jerk from rest.
+def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
+    """Largest y at the end of the first cell, which takes constant jerk from rest.
 
     u = j·t³/6 and y = (j·t²/2)², so y = j^⅔·(6u)^(4/3)/4 and a = 2y/(3u).
     """
-    half = 0.5 * abs(second.u - first.u)
+    length = first.length
     bend = min(first.bending(1.0, 0.0), second.bending(1.0, 0.0))
-    square = square_from_rest(0.5 * bend, half)
-    square = min(square, 1.5 * half * min(first.acceleration(square, braking), second.acceleration(square, braking)))
-    slope = 4.0 * square / (3.0 * half)
+    square = min(square_from_rest(0.5 * bend, length), first.limit, second.limit)
+    square = min(square, 1.5 * length * min(first.acceleration(square, braking), second.acceleration(square, braking)))
+    slope = slope_from_rest(square, length)
     bend = min(first.bending(square, slope), second.bending(square, slope))
-    return min(square, square_from_rest(0.5 * sqrt(square) * bend, half)) / REST_SHARE
+    return min(square, square_from_rest(0.5 * sqrt(square) * bend, length))
 
 
 def square_from_rest(jerk: float, distance: float) -> float:
@@ -40,64 +33,57 @@ def square_from_rest(jerk: float, distance: float) -> float:
     return 0.25 * root * root * six * six * six * six
 
 
-def one_pass(
-    nodes: Sequence[PathNode], caps: Sequence[float], square: float, slope: float, *, braking: bool
-) -> list[float]:
-    """y at each node, coming from the first: from rest if `square` is 0, else from y = `square` with dy/du = `slope`.
+def slope_from_rest(square: float, distance: float) -> float:
+    """dy/du there."""
+    return 4.0 * square / (3.0 * distance)
 
-    `braking`: the nodes are in reverse order, so that the pass brakes for the last one of the path.
+
+def one_pass(
+    cells: Sequence[PathCell], caps: Sequence[float], square: float, slope: float, *, braking: bool
+) -> list[float]:
+    """y of each cell, coming from the first: from rest if `square` is 0, else from y = `square` with dy/du = `slope`.
+
+    `braking`: the cells are in reverse order, so that the pass brakes for the last one of the path.
     """
-    count = len(nodes)
+    count = len(cells)
     squares = [0.0] * count
-    cell = abs(nodes[1].u - nodes[0].u)
     if square > 0.0:
         squares[0] = square
-        squares[1] = square + slope * cell
-        width = cell
     else:
-        squares[1] = min(from_rest(nodes[0], nodes[1], braking=braking), caps[1])
-        slope = squares[1] / ((1.0 - REST_POINT) * cell)
-        width = 0.5 * cell
+        square = from_rest(cells[0], cells[1], braking=braking)
+        slope = slope_from_rest(square, cells[0].length)
+    squares[1] = square + slope * 0.5 * cells[1].length
+    if squares[0] == 0.0 and squares[1] > caps[1]:
+        slope *= caps[1] / squares[1]
+        squares[1] = caps[1]
     for index in range(1, count - 1):
-        here, there = nodes[index], nodes[index + 1]
+        here, there = cells[index], cells[index + 1]
         before = squares[index]
-        cell = abs(there.u - here.u)
-        width += 0.5 * cell
-        steepest = steepest_slope(here, there, before, slope, cell, width, caps[index], braking)
-        after = before + steepest * cell
-        slope = steepest
+        distance = 0.5 * (here.length + there.length)
+        slope = steepest_slope(here, there, before, slope, braking)
+        after = before + slope * distance
         if after > caps[index + 1]:
             after = caps[index + 1]
-            slope = (after - before) / cell
+            slope = (after - before) / distance
             if slope < 0.0:
-                following = abs(nodes[index + 2].u - there.u) if index + 2 < count else cell
-                slope = -0.25 * (cell + following) * there.bending(after, 0.0)
+                slope = -0.5 * there.length * there.bending(after, 0.0)
         elif after <= 0.0:
             after = 0.5 * before
-            slope = (after - before) / cell
+            slope = (after - before) / distance
         squares[index + 1] = after
-        width = 0.5 * cell
     return squares
 
 
-def steepest_slope(
-    here: PathNode,
-    there: PathNode,
-    square: float,
-    slope: float,
-    cell: float,
-    width: float,
-    cap: float,
-    braking: bool,
-) -> float:
-    """dy/du in the cell behind a node: it may grow by c times the width of the node, and to twice the acceleration.
+def steepest_slope(here: PathCell, there: PathCell, square: float, slope: float, braking: bool) -> float:
+    """dy/du behind a cell: it may grow by c times its length, and to twice the acceleration.
 
     What is permitted depends on the velocity that is reached with it, so it is found in two steps from above.
     """
-    behind = square - slope * (width - 0.5 * cell)
-    steepest = slope + here.bending(square, abs(slope)) * width
+    half = 0.5 * here.length
+    behind = square - slope * half
+    steepest = slope + here.bending(square, abs(slope)) * here.length
     steepest = min(steepest, 2.0 * here.acceleration(square, braking), 2.0 * there.acceleration(square, braking))
-    highest = max(square, behind, min(square + 0.5 * steepest * cell, max(cap, there.limit)))
+    highest = max(square, behind, min(square + steepest * half, max(here.limit, there.limit)))
     bend = here.bending(highest, max(abs(slope), abs(steepest)))
-    steepest = min(steepest, slope + bend * width)
+    steepest = min(steepest, slope + bend * here.length)
     return min(steepest, 2.0 * here.acceleration(highest, braking), 2.0 * there.acceleration(highest, braking))

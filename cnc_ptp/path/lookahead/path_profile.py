@@ -6,7 +6,7 @@ Where y(u) is a parabola the acceleration is linear in u: u'' = b/2 + k·(u - u0
     u'     = v·(1 + z·C(z)) + b/2·t·S(z)   for z < 0 with sin and cos
 
 and from one end of a piece to the other t = 2w·atanh(√r)/√r with w = Δu/(v0 + v1) and r = k·w². Jerk: u''' = k·u'.
-From rest and to rest the path takes half a cell with constant jerk.
+From rest and to rest the path takes a cell with constant jerk.
 """
 
 from __future__ import annotations
@@ -103,30 +103,27 @@ class PathProfile:
 
 
 def pieces_of(plan: VelocityPlan, start: MovingStart, time: float) -> list[PathPiece]:
-    """From the middle of one cell to that of the next, between the two at rest; the first begins at `time`."""
-    nodes, places, squares = plan
+    """A piece for each cell; the first begins at `time`."""
+    cells, places, squares = plan
     pieces: list[PathPiece] = []
     slope = (squares[1] - squares[0]) / (places[1] - places[0])
+    square = squares[1] - slope * 0.5 * cells[1].length
     if start.square > 0.0:
-        u, square, slope = start
-        velocity = sqrt(square)
-    else:
-        u = 0.5 * (nodes[0].u + nodes[1].u)
-        velocity = sqrt(squares[0] + slope * (u - places[0]))
-        first = rest_piece(time, nodes[0].u, u - nodes[0].u, velocity)
-        pieces.append(first)
-        time += first.duration
-    for index in range(1, len(nodes) - 1):
+        square, slope = start.square, start.slope
+    velocity = sqrt(square)
+    if start.square <= 0.0:
+        pieces.append(rest_piece(time, cells[0].begin, cells[0].length, velocity))
+        time += pieces[0].duration
+    for index in range(1, len(cells) - 1):
+        cell = cells[index]
         following = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
-        middle = 0.5 * (nodes[index].u + nodes[index + 1].u)
-        after = sqrt(max(0.0, squares[index] + following * (middle - places[index])))
-        distance = middle - u
-        k = 0.5 * (following - slope) / distance
-        duration = duration_between(distance, velocity, after, k)
-        pieces.append(PathPiece(time, u, velocity, 0.5 * slope, k, duration, BETWEEN))
+        after = sqrt(max(0.0, squares[index] + following * 0.5 * cell.length))
+        k = 0.5 * (following - slope) / cell.length
+        duration = duration_between(cell.length, velocity, after, k)
+        pieces.append(PathPiece(time, cell.begin, velocity, 0.5 * slope, k, duration, BETWEEN))
         time += duration
-        u, velocity, slope = middle, after, following
-    pieces.append(stop_piece(time, u, nodes[-1].u - u, velocity))
+        velocity, slope = after, following
+    pieces.append(stop_piece(time, cells[-1].begin, cells[-1].length, velocity))
     return pieces
 
 

@@ -8,24 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cnc_ptp.path.lookahead.nodes import PathNode
+from cnc_ptp.path.lookahead.path_cell import PathCell
 
 
-def bends(
-    nodes: Sequence[PathNode], places: Sequence[float], widths: Sequence[float], squares: Sequence[float]
-) -> list[float]:
-    """Change of dy/du that each inner node permits at the velocities `squares`."""
-    found = [0.0] * len(nodes)
-    for index in range(1, len(nodes) - 1):
+def bends(cells: Sequence[PathCell], places: Sequence[float], squares: Sequence[float]) -> list[float]:
+    """Change of dy/du that each inner cell permits at the velocities `squares`."""
+    found = [0.0] * len(cells)
+    for index in range(1, len(cells) - 1):
         before = (squares[index] - squares[index - 1]) / (places[index] - places[index - 1])
         after = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
-        highest = max(squares[index], 0.5 * (squares[index] + max(squares[index - 1], squares[index + 1])))
-        found[index] = nodes[index].bending(highest, max(abs(before), abs(after))) * widths[index]
+        half = 0.5 * cells[index].length
+        highest = squares[index] + max(0.0, after, -before) * half
+        found[index] = cells[index].bending(highest, max(abs(before), abs(after))) * cells[index].length
     return found
 
 
 def round_peaks(places: Sequence[float], squares: Sequence[float], bend: Sequence[float], first: int) -> list[float]:
-    """y at each node with rounded peaks, from node `first` on, which keeps its y."""
+    """y of each cell with rounded peaks, from cell `first` on, which keeps its y."""
     count = len(squares)
     raised = [0.0] * count
     slopes = [0.0] * count
@@ -49,7 +48,7 @@ def round_peaks(places: Sequence[float], squares: Sequence[float], bend: Sequenc
 
 
 def chord(places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, end: int) -> float:
-    """Slope of K + C from one node to another."""
+    """Slope of K + C from one cell to another."""
     rise = squares[end] - squares[begin] + (raised[end] - raised[begin])
     return rise / (places[end] - places[begin])
 
@@ -57,5 +56,5 @@ def chord(places: Sequence[float], squares: Sequence[float], raised: Sequence[fl
 def is_below(
     places: Sequence[float], squares: Sequence[float], raised: Sequence[float], begin: int, middle: int, end: int
 ) -> bool:
-    """The middle node is a corner of the hull: it is below the chord of its neighbours."""
+    """The middle one is a corner of the hull: it is below the chord of its neighbours."""
     return chord(places, squares, raised, begin, middle) < chord(places, squares, raised, middle, end)

@@ -1,7 +1,8 @@
 """Plans the velocity along a path: as fast as the axes permit, with limited jerk, to rest at its end.
 
-The plan is y = u'² at the nodes. Between the middles of the cells y(u) is a parabola, whose tangents there are the
-straight lines between the nodes (a quadratic B-spline): y and dy/du are continuous, so are velocity and acceleration.
+The plan is y = u'² for each cell. Within a cell y(u) is a parabola, whose tangents at both ends meet in its middle at
+this y (a quadratic B-spline): y and dy/du are continuous, so are velocity and acceleration. In the first and in the
+last cell the path takes constant jerk from rest and to rest.
 """
 
 from __future__ import annotations
@@ -9,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
-from cnc_ptp.path.lookahead.nodes import PathNode
-from cnc_ptp.path.lookahead.passes import REST_POINT, one_pass
+from cnc_ptp.path.lookahead.passes import one_pass
+from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.peaks import bends, round_peaks
 
 ROUNDS: Final = 8
@@ -22,6 +23,8 @@ EXCESS: Final = 1e-9
 """Part of a limit that counts as rounding."""
 ROOM: Final = 1e-7
 """Part of y, and of the bend, by which a moving start may miss what the path permits through rounding."""
+REST_POINT: Final = 0.25
+"""Part of the first cell after which the tangent at its end leaves y = 0."""
 
 
 class MovingStart(NamedTuple):
@@ -33,75 +36,70 @@ class MovingStart(NamedTuple):
 
 
 class VelocityPlan(NamedTuple):
-    """y at the nodes (`squares`); `places`: where the straight lines between the nodes begin and end.
+    """y of the cells (`squares`), at `places`: their middles; at rest the foot of the tangent."""
 
-    They are the nodes themselves, except at rest, from which y does not rise on a straight line.
-    """
-
-    nodes: Sequence[PathNode]
+    cells: Sequence[PathCell]
     places: Sequence[float]
     squares: Sequence[float]
 
 
 def plan_velocity(
-    nodes: Sequence[PathNode], start: MovingStart, override: float, delay: int = 0
+    cells: Sequence[PathCell], start: MovingStart, override: float, delay: int = 0
 ) -> VelocityPlan | None:
-    """Plan from the first node, at `start.u`, to rest at the last; None if the start is too fast for that.
+    """Plan from the start to rest at the end of the last cell; None if the start is too fast for that.
 
-    At least three nodes. The feed counts from node `delay` on: what is faster at the start slows down before it.
+    At least three cells. From rest the first one takes the path up from there; a moving start has one without length in
+    its place. The feed counts from cell `delay` on: what is faster at the start slows down before it.
     """
     moving = start.square > 0.0
+    caps = caps_of(cells, override, delay)
+    places = places_of(cells, moving=moving)
     squares: list[float] | None = None
     worst = 0.0
-    caps = [caps_of(node, override if index >= delay else None) for index, node in enumerate(nodes)]
-    places, widths = polygon(nodes, moving=moving)
     for _ in range(ROUNDS):
-        squares = highest(nodes, places, widths, caps, start)
+        squares = highest(cells, places, caps, start)
         if squares is None:
             return None
-        excesses = exceeded(nodes, places, widths, squares, moving)
+        excesses = exceeded(cells, places, squares, start)
         worst = max(excesses)
         if worst <= 1.0 + EXCESS:
-            return VelocityPlan(nodes, places, squares)
-        lower(nodes, caps, squares, excesses)
+            return VelocityPlan(cells, places, squares)
+        lower(cells, caps, squares, excesses)
     if moving or squares is None:
         return None
     while worst > 1.0 + EXCESS:
         squares = [square / worst for square in squares]
-        worst = max(exceeded(nodes, places, widths, squares, moving))
-    return VelocityPlan(nodes, places, squares)
+        worst = max(exceeded(cells, places, squares, start))
+    return VelocityPlan(cells, places, squares)
 
 
-def caps_of(node: PathNode, override: float | None) -> float:
-    return node.limit if override is None else min(node.limit, node.feed * override * override)
+def caps_of(cells: Sequence[PathCell], override: float, delay: int) -> list[float]:
+    """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell."""
+    factor = override * override
+    own = [min(cell.limit, cell.feed * factor) if index >= delay else cell.limit for index, cell in enumerate(cells)]
+    caps = list(own)
+    for index in range(1, len(own)):
+        caps[index] = min(caps[index], own[index - 1])
+        caps[index - 1] = min(caps[index - 1], own[index])
+    return caps
 
 
-def polygon(nodes: Sequence[PathNode], *, moving: bool) -> tuple[list[float], list[float]]:
-    """Where the straight lines between the nodes begin, and the width over which each node bends them."""
-    places = [node.u for node in nodes]
-    count = len(nodes)
-    widths = [0.0] * count
-    for index in range(1, count - 1):
-        widths[index] = 0.5 * (places[index + 1] - places[index - 1])
-    if moving:
-        widths[1] += 0.5 * (places[1] - places[0])
-    else:
-        places[0] += REST_POINT * (places[1] - places[0])
-    places[-1] -= REST_POINT * (places[-1] - nodes[-2].u)
-    return places, widths
+def places_of(cells: Sequence[PathCell], *, moving: bool) -> list[float]:
+    """Where y of each cell is on its tangents."""
+    places = [cell.middle for cell in cells]
+    if not moving:
+        places[0] = cells[0].begin + REST_POINT * cells[0].length
+    places[-1] = cells[-1].end - REST_POINT * cells[-1].length
+    return places
 
 
 def highest(
-    nodes: Sequence[PathNode],
-    places: Sequence[float],
-    widths: Sequence[float],
-    caps: Sequence[float],
-    start: MovingStart,
+    cells: Sequence[PathCell], places: Sequence[float], caps: Sequence[float], start: MovingStart
 ) -> list[float] | None:
     """The largest y under all limits; None if the start cannot be continued like that."""
     moving = start.square > 0.0
-    forward = one_pass(nodes, caps, start.square, start.slope, braking=False)
-    backward = one_pass(nodes[::-1], caps[::-1], 0.0, 0.0, braking=True)[::-1]
+    forward = one_pass(cells, caps, start.square, start.slope, braking=False)
+    backward = one_pass(cells[::-1], caps[::-1], 0.0, 0.0, braking=True)[::-1]
     if moving and not 0.0 <= forward[1] <= min(backward[1], caps[1]) * (1.0 + ROOM):
         return None
     lowest = [min(pair) for pair in zip(forward, backward, strict=True)]
@@ -110,8 +108,9 @@ def highest(
         first = 1
         lowest[0], lowest[1] = forward[0], forward[1]
     squares = lowest
+    bend: list[float] = []
     for _ in range(ROUNDINGS):
-        bend = bends(nodes, places, widths, squares)
+        bend = bends(cells, places, squares)
         squares = round_peaks(places, lowest, bend, first)
     if moving:
         after = (squares[2] - squares[1]) / (places[2] - places[1])
@@ -121,40 +120,39 @@ def highest(
 
 
 def exceeded(
-    nodes: Sequence[PathNode], places: Sequence[float], widths: Sequence[float], squares: Sequence[float], moving: bool
+    cells: Sequence[PathCell], places: Sequence[float], squares: Sequence[float], start: MovingStart
 ) -> list[float]:
-    """For each node the largest part of a limit that the plan takes around it."""
-    parts = [0.0] * len(nodes)
+    """For each cell the largest part of a limit that the plan takes in it."""
+    parts = [0.0] * len(cells)
     before = (squares[1] - squares[0]) / (places[1] - places[0])
-    square = squares[1] - before * (places[1] - 0.5 * (nodes[0].u + nodes[1].u))
-    if moving:
-        square = squares[0]
+    square = squares[1] - before * 0.5 * cells[1].length
+    if start.square > 0.0:
+        before, square = start.slope, start.square
     else:
-        parts[0] = excess_at_rest(nodes[0], nodes[1], square, before)
-    for index in range(1, len(nodes) - 1):
+        parts[0] = excess_at_rest(cells[0], square, before)
+    for index in range(1, len(cells) - 1):
+        cell = cells[index]
         after = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
-        ahead = squares[index] + after * (0.5 * (nodes[index].u + nodes[index + 1].u) - places[index])
-        bend = (after - before) / widths[index]
-        node = nodes[index]
-        parts[index] = max(node.excess(square, before, bend), node.excess(ahead, after, bend))
+        ahead = squares[index] + after * 0.5 * cell.length
+        bend = (after - before) / cell.length
+        parts[index] = max(cell.excess(square, before, bend), cell.excess(ahead, after, bend))
         before, square = after, ahead
-    parts[-1] = excess_at_rest(nodes[-1], nodes[-2], square, before)
+    parts[-1] = excess_at_rest(cells[-1], square, before)
     return parts
 
 
-def excess_at_rest(rest: PathNode, other: PathNode, square: float, slope: float) -> float:
-    """The same for the half cell at rest, with constant jerk 2v³/(9u²): u''' = c·u'/2."""
-    half = 0.5 * (other.u - rest.u)
-    return rest.excess(square, slope, 4.0 * square / (9.0 * half * half))
+def excess_at_rest(cell: PathCell, square: float, slope: float) -> float:
+    """The same for a cell at rest, with the constant jerk 2v³/(9u²): u''' = c·u'/2."""
+    return cell.excess(square, slope, 4.0 * square / (9.0 * cell.length * cell.length))
 
 
-def lower(nodes: Sequence[PathNode], caps: list[float], squares: Sequence[float], excesses: Sequence[float]) -> None:
+def lower(cells: Sequence[PathCell], caps: list[float], squares: Sequence[float], excesses: Sequence[float]) -> None:
     """Lowers the limits where one was exceeded, and of the neighbours; not below what was planned there before."""
     for index, excess in enumerate(excesses):
         if excess > 1.0 + EXCESS:
             part = excess**-0.7
-            for near in range(max(index - 1, 0), min(index + 2, len(nodes))):
-                caps[near] = min(caps[near], max(squares[near] * part, nodes[near].planned))
+            for near in range(max(index - 1, 0), min(index + 2, len(cells))):
+                caps[near] = min(caps[near], max(squares[near] * part, cells[near].planned))
 
 
 def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> VelocityPlan | None:
@@ -175,11 +173,11 @@ def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> Veloc
     return found
 
 
-def stop_soon(nodes: Sequence[PathNode], start: MovingStart) -> VelocityPlan | None:
-    """To rest at the first node at which that is possible; the feed does not count any more."""
-    last = len(nodes) - 1
+def stop_soon(cells: Sequence[PathCell], start: MovingStart) -> VelocityPlan | None:
+    """To rest at the end of the first cell at which that is possible; the feed does not count any more."""
+    last = len(cells) - 1
 
-    def stop_at(node: int) -> VelocityPlan | None:
-        return plan_velocity(nodes[: min(node + 1, last) + 1], start, 0.0, len(nodes))
+    def stop_at(cell: int) -> VelocityPlan | None:
+        return plan_velocity(cells[: min(cell + 1, last) + 1], start, 0.0, len(cells))
 
     return earliest(last, stop_at)

@@ -1,4 +1,4 @@
-"""Places along the path at which its velocity is planned, with what the axes permit around each of them.
+"""Cells of the path, for each of which its velocity is planned with what the axes permit there.
 
 Along the path, u is its parameter (mm; the path length on lines and arcs), y = u'² the squared velocity and b = dy/du
 twice the acceleration, c = d²y/du². An axis with the derivatives q1, q2, q3 by u has
@@ -25,11 +25,11 @@ LEAST_SHARE: Final = 0.05
 
 
 class AxisLoad:
-    """What the path asks of one axis around a node, and the limits of that axis.
+    """What the path asks of one axis in a cell, and the limits of that axis.
 
-    first, second, third   largest |q1|, |q2|, |q3| around the node
-    bend                   q2 at the node, with the sign of q1: above 0 the axis is being accelerated
-    spread                 largest difference of q2 from that at the node
+    first, second, third   largest |q1|, |q2|, |q3| in the cell
+    bend                   q2 in its middle, with the sign of q1: above 0 the axis is being accelerated
+    spread                 largest difference of q2 from that
     """
 
     __slots__ = ("acceleration", "bend", "first", "jerk", "second", "spread", "third", "velocity")
@@ -50,22 +50,23 @@ class AxisLoad:
         self.velocity, self.acceleration, self.jerk = velocity, acceleration, jerk
 
 
-class PathNode:
-    """A place u of the path. Its limits hold from the middle of the cell before it to the middle of the one behind it.
+class PathCell:
+    """The path from u = `begin` to `end`; `middle` of the two, `length` in between.
 
     limit      largest y that the axes permit
-    feed       y of the programmed feed at override 1, inf in rapid traverse
+    feed       y of the programmed feed at override 1; the limit in rapid traverse
     up, down   largest acceleration and deceleration of a straight path
     jerk       of a straight path
     loads      of the axes where the path is curved, else empty
     planned    y of the last plan, 0 without: what the axes are known to bear
     """
 
-    __slots__ = ("down", "feed", "jerk", "limit", "loads", "planned", "u", "up")
+    __slots__ = ("begin", "down", "end", "feed", "jerk", "length", "limit", "loads", "middle", "planned", "up")
 
     def __init__(
         self,
-        u: float,
+        begin: float,
+        end: float,
         limit: float,
         feed: float,
         up: float,
@@ -73,10 +74,16 @@ class PathNode:
         jerk: float,
         loads: Sequence[AxisLoad] = (),
     ) -> None:
-        self.u, self.limit, self.feed = u, limit, feed
+        self.begin, self.end = begin, end
+        self.middle, self.length = 0.5 * (begin + end), end - begin
+        self.limit, self.feed = limit, feed
         self.up, self.down, self.jerk = up, down, jerk
         self.loads = loads
         self.planned = 0.0
+
+    def part(self, begin: float, end: float) -> PathCell:
+        """A part of the cell, or (without length) a knot in it."""
+        return PathCell(begin, end, self.limit, self.feed, self.up, self.down, self.jerk, self.loads)
 
     def acceleration(self, square: float, braking: bool) -> float:
         """Largest acceleration, or deceleration, along the path at y = `square`; never below 0."""
