@@ -31,9 +31,9 @@ from cnc_ptp.path.shape import Shape
 Parts = tuple[float, float, float, float]
 """c1 … c4, or these times what they belong to."""
 
-EVEN: Final[Parts] = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
+EVEN: Parts = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
 """dA = dB."""
-UNEVEN: Final[Parts] = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
+UNEVEN: Parts = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
 """Any dA and dB."""
 SHARPEST_DEG: Final = 170.0
 """Change of direction above which the path stops in the corner."""
