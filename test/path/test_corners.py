@@ -221,6 +221,14 @@ def test_both_corners_of_a_short_block_meet_in_its_middle():
     assert last.begin == 0.15
 
 
+def test_no_part_is_left_that_is_rounding():
+    a = Span(Line((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), XYZ), 5.0 - 4e-10, 10.0, 0)
+    b = Span(Line((10.0, 0.0, 0.0), (10.0, 10.0, 0.0), XYZ), 0.0, 5.0 + 4e-10, 1)
+    first, pieces, last = corner(a, b, Contour(DIST, pre_dist=5.0, post_dist=5.0), XYZ)
+    assert (first.length, last.length) == (0.0, 0.0)
+    assert sum(piece.length for piece in pieces) == pytest.approx(a.length + b.length, rel=1e-15)
+
+
 def test_tangential_line_and_arc():
     """Only the curvature jumps; the deviation is that of a jump of q2 as long as the curve is short."""
     line = Line((-50.0, -10.0, 0.0), (0.0, -10.0, 0.0), XYZ)

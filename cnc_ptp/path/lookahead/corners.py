@@ -24,7 +24,7 @@ from typing import Final
 
 from cnc_ptp.nc.contour import DIST, Contour
 from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.geometry import Arc, AxisLimits, Line
+from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
 from cnc_ptp.path.shape import Shape
 
@@ -64,8 +64,9 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> tupl
     before, after = distances(a, b, contour, path_axes, end, start)
     if min(before, after) < LEAST_DISTANCE:
         return None
-    first = Span(a.element, a.begin, max(a.begin, a.end - before), a.block)
-    last = Span(b.element, min(b.end, b.begin + after), b.end, b.block)
+    left, met = a.end - before, b.begin + after
+    first = Span(a.element, a.begin, left if left - a.begin > NEGLIGIBLE_MM else a.begin, a.block)
+    last = Span(b.element, met if b.end - met > NEGLIGIBLE_MM else b.end, b.end, b.block)
     length = a.end - first.end + (last.begin - b.begin)
     pieces = curve(first.shape(first.length), last.shape(0.0), length)
     return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
