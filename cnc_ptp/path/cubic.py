@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of, states
+from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of
 
 
 class Cubic:
@@ -29,8 +29,14 @@ class Cubic:
         ]
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
-        """State of each axis at u that moves with u' = v, u'' = a, u''' = j."""
-        return states(self.shape(u), v, a, j)
+        """State of each axis at u that moves with u' = v, u'' = a, u''' = j.
+
+        q' = q1·v, q'' = q1·a + q2·v², q''' = q1·j + 3·q2·v·a + q3·v³.
+        """
+        square, cross, cube = v * v, 3.0 * v * a, v * v * v
+        return tuple(
+            [(q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube) for q, q1, q2, q3 in self.shape(u)]
+        )
 
     def bounds(self, begin: float, end: float) -> list[Bounds]:
         """Largest |q1|, |q2|, |q3| of each axis from u = `begin` to `end`.

@@ -18,7 +18,7 @@ from typing import NamedTuple, Protocol
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_LIMIT
-from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of, states
+from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of
 
 BAD_POINTS = 22100
 TARGET_OFF_ARC = 22101
@@ -194,8 +194,40 @@ class Arc:
         )
 
     def evaluate(self, s: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
-        """State of each axis at path length s; exactly the target at the end."""
-        return states(self.shape(s), v, a, j)
+        """State of each axis at path length s; exactly the target at the end.
+
+        The linear axes as on a line; with θ = θ0 + w·s the plane axes have θ' = w·v, θ'' = w·a, θ''' = w·j and
+        x = cx + r·cosθ, x' = -r·sinθ·θ', x'' = -r·sinθ·θ'' - r·cosθ·θ'², x''' = -r·sinθ·(θ''' - θ'³) - 3·r·cosθ·θ'·θ''.
+        """
+        angle = self._angle + self.rate * s
+        x = self.radius * cos(angle)
+        y = self.radius * sin(angle)
+        rate = self.rate * v
+        swing = self.rate * a
+        square = rate * rate
+        turn = self.rate * j - square * rate
+        cross = 3.0 * rate * swing
+        dx, dy = self._drift
+        cx, cy = self._center
+        first, second = self.plane
+        states: list[AxisState] = [(0.0, 0.0, 0.0, 0.0)] * len(self.start)
+        for n, p, k in self._linear:
+            states[n] = (p + k * s, k * v, k * a, k * j)
+        states[first] = (
+            cx + x + dx * s,
+            dx * v - y * rate,
+            dx * a - y * swing - x * square,
+            dx * j - y * turn - x * cross,
+        )
+        states[second] = (
+            cy + y + dy * s,
+            dy * v + x * rate,
+            dy * a + x * swing - y * square,
+            dy * j + x * turn - y * cross,
+        )
+        if s >= self.length:
+            return tuple([(p, *state[1:]) for p, state in zip(self.target, states, strict=True)])
+        return tuple(states)
 
     def shape(self, s: float) -> list[Shape]:
         """q, q1, q2, q3 of each axis at path length s; exactly the target at the end.

@@ -1,4 +1,4 @@
-"""Shape of a path at a place: each axis's position and derivatives by the parameter; what motion makes of them."""
+"""Shape of a path at a place: position and derivatives of each axis by the parameter of the path."""
 
 from __future__ import annotations
 
@@ -11,17 +11,6 @@ Shape = tuple[float, float, float, float]
 """q, q1, q2, q3 of one axis at a place of the path."""
 Bounds = tuple[float, float, float]
 """Largest |q1|, |q2|, |q3| of one axis over a part of the path."""
-
-
-def states(shape: Sequence[Shape], v: float, a: float, j: float) -> tuple[AxisState, ...]:
-    """State of each axis at a place that moves with u' = v, u'' = a, u''' = j.
-
-    q' = q1·v, q'' = q1·a + q2·v², q''' = q1·j + 3·q2·v·a + q3·v³.
-    """
-    square, cross, cube = v * v, 3.0 * v * a, v * v * v
-    return tuple(
-        [(q, q1 * v, q1 * a + q2 * square, q1 * j + q2 * cross + q3 * cube) for q, q1, q2, q3 in shape]
-    )  # fmt: skip
 
 
 def speed_of(shape: Sequence[Shape], axes: Sequence[int]) -> float:

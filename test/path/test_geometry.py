@@ -102,6 +102,31 @@ def test_derivatives_are_those_of_the_position(draw_arc, draw_line):
             assert np.abs(quotients - table[2][:, 1:]).max() <= 1e-6 * scale
 
 
+def test_shape_is_what_evaluate_makes_a_motion_of(draw_arc, draw_line):
+    """q, q1, q2, q3 are what a motion with velocity 1 has as states."""
+    draw = random.Random(53)
+    for _ in range(300):
+        radius = 10 ** draw.uniform(-1, 3)
+        for element in (draw_arc(draw, radius, 5), draw_line(draw, 5)):
+            s = draw.choice([0.0, draw.random(), 1.0]) * element.length
+            q, q1, q2, q3 = np.array(element.shape(s)).T
+            moving = np.array(element.evaluate(s, 1.0, 0.0, 0.0))
+            assert [tuple(q), tuple(q1)] == [tuple(moving[:, 0]), tuple(moving[:, 1])]
+            assert np.column_stack([q2, q3]) == pytest.approx(moving[:, 2:], rel=1e-14, abs=1e-300)
+            assert element.speed(s, XYZ) == pytest.approx(math.hypot(*q1[:3]), rel=1e-15)
+
+
+def test_bounds_hold_and_are_reached(draw_arc, draw_line):
+    draw = random.Random(54)
+    for _ in range(300):
+        for element in (draw_arc(draw, 10 ** draw.uniform(-1, 3), 5), draw_line(draw, 5)):
+            begin, end = sorted(draw.random() ** 2 * element.length for _ in range(2))
+            sampled = np.abs([element.shape(s) for s in np.linspace(begin, end, 500)])[:, :, 1:].max(axis=0)
+            bounds = np.array(element.bounds(begin, end))
+            assert (sampled <= bounds * (1 + 1e-13)).all()
+            assert (bounds <= sampled * (1 + 1e-3) + 1e-12).all()
+
+
 def test_line_limits_are_projections():
     axes = [
         AxisLimits(100.0, 1000.0, 500.0, 9000.0),

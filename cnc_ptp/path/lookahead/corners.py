@@ -24,16 +24,16 @@ from typing import Final
 
 from cnc_ptp.nc.contour import DIST, Contour
 from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.geometry import Arc, AxisLimits, Line
+from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
 from cnc_ptp.path.shape import Shape
 
 Parts = tuple[float, float, float, float]
 """c1 … c4, or these times what they belong to."""
 
-EVEN: Final[Parts] = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
+EVEN: Parts = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
 """dA = dB."""
-UNEVEN: Final[Parts] = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
+UNEVEN: Parts = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
 """Any dA and dB."""
 SHARPEST_DEG: Final = 170.0
 """Change of direction above which the path stops in the corner."""
@@ -64,8 +64,9 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> tupl
     before, after = distances(a, b, contour, path_axes, end, start)
     if min(before, after) < LEAST_DISTANCE:
         return None
-    first = Span(a.element, a.begin, max(a.begin, a.end - before), a.block)
-    last = Span(b.element, min(b.end, b.begin + after), b.end, b.block)
+    left, met = a.end - before, b.begin + after
+    first = Span(a.element, a.begin, left if left - a.begin > NEGLIGIBLE_MM else a.begin, a.block)
+    last = Span(b.element, met if b.end - met > NEGLIGIBLE_MM else b.end, b.end, b.block)
     length = a.end - first.end + (last.begin - b.begin)
     pieces = curve(first.shape(first.length), last.shape(0.0), length)
     return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
