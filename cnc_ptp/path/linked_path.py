@@ -140,8 +140,6 @@ class LinkedPath:
         except CncError:
             return False  # it is told when the path gets there
         parts = self._builder.link(linked, last.contour)
-        if parts is None:
-            return False
         self._source.accept()
         self._blocks += 1
         self._last = motion

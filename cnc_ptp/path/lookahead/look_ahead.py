@@ -49,8 +49,8 @@ class LookAhead:
         self.state: MotionState = (0.0, 0.0, 0.0, 0.0)
         self._time = offset
         self._parts: deque[tuple[float, PathPart]] = deque()
-        self._cells: list[PathCell] = []
-        """From the last rest or knot on."""
+        self._stretches: deque[list[PathCell]] = deque([[]])
+        """Cells from one exact stop to the next; of the first one from the last rest or knot on."""
         self._profile: PathProfile | None = None
         self._planned_end = 0.0
         self._renew = 0.0
@@ -60,16 +60,24 @@ class LookAhead:
     # what is ahead
 
     @property
+    def _cells(self) -> list[PathCell]:
+        """Those up to the next exact stop."""
+        return self._stretches[0]
+
+    @property
     def wants(self) -> bool:
         """The next part should be appended: less than a window is ahead."""
-        if self.closed or len(self._cells) >= MOST_CELLS:
+        if self.closed or sum(map(len, self._stretches)) >= MOST_CELLS:
             return False
-        return self.end - self.state[0] < WINDOW * self._reach or len(self._cells) < FEWEST_CELLS
+        return self.end - self.state[0] < WINDOW * self._reach or len(self._stretches[-1]) < FEWEST_CELLS
 
     def append(self, part: PathPart) -> None:
-        """The path continues with `part`, which begins where the last one ends, with its direction and curvature."""
+        """The path continues with `part`: with the direction and curvature of the last one, or after an exact stop."""
         self._parts.append((self.end, part))
-        self._cells += cells_of(part, self.end, FEWEST_CELLS if not self._cells else 1)
+        if part.entry <= 0.0 and self._stretches[-1]:
+            self._stretches.append([])
+        stretch = self._stretches[-1]
+        stretch += cells_of(part, self.end, FEWEST_CELLS if not stretch else 1)
         self.end += part.length
         whole = cell_of(part, 0.0, 0.0, part.length)
         speed = sqrt(min(whole.limit, whole.feed))
@@ -125,7 +133,7 @@ class LookAhead:
         """The override no longer acts: the path is at its end or in the last piece of its plan before it."""
         if self.done or self._stopping:
             return True
-        if self._profile is None or self._planned_end < self.end or not self.closed:
+        if self._profile is None or self._planned_end < self._cells[-1].end:
             return False
         return self._profile.piece_and_next(self._time)[1] is None
 
@@ -141,7 +149,9 @@ class LookAhead:
             self.done = True
             self.remaining_time = surplus
             return True
-        self._cells = [cell for cell in self._cells if cell.middle > self._planned_end]
+        self._stretches[0] = [cell for cell in self._cells if cell.middle > self._planned_end]
+        if not self._cells and len(self._stretches) > 1:
+            self._stretches.popleft()
         self._plan_from_rest()
         return False
 
@@ -150,13 +160,13 @@ class LookAhead:
         if self._profile is None:
             self._time = min(self._time, 0.0)
             self._plan_from_rest()
-        elif self.state[0] >= self._renew and self._planned_end < self.end and self._factor > AT_REST:
+        elif self.state[0] >= self._renew and self._planned_end < self._cells[-1].end and self._factor > AT_REST:
             self._plan_from_knot()
 
     def _plan_from_rest(self) -> None:
         if self._factor <= AT_REST or not self._cells:
             return
-        self._cells = enough(self._cells)
+        self._stretches[0] = enough(self._cells)
         start = MovingStart(self._cells[0].begin)
         plan = plan_velocity(self._cells, start, self._factor)
         assert plan is not None
@@ -189,7 +199,7 @@ class LookAhead:
     def _take(self, plan: VelocityPlan, pieces: list[PathPiece], cells: list[PathCell]) -> None:
         self._profile = PathProfile(pieces)
         begin, self._planned_end = plan.cells[0].begin, plan.cells[-1].end
-        self._cells = cells
+        self._stretches[0] = cells
         for cell in cells:
             cell.planned = 0.0
         for cell, square in zip(plan.cells, plan.squares, strict=True):

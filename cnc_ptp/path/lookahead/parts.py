@@ -43,7 +43,7 @@ class PathPart:
     axes   limits of the axes of the channel in this part
     feed   mm/s at override 1; inf in rapid traverse, where the override acts on what the axes permit
     block  number of the program block within the path, from 0
-    entry  largest y = u'² at its begin
+    entry  largest y = u'² at its begin; 0 is an exact stop
     """
 
     __slots__ = ("axes", "block", "entry", "feed", "geometry", "length", "path_axes")
@@ -79,7 +79,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
     if curved:
         loads = loads_of(part, bounds, 0.5 * (begin + end), 0.5 * (end - begin))
         limit = min(limit, largest_square(loads))
-    if begin == 0.0:
+    if begin == 0.0 and part.entry > 0.0:
         limit = min(limit, part.entry)
     speed = max(geometry.speed(begin, part.path_axes), geometry.speed(end, part.path_axes))
     feed = limit if part.feed == inf or speed == 0.0 else (part.feed / speed) ** 2

@@ -20,7 +20,8 @@ def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
     length = first.length
     bend = min(first.bending(1.0, 0.0), second.bending(1.0, 0.0))
     square = min(square_from_rest(0.5 * bend, length), first.limit, second.limit)
-    square = min(square, 1.5 * length * min(first.acceleration(square, braking), second.acceleration(square, braking)))
+    square = min(square, 1.5 * length * permitted(first, second, 0.0, 0.0, braking))
+    square = min(square, 1.5 * length * permitted(first, second, 0.0, square, braking))
     slope = slope_from_rest(square, length)
     bend = min(first.bending(square, slope), second.bending(square, slope))
     return min(square, square_from_rest(0.5 * sqrt(square) * bend, length))
@@ -56,17 +57,19 @@ def one_pass(
     if squares[0] == 0.0 and squares[1] > caps[1]:
         slope *= caps[1] / squares[1]
         squares[1] = caps[1]
+    share = 1.0
     for index in range(1, count - 1):
         here, there = cells[index], cells[index + 1]
         before = squares[index]
         distance = 0.5 * (here.length + there.length)
-        slope = steepest_slope(here, there, before, slope, braking)
+        slope = steepest_slope(here, there, before, slope, share * here.length, braking)
+        share = 1.0
         after = before + slope * distance
         if after > caps[index + 1]:
             after = caps[index + 1]
             slope = (after - before) / distance
             if slope < 0.0:
-                slope = -0.5 * there.length * there.bending(after, 0.0)
+                slope, share = 0.0, 0.5  # the other pass bends the other half of the valley
         elif after <= 0.0:
             after = 0.5 * before
             slope = (after - before) / distance
@@ -74,16 +77,22 @@ def one_pass(
     return squares
 
 
-def steepest_slope(here: PathCell, there: PathCell, square: float, slope: float, braking: bool) -> float:
-    """dy/du behind a cell: it may grow by c times its length, and to twice the acceleration.
+def steepest_slope(here: PathCell, there: PathCell, square: float, slope: float, width: float, braking: bool) -> float:
+    """dy/du behind a cell: it may grow by c times the `width`, and to twice the acceleration.
 
     What is permitted depends on the velocity that is reached with it, so it is found in two steps from above.
     """
     half = 0.5 * here.length
     behind = square - slope * half
-    steepest = slope + here.bending(square, abs(slope)) * here.length
-    steepest = min(steepest, 2.0 * here.acceleration(square, braking), 2.0 * there.acceleration(square, braking))
-    highest = max(square, behind, min(square + steepest * half, max(here.limit, there.limit)))
+    steepest = slope + here.bending(square, abs(slope)) * width
+    steepest = min(steepest, 2.0 * permitted(here, there, square, square, braking))
+    ahead = min(square + steepest * half, max(here.limit, there.limit))
+    highest = max(square, behind, ahead)
     bend = here.bending(highest, max(abs(slope), abs(steepest)))
-    steepest = min(steepest, slope + bend * here.length)
-    return min(steepest, 2.0 * here.acceleration(highest, braking), 2.0 * there.acceleration(highest, braking))
+    steepest = min(steepest, slope + bend * width)
+    return min(steepest, 2.0 * permitted(here, there, min(square, behind, ahead), highest, braking))
+
+
+def permitted(here: PathCell, there: PathCell, lowest: float, highest: float, braking: bool) -> float:
+    """Largest acceleration at the end that two cells share."""
+    return min(here.acceleration(lowest, highest, braking), there.acceleration(lowest, highest, braking))

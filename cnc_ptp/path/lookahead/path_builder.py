@@ -43,30 +43,28 @@ class PathBuilder:
         """The first motion, from rest."""
         self._last, self._entry = motion, inf
 
-    def link(self, motion: LinkedMotion, contour: Contour | None) -> list[PathPart] | None:
-        """The parts that are known once `motion` follows the last one; None if the path must stop between them."""
+    def link(self, motion: LinkedMotion, contour: Contour | None) -> list[PathPart]:
+        """The parts that are known once `motion` follows the last one; a kink that cannot be passed is an exact stop."""
         last = self._last
         assert last is not None
         if contour is not None:
             made = corner(last.span, motion.span, contour, self._path_axes)
             if made is not None:
                 before, curve, after = made
-                parts = [self._part(last, before)]
-                parts += [self._part(last if piece.block == last.span.block else motion, piece) for piece in curve]
+                spans = [before, *curve] if before.length > 0.0 else curve
+                parts = [self._part(last if span.block == last.span.block else motion, span) for span in spans]
                 motion.span = after
-                self._last, self._entry = motion, inf
-                return [part for part in parts if part.length > 0.0]
+                self._last = motion
+                return parts
         square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
-        if square < SLOWEST * SLOWEST:
-            return None
         parts = [self._part(last, last.span)]
-        self._last, self._entry = motion, square
+        self._last, self._entry = motion, square if square >= SLOWEST * SLOWEST else 0.0
         return parts
 
     def finish(self) -> list[PathPart]:
         """The last motion: nothing follows it."""
         last, self._last = self._last, None
-        return [] if last is None else [self._part(last, last.span)]
+        return [] if last is None or last.span.length <= 0.0 else [self._part(last, last.span)]
 
     def _part(self, motion: LinkedMotion, span: Span) -> PathPart:
         entry, self._entry = self._entry, inf

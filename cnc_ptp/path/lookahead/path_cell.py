@@ -16,9 +16,9 @@ from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Final
 
-THIRD_SHARE: Final = 0.7
+THIRD_SHARE: Final = 0.85
 """Largest part of an axis's jerk that q3·v³ may take."""
-CROSS_SHARE: Final = 0.3
+CROSS_SHARE: Final = 0.6
 """Largest part of an axis's jerk that 3·q2·v·a may take while the path accelerates as hard as it can."""
 LEAST_SHARE: Final = 0.05
 """Part of an axis's jerk that a change of the acceleration may always take; what that breaks is planned again."""
@@ -85,16 +85,19 @@ class PathCell:
         """A part of the cell, or (without length) a knot in it."""
         return PathCell(begin, end, self.limit, self.feed, self.up, self.down, self.jerk, self.loads)
 
-    def acceleration(self, square: float, braking: bool) -> float:
-        """Largest acceleration, or deceleration, along the path at y = `square`; never below 0."""
+    def acceleration(self, lowest: float, highest: float, braking: bool) -> float:
+        """Largest acceleration, or deceleration, along the path while y is within `lowest` … `highest`; at least 0.
+
+        Where the curve pulls an axis the same way, it can brake the harder the faster it is.
+        """
         if not self.loads:
             return self.down if braking else self.up
         least = inf
-        speed = sqrt(square) if square > 0.0 else 0.0
+        speed = sqrt(highest) if highest > 0.0 else 0.0
         for load in self.loads:
             if load.first > 0.0:
-                bend = load.bend if braking else -load.bend
-                least = min(least, (load.acceleration + (bend - load.spread) * square) / load.first)
+                pull = (load.bend if braking else -load.bend) - load.spread
+                least = min(least, (load.acceleration + pull * (lowest if pull > 0.0 else highest)) / load.first)
             if load.second > 0.0 and speed > 0.0:
                 least = min(least, CROSS_SHARE * load.jerk / (3.0 * load.second * speed))
         return max(least, 0.0)
