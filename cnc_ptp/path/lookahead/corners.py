@@ -1,222 +1,131 @@
-"""Corners of a path: a curve with continuous direction and curvature in place of a kink or a jump of the curvature.
-
-Element A is left at the distance dA before the corner, B is met at dB behind it (path length on lines and arcs). In
-between are three cubic pieces of the same length h = (dA + dB)/3. Their parameter u is that of A and B, so that q, q1
-and q2 are continuous everywhere and q3 has a limit. For each axis, with q = y0, q1 = s0, q2 = M0 where A is left, y3,
-s3, M3 where B is met, and M1, M2 at the two joints,
-
-    M1 + M2 = (s3 - s0)/h - (M0 + M3)/2
-    2·M1 + M2 = (y3 - y0 - 3h·s0)/h² - 4/3·M0 - M3/6
-
-The curve depends linearly on A and B, and where they are one cubic it is that cubic. So it deviates from them, measured
-at equal u, by the jumps of q1, q2, q3 in the corner and by the fourth derivative of arcs:
-
-    deviation <= c1·d·|Δq1| + c2·d²·|Δq2| + c3·d³·|Δq3| + c4·d⁴·(|q4| of A + |q4| of B)        d = max(dA, dB)
-
-where each c is the largest that its part becomes along the curve. Between two lines it is exactly 13/72·d·|Δq1|.
-"""
+"""Finds the corners of a polyline that are meant: where its direction turns by more than rounded points explain."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, cbrt, degrees, inf, pi, sqrt
+from math import acos, pi
 from typing import Final
 
-from cnc_ptp.nc.contour import DIST, Contour
-from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
-from cnc_ptp.path.lookahead.spans import Curve, Span, whole
-from cnc_ptp.path.shape import Shape
+from cnc_ptp.path.lookahead.polyline import Point, distance
 
-Parts = tuple[float, float, float, float]
-"""c1 … c4, or these times what they belong to."""
-
-EVEN: Parts = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
-"""dA = dB."""
-UNEVEN: Parts = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
-"""Any dA and dB."""
-SHARPEST_DEG: Final = 170.0
-"""Change of direction above which the path stops in the corner."""
-LEAST_DISTANCE: Final = 1e-6
-"""mm; a shorter curve is none."""
-ROUNDING: Final = 1e-9
-"""Part of a direction, and of a curvature, by which it may change without being a jump."""
-STEPS: Final = 8
-"""Newton steps to the largest distance; the first value is at most four times that."""
+WIDEST_REACH: Final = 0.02
+"""mm before and behind a point over which its turn is measured at most; points rounded to 0.001 mm turn by 6 deg."""
+REACH: Final = 4.0
+"""The same in path deviations."""
 
 
-def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> tuple[Span, list[Span], Span] | None:
-    """What is left of A, the curve, and what is left of B; without a curve where nothing jumps.
+class Vertex:
+    """A point with the chord before it.
 
-    The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses
-    or rests on one side, a block is too short, the angle is above MAX_ANGLE, or only axes beside those of the path have
-    a kink and there is no TRACK_DEV.
+    place    mm along the polyline
+    length   mm of the chord, over the path axes
+    corner   the curve ends here
     """
-    end, start = a.shape(a.length), b.shape(0.0)
-    kinks = direction_jumps(end, start)
-    if not any(kinks) and not any(curvature_jumps(end, start)):
-        return a, [], b
-    angle = angle_between(end, start, path_axes)
-    if angle > SHARPEST_DEG or (0.0 < contour.max_angle < angle and both_lines(a, b)):
-        return None
-    if contour.track_dev <= 0.0 and any(kinks) and not any(kinks[axis] for axis in path_axes):
-        return None
-    before, after = distances(a, b, contour, path_axes, end, start)
-    if min(before, after) < LEAST_DISTANCE:
-        return None
-    left, met = a.end - before, b.begin + after
-    first = Span(a.element, a.begin, left if left - a.begin > NEGLIGIBLE_MM else a.begin, a.block)
-    last = Span(b.element, met if b.end - met > NEGLIGIBLE_MM else b.end, b.end, b.block)
-    length = a.end - first.end + (last.begin - b.begin)
-    pieces = curve(first.shape(first.length), last.shape(0.0), length)
-    return first, [whole(piece, b.block if index else a.block) for index, piece in enumerate(pieces)], last
+
+    __slots__ = ("block", "corner", "feed", "length", "place", "point")
+
+    def __init__(self, point: Point, place: float, length: float, block: int, feed: float) -> None:
+        self.point, self.place, self.length = point, place, length
+        self.block, self.feed = block, feed
+        self.corner = False
 
 
-def kink_square(a: Span, b: Span, limits: Sequence[AxisLimits], cycle_time: float) -> float:
-    """Largest y = u'² at which the corner from A to B can be passed as it is; inf where nothing jumps.
+class CornerFinder:
+    """Takes points one after the other, and gives them back when it is known whether they are corners.
 
-    A jump of the velocity of an axis within one cycle T takes the jerk Δv/T², one of its acceleration Δa/T. Each of the
-    two may take half the jerk of the axis: |Δq1|·u' <= J·T²/2, |Δq2|·u'² <= J·T/2.
+    The turn of a point is the angle between the directions from the last point at least the reach before it and to the
+    first at least the reach behind it, so that short chords between rounded points do not count. Of several points within
+    the reach the one with the largest turn is the corner.
     """
-    end, start = a.shape(a.length), b.shape(0.0)
-    square = inf
-    for kink, bend, axis in zip(direction_jumps(end, start), curvature_jumps(end, start), limits, strict=True):
-        if kink:
-            velocity = 0.5 * axis.jerk * cycle_time * cycle_time / kink
-            square = min(square, velocity * velocity)
-        if bend:
-            square = min(square, 0.5 * axis.jerk * cycle_time / bend)
-    return square
+
+    def __init__(self, start: Point, path_axes: Sequence[int], path_dev: float, angle: float) -> None:
+        """`angle`: rad, the largest turn that is smoothed."""
+        self._path_axes = path_axes
+        self._reach = min(WIDEST_REACH, REACH * path_dev)
+        self._angle = angle
+        self._known = [Vertex(start, 0.0, 0.0, 0, 0.0)]
+        self._next = 1
+        """Index of the first point that is not decided."""
+        self._corner_place = 0.0
+
+    @property
+    def last(self) -> Vertex:
+        return self._known[-1]
+
+    def add(self, point: Point, length: float, block: int, feed: float) -> list[Vertex]:
+        """The points that are decided now."""
+        self._known.append(Vertex(point, self._known[-1].place + length, length, block, feed))
+        decided = []
+        ahead = self._known[-1].place - 2.0 * self._reach
+        while self._next < len(self._known) - 1 and self._known[self._next].place <= ahead:
+            decided.append(self._decide())
+        if decided:
+            self._forget()
+        return decided
+
+    def finish(self) -> list[Vertex]:
+        """The rest; the last point is a corner."""
+        decided = []
+        while self._next < len(self._known) - 1:
+            decided.append(self._decide())
+        if self._next < len(self._known):
+            self._known[-1].corner = True
+            decided.append(self._known[-1])
+        return decided
+
+    def _decide(self) -> Vertex:
+        index = self._next
+        vertex = self._known[index]
+        turn = self._turn(index)
+        if turn > self._angle and self._is_largest(index, turn):
+            vertex.corner = True
+            self._corner_place = vertex.place
+        self._next += 1
+        return vertex
+
+    def _is_largest(self, index: int, turn: float) -> bool:
+        """No corner is less than the reach before it, no larger turn less than the reach behind it."""
+        place = self._known[index].place
+        if self._corner_place > 0.0 and place - self._corner_place < self._reach:
+            return False
+        other = index + 1
+        while other < len(self._known) - 1 and self._known[other].place - place < self._reach:
+            if self._turn(other) > turn:
+                return False
+            other += 1
+        return True
+
+    def _turn(self, index: int) -> float:
+        """rad between the directions before and behind a point."""
+        known, place = self._known, self._known[index].place
+        before = index - 1
+        while before > 0 and place - known[before].place < self._reach and known[before].place > self._corner_place:
+            before -= 1
+        behind = index + 1
+        while behind < len(known) - 1 and known[behind].place - place < self._reach:
+            behind += 1
+        return angle_between(known[before].point, known[index].point, known[behind].point, self._path_axes)
+
+    def _forget(self) -> None:
+        """Keeps what the turn of the next point may need."""
+        place = self._known[self._next].place - self._reach
+        count = 0
+        while count + 1 < self._next and self._known[count + 1].place <= place:
+            count += 1
+        if count > 0:
+            del self._known[:count]
+            self._next -= count
 
 
-def direction_jumps(end: Sequence[Shape], start: Sequence[Shape]) -> list[float]:
-    """|Δq1| of each axis; 0 within the rounding."""
-    return [jump(q1, p1, max(1.0, abs(q1), abs(p1))) for (_, q1, _, _), (_, p1, _, _) in zip(end, start, strict=True)]
-
-
-def curvature_jumps(end: Sequence[Shape], start: Sequence[Shape]) -> list[float]:
-    """|Δq2| of each axis; 0 within the rounding."""
-    scale = max([max(abs(q2), abs(p2)) for (_, _, q2, _), (_, _, p2, _) in zip(end, start, strict=True)])
-    return [jump(q2, p2, scale) for (_, _, q2, _), (_, _, p2, _) in zip(end, start, strict=True)]
-
-
-def jump(before: float, after: float, scale: float) -> float:
-    """|after - before|; 0 within the rounding of values of the size `scale`."""
-    size = abs(after - before)
-    return size if size > ROUNDING * scale else 0.0
-
-
-def both_lines(a: Span, b: Span) -> bool:
-    """MAX_ANGLE counts between lines only."""
-    return isinstance(a.element, Line) and isinstance(b.element, Line)
-
-
-def angle_between(end: Sequence[Shape], start: Sequence[Shape], path_axes: Sequence[int]) -> float:
-    """Change of direction of the path, deg; that of all axes where the path axes rest on one side.
-
-    180 if nothing moves on one side.
-    """
-    for axes in (path_axes, range(len(end))):
-        before = sqrt(sum([end[axis][1] ** 2 for axis in axes]))
-        after = sqrt(sum([start[axis][1] ** 2 for axis in axes]))
-        if before > 0.0 and after > 0.0:
-            chord = sqrt(sum([(start[axis][1] / after - end[axis][1] / before) ** 2 for axis in axes]))
-            return 2.0 * degrees(asin(min(1.0, 0.5 * chord)))
-    return 180.0
-
-
-def distances(
-    a: Span, b: Span, contour: Contour, path_axes: Sequence[int], end: Sequence[Shape], start: Sequence[Shape]
-) -> tuple[float, float]:
-    """dA and dB. If one of two equal ones has to be shorter, both are."""
-    before, after = room(a, contour), room(b, contour)
-    parts = EVEN
-    if contour.mode == DIST and contour.pre_dist != contour.post_dist:
-        before, after = min(before, contour.pre_dist), min(after, contour.post_dist)
-        parts = UNEVEN
-    else:
-        wanted = contour.pre_dist
-        if contour.mode != DIST:
-            wanted = largest_distance(deviation(a, b, end, start, path_axes, parts), contour.path_dev)
-        before = after = min(before, after, wanted)
-    if contour.track_dev > 0.0:
-        for axis in range(len(end)):
-            if axis not in path_axes:
-                limit = largest_distance(deviation(a, b, end, start, (axis,), parts), contour.track_dev)
-                shorter = min(1.0, limit / max(before, after))
-                before, after = before * shorter, after * shorter
-    return before, after
-
-
-def room(span: Span, contour: Contour) -> float:
-    """Largest distance within an element: half of what REMAIN_PART leaves, and 90 deg of an arc."""
-    element = span.element
-    largest = min(span.length, 0.5 * element.length * (1.0 - 0.01 * contour.remain_part))
-    if isinstance(element, Arc):
-        largest = min(largest, 0.5 * pi / abs(element.rate))
-    return largest
-
-
-def deviation(
-    a: Span, b: Span, end: Sequence[Shape], start: Sequence[Shape], axes: Sequence[int], parts: Parts
-) -> Parts:
-    """Factors of d, d², d³, d⁴ in the largest deviation of the axes together."""
-    first = second = third = fourth = 0.0
+def angle_between(before: Point, here: Point, behind: Point, axes: Sequence[int]) -> float:
+    """rad by which the direction changes at `here`; 0 if one of the three lies on another."""
+    lengths = distance(before, here, axes) * distance(here, behind, axes)
+    if lengths <= 0.0:
+        return 0.0
+    product = 0.0
     for axis in axes:
-        _, q1, q2, q3 = end[axis]
-        _, p1, p2, p3 = start[axis]
-        first += (p1 - q1) ** 2
-        second += (p2 - q2) ** 2
-        third += (p3 - q3) ** 2
-        fourth += (fourth_derivative(a.element, axis) + fourth_derivative(b.element, axis)) ** 2
-    c1, c2, c3, c4 = parts
-    return c1 * sqrt(first), c2 * sqrt(second), c3 * sqrt(third), c4 * sqrt(fourth)
-
-
-def fourth_derivative(element: Curve, axis: int) -> float:
-    """Largest |q4| of an axis."""
-    if isinstance(element, Arc) and axis in element.plane:
-        return element.radius * element.rate * element.rate * element.rate * element.rate
-    return 0.0
-
-
-def largest_distance(factors: Parts, tolerance: float) -> float:
-    """The d at which the deviation is `tolerance`; inf if there is none.
-
-    Newton's method from above: the sum of powers is convex and grows.
-    """
-    first, second, third, fourth = factors
-    d = inf
-    if first > 0.0:
-        d = min(d, tolerance / first)
-    if second > 0.0:
-        d = min(d, sqrt(tolerance / second))
-    if third > 0.0:
-        d = min(d, cbrt(tolerance / third))
-    if fourth > 0.0:
-        d = min(d, sqrt(sqrt(tolerance / fourth)))
-    if d == inf:
-        return d
-    for _ in range(STEPS):
-        excess = d * (first + d * (second + d * (third + d * fourth))) - tolerance
-        if excess <= 0.0:
-            break
-        d -= excess / (first + d * (2.0 * second + d * (3.0 * third + 4.0 * d * fourth)))
-    return d
-
-
-def curve(before: Sequence[Shape], after: Sequence[Shape], length: float) -> list[Cubic]:
-    """Three cubic pieces of the same length with q, q1, q2 of `before` at the first end, of `after` at the other."""
-    h = length / 3.0
-    half, sixth = 0.5 * h, h * h / 6.0
-    pieces: tuple[list[Shape], list[Shape], list[Shape]] = ([], [], [])
-    for (y0, s0, m0, _), (y3, s3, m3, _) in zip(before, after, strict=True):
-        both = (s3 - s0) / h - 0.5 * (m0 + m3)
-        m1 = (y3 - y0 - length * s0) / (h * h) - (8.0 * m0 + m3) / 6.0 - both
-        m2 = both - m1
-        s1 = s0 + half * (m0 + m1)
-        y1 = y0 + h * s0 + sixth * (2.0 * m0 + m1)
-        pieces[0].append((y0, s0, m0, (m1 - m0) / h))
-        pieces[1].append((y1, s1, m1, (m2 - m1) / h))
-        pieces[2].append((y1 + h * s1 + sixth * (2.0 * m1 + m2), s1 + half * (m1 + m2), m2, (m3 - m2) / h))
-    return [Cubic(shape, h) for shape in pieces]
+        product += (here[axis] - before[axis]) * (behind[axis] - here[axis])
+    cosine = product / lengths
+    if cosine >= 1.0:
+        return 0.0
+    return acos(cosine) if cosine > -1.0 else pi
