@@ -34,8 +34,8 @@ class CornerFinder:
     """Takes points one after the other, and gives them back when it is known whether they are corners.
 
     The turn of a point is the angle between the directions from the last point at least the reach before it and to the
-    first at least the reach behind it, so that short chords between rounded points do not count. Of several points within
-    the reach the one with the largest turn is the corner.
+    first at least the reach behind it, so that short chords between rounded points do not count. Of several points
+    within the reach the one with the largest turn is the corner.
     """
 
     def __init__(self, start: Point, path_axes: Sequence[int], path_dev: float, angle: float) -> None:

@@ -1,19 +1,19 @@
 """A smooth curve along a polyline: a cubic spline whose control points are averages of the polyline.
 
 The spline has knots t[k]; between two of them is a span. The control point that belongs to the knots t[k+1], t[k+2],
-t[k+3] is the blossom of the parabola that fits the polyline best (least squares) over these two spans. With the parabola
-A + B·y + C·y², y = -1 … 1 over them and y = b at the knot between, that is A + B·b/3 - C/3. Parabolas (and cubics, where the
-spans are equal) come out as they are; rounded points are averaged.
+t[k+3] is the blossom of the parabola that fits the polyline best (least squares) over these two spans. With the
+parabola A + B·y + C·y², y = -1 … 1 over them and y = b at the knot between, that is A + B·b/3 - C/3. Parabolas (and
+cubics, where the spans are equal) come out as they are; rounded points are averaged.
 
-The curve is marched from state to state: with q, q1, q2 at t[k] and the control point c, whose knots are a, b, d behind t[k],
-    c = q + q1·(a + b + d)/3 + q2·(ab + ad + bd)/6 + q3·abd/6
-gives q3 of the piece. Its three last control points come from the state at the end in the same way.
+The curve is marched from state to state: with q, q1, q2 at t[k] and the control point c, whose knots are a, b, d behind
+t[k], the equation c = q + q1·(a + b + d)/3 + q2·(ab + ad + bd)/6 + q3·abd/6 gives q3 of the piece. The three last
+control points come from the state at the end in the same way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from math import inf, sqrt
 from typing import Final
 
 from cnc_ptp.errors import CncError
@@ -157,13 +157,15 @@ class SmoothCurve:
         """Divides a span, and its neighbours until none is more than twice as long as the next; returns the first."""
         span = self._spans[index]
         if span.length < SHORTEST:
+            block, tolerance = self.polyline.blocks[self.polyline.chord_at(span.begin)], self._tolerance.path_dev
             raise CncError(
                 NOT_SMOOTHED,
-                f"the curve of block {self.polyline.blocks[self.polyline.chord_at(span.begin)]} deviates from its "
-                f"points by {span.part:.3g} times the tolerance of {self._tolerance.path_dev:g} mm, and cannot be made finer",
+                f"the curve near block {block} deviates by {span.part:.3g} times the tolerance of {tolerance:g} mm, "
+                "and cannot be made finer",
                 "the path stops",
+                block=block,
                 part=span.part,
-                tolerance=self._tolerance.path_dev,
+                tolerance=tolerance,
             )
         self._divide(index)
         self._balance_behind(index + 2)
@@ -197,7 +199,7 @@ class SmoothCurve:
     # the curve
 
     def _solve(self) -> None:
-        """Marches and checks the pieces that depend on known spans alone, with finer spans where they deviate too far."""
+        """Marches and checks the pieces that depend on known spans alone; spans that deviate too far become finer."""
         index = self._good
         spans = self._spans
         while index < (len(spans) if self._closing is not None else len(spans) - 2):
@@ -279,7 +281,7 @@ class SmoothCurve:
     # the check
 
     def _deviation(self, span: Span) -> float:
-        """Largest part of the deviation that a piece takes at points, at middles of chords, and between where it is short."""
+        """Largest part of the deviation that a piece takes at points, at middles of chords, and at quarters of parts."""
         places = self.polyline.places
         index = self.polyline.chord_at(span.begin)
         begin, end, last = span.begin, span.end, len(places) - 1
@@ -315,7 +317,7 @@ class SmoothCurve:
             curve = piece[i] + x * (piece[i + 1] + half * (piece[i + 2] + sixth * piece[i + 3]))
             miss = curve - base - (behind[axis] - base) * part
             square += miss * miss
-        worst = square**0.5 / tolerance.path_dev
+        worst = sqrt(square) / tolerance.path_dev
         for axis in tolerance.others:
             i = 4 * axis
             base = before[axis]
@@ -382,4 +384,4 @@ def norm(direction: Sequence[float], axes: Sequence[int]) -> float:
     square = 0.0
     for axis in axes:
         square += direction[axis] * direction[axis]
-    return float(square**0.5)
+    return sqrt(square)

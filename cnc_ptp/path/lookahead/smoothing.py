@@ -1,8 +1,8 @@
 """Many short blocks become a smooth curve: `#HSC ON [BSPLINE PATH_DEV=…]`.
 
-Points go in one by one, cubic pieces come out as soon as they no longer depend on points to come. The curve has continuous
-position, direction and curvature (q, q1, q2) from one corner to the next, and every point and every middle of a chord is
-within the deviation of it. Corners and long lines stay what they are. The mathematics is in docs/path.md.
+Points go in one by one, cubic pieces come out as soon as they no longer depend on points to come. The curve has
+continuous position, direction and curvature (q, q1, q2) from one corner to the next, and every point and every middle of
+a chord is within the deviation of it. Corners and long lines stay what they are. docs/path.md has the mathematics.
 """
 
 from __future__ import annotations
@@ -70,14 +70,14 @@ class Smoother:
         self._longest = longest
         self._last: Point = tuple(start)
         """The point that was added last."""
-        self._from = self._last
+        self._from: Point = self._last
         """The point up to which it is known where the corners are."""
         self._finder: CornerFinder | None = None
         self._curve: SmoothCurve | None = None
         self._pieces: list[SmoothPiece] = []
 
     def add(self, target: Point, block: int, feed: float) -> None:
-        """The next point, with number and feed of the block that ends there. A point where nothing moves is left out."""
+        """The next point, with number and feed of the block that ends there; left out where nothing moves."""
         length = distance(self._last, target, self._path_axes)
         if length < STANDSTILL:
             whole = distance(self._last, target, self._all_axes)
@@ -127,7 +127,7 @@ class Smoother:
         self._curve = None
 
     def _add_line(self, begin: Point, vertex: Vertex) -> None:
-        """A long chord: the curve before it reaches it one longest span behind its begin, the next leaves it so early."""
+        """A long chord: the curve before it merges within the first longest span, the next one leaves in the last."""
         length, end = vertex.length, vertex.point
         direction = [(b - a) / length for a, b in zip(begin, end, strict=True)]
         start, rest = begin, length
