@@ -13,14 +13,14 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM
-from cnc_ptp.path.lookahead.corners import CornerFinder, Vertex
+from cnc_ptp.path.lookahead.polyline_corners import CornerFinder, Vertex
 from cnc_ptp.path.lookahead.polyline import Point, Polyline, distance
 from cnc_ptp.path.lookahead.smooth_curve import SmoothCurve, Span, Tolerance
 
 LONGEST_SPAN: Final = 2.0
 """mm of a piece of the curve at most; longer ones would follow the points no better and need more of them ahead."""
 CORNER_ANGLE: Final = radians(36.0)
-"""Largest turn that is smoothed. 36 deg is the default of SINUMERIK's COMPCAD ($SC_CRIT_SPLINE_ANGLE)."""
+"""Largest turn that is smoothed. Chords on the smallest radii that CAM systems write turn by less."""
 LONG_LINE: Final = 4.0
 """A chord of that many longest spans is a straight line, but for its last spans on both sides."""
 STANDSTILL: Final = 1e-6
