@@ -50,7 +50,7 @@ class Tolerance:
         self.track_dev = track_dev if track_dev > 0.0 else inf
 
 
-class Span:
+class KnotSpan:
     """From knot to knot, with the moments of the polyline there and the piece of the curve once it is known.
 
     piece   q, q1, q2, q3 at the begin, four values for each axis
@@ -87,7 +87,7 @@ class SmoothCurve:
         self._free = direction is None
         if direction is not None:
             self._state = state_of(polyline.points[0], direction)
-        self._spans: list[Span] = []
+        self._spans: list[KnotSpan] = []
         self._good = 0
         """Pieces that have been found good."""
         self._step = longest
@@ -99,12 +99,12 @@ class SmoothCurve:
         """Place up to which pieces have been given out."""
         return self._begin
 
-    def advance(self) -> list[Span]:
+    def advance(self) -> list[KnotSpan]:
         """The pieces that do not depend on points to come."""
-        ready: list[Span] = []
+        ready: list[KnotSpan] = []
         last = self._spans[-1].end if self._spans else self._begin
         while self.polyline.end >= last + self._step:
-            self._spans.append(Span(self.polyline, last, last + self._step))
+            self._spans.append(KnotSpan(self.polyline, last, last + self._step))
             if len(self._spans) >= WINDOW:
                 self._solve()
                 ready += self._give_out(self._good - RESERVE)
@@ -112,7 +112,7 @@ class SmoothCurve:
             self._step = self._next_step()
         return ready
 
-    def close(self, direction: Sequence[float] | None) -> list[Span]:
+    def close(self, direction: Sequence[float] | None) -> list[KnotSpan]:
         """All that is left. The curve ends at the last point, with that direction or that of the polyline there."""
         self._fill_up()
         self._closing = [] if direction is None else state_of(self.polyline.points[-1], direction)
@@ -139,7 +139,7 @@ class SmoothCurve:
         step = (end - last) / count
         for number in range(count):
             begin = last + number * step
-            spans.append(Span(self.polyline, begin, end if number == count - 1 else begin + step))
+            spans.append(KnotSpan(self.polyline, begin, end if number == count - 1 else begin + step))
         while len(spans) < FEWEST:
             longest = max(range(len(spans)), key=lambda index: spans[index].length)
             self._divide(longest)
@@ -149,8 +149,8 @@ class SmoothCurve:
         span = self._spans[index]
         middle = 0.5 * (span.begin + span.end)
         self._spans[index : index + 1] = [
-            Span(self.polyline, span.begin, middle),
-            Span(self.polyline, middle, span.end),
+            KnotSpan(self.polyline, span.begin, middle),
+            KnotSpan(self.polyline, middle, span.end),
         ]
 
     def _refine(self, index: int) -> int:
@@ -267,7 +267,7 @@ class SmoothCurve:
             speed = norm(direction, self._tolerance.path_axes)
         return state_of(polyline.points[0 if at_start else -1], [value / speed for value in direction])
 
-    def _give_out(self, count: int) -> list[Span]:
+    def _give_out(self, count: int) -> list[KnotSpan]:
         if count <= 0:
             return []
         ready = self._spans[:count]
@@ -280,7 +280,7 @@ class SmoothCurve:
 
     # the check
 
-    def _deviation(self, span: Span) -> float:
+    def _deviation(self, span: KnotSpan) -> float:
         """Largest part of the deviation that a piece takes at points, at middles of chords, and at quarters of parts."""
         places = self.polyline.places
         index = self.polyline.chord_at(span.begin)
@@ -301,7 +301,7 @@ class SmoothCurve:
             index += 1
         return worst
 
-    def _miss(self, span: Span, index: int, u: float) -> float:
+    def _miss(self, span: KnotSpan, index: int, u: float) -> float:
         """Part of the deviation between curve and polyline at u, which is on the chord with that index."""
         polyline, tolerance = self.polyline, self._tolerance
         before, behind = polyline.points[index - 1], polyline.points[index]
@@ -326,7 +326,7 @@ class SmoothCurve:
         return worst
 
 
-def fitted(one: Span, other: Span) -> list[float]:
+def fitted(one: KnotSpan, other: KnotSpan) -> list[float]:
     """A, B, C of the parabola A + B·y + C·y² that fits the polyline over two spans (y = -1 … 1); for each axis.
 
     From the moments by Legendre polynomials.
@@ -351,14 +351,14 @@ def fitted(one: Span, other: Span) -> list[float]:
     return found
 
 
-def control_point(one: Span, other: Span) -> list[float]:
+def control_point(one: KnotSpan, other: KnotSpan) -> list[float]:
     """The blossom of the fitted parabola at the three knots of two spans."""
     fit = fitted(one, other)
     between = (one.length - other.length) / (one.length + other.length)
     return [fit[i] + (fit[i + 1] * between - fit[i + 2]) / 3.0 for i in range(0, len(fit), 3)]
 
 
-def end_state(span: Span) -> list[float]:
+def end_state(span: KnotSpan) -> list[float]:
     """q, q1, q2 of each axis at the end of a piece."""
     piece, x = span.piece, span.end - span.begin
     state: list[float] = []

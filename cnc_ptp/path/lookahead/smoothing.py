@@ -15,7 +15,7 @@ from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM
 from cnc_ptp.path.lookahead.polyline_corners import CornerFinder, Vertex
 from cnc_ptp.path.lookahead.polyline import Point, Polyline, distance
-from cnc_ptp.path.lookahead.smooth_curve import SmoothCurve, Span, Tolerance
+from cnc_ptp.path.lookahead.smooth_curve import SmoothCurve, KnotSpan, Tolerance
 
 LONGEST_SPAN: Final = 2.0
 """mm of a piece of the curve at most; longer ones would follow the points no better and need more of them ahead."""
@@ -148,12 +148,12 @@ class Smoother:
         start = [(a, (b - a) / length, 0.0, 0.0) for a, b in zip(begin, end, strict=True)]
         self._pieces.append(SmoothPiece(Cubic(start, length), block, feed, ends))
 
-    def _give_spans(self, curve: SmoothCurve, spans: Sequence[Span], *, ends: bool) -> None:
+    def _give_spans(self, curve: SmoothCurve, spans: Sequence[KnotSpan], *, ends: bool) -> None:
         for index, span in enumerate(spans):
             self._give_span(curve.polyline, span, ends=ends and index == len(spans) - 1)
         curve.polyline.forget(curve.begin)
 
-    def _give_span(self, polyline: Polyline, span: Span, *, ends: bool) -> None:
+    def _give_span(self, polyline: Polyline, span: KnotSpan, *, ends: bool) -> None:
         """The piece of a span; several where the feed changes."""
         changes = feed_changes(polyline, span)
         begin = span.begin
@@ -168,7 +168,7 @@ class Smoother:
             begin = end
 
 
-def feed_changes(polyline: Polyline, span: Span) -> list[float]:
+def feed_changes(polyline: Polyline, span: KnotSpan) -> list[float]:
     """Places within a span where the feed changes, and its end."""
     changes: list[float] = []
     near = LEAST_PART * span.length
