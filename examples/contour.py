@@ -2,8 +2,8 @@
 
     python examples/contour.py contour.nc [BLOCKS]
 
-150,000 blocks by default, with points rounded to 0.001 mm. The chords are as long as 0.001 mm of deviation permits, from
-0.02 to 0.5 mm: the surface has radii from 3 mm to nearly flat, the rings have straight sides, round and sharp corners.
+150,000 blocks by default, with points rounded to 0.001 mm. The chords are as long as 0.001 mm of deviation permits,
+from 0.02 to 0.5 mm: the surface has radii from 3 mm to nearly flat, the rings straight sides, round and sharp corners.
 """
 
 from __future__ import annotations

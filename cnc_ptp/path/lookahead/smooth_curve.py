@@ -281,7 +281,7 @@ class SmoothCurve:
     # the check
 
     def _deviation(self, span: KnotSpan) -> float:
-        """Largest part of the deviation that a piece takes at points, at middles of chords, and at quarters of parts."""
+        """Largest part of the deviation that a piece takes: at points, middles of chords, quarters of cut chords."""
         places = self.polyline.places
         index = self.polyline.chord_at(span.begin)
         begin, end, last = span.begin, span.end, len(places) - 1

@@ -1,8 +1,8 @@
 """Many short blocks become a smooth curve: `#HSC ON [BSPLINE PATH_DEV=…]`.
 
 Points go in one by one, cubic pieces come out as soon as they no longer depend on points to come. The curve has
-continuous position, direction and curvature (q, q1, q2) from one corner to the next, and every point and every middle of
-a chord is within the deviation of it. Corners and long lines stay what they are. docs/path.md has the mathematics.
+continuous position, direction and curvature (q, q1, q2) from one corner to the next, and every point and every middle
+of a chord is within the deviation of it. Corners and long lines stay what they are. docs/path.md has the mathematics.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM
-from cnc_ptp.path.lookahead.polyline_corners import CornerFinder, Vertex
 from cnc_ptp.path.lookahead.polyline import Point, Polyline, distance
-from cnc_ptp.path.lookahead.smooth_curve import SmoothCurve, KnotSpan, Tolerance
+from cnc_ptp.path.lookahead.polyline_corners import CornerFinder, Vertex
+from cnc_ptp.path.lookahead.smooth_curve import KnotSpan, SmoothCurve, Tolerance
 
 LONGEST_SPAN: Final = 2.0
 """mm of a piece of the curve at most; longer ones would follow the points no better and need more of them ahead."""
