@@ -18,7 +18,7 @@ from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.lookahead.parts import PathPart, cells_of
 from cnc_ptp.path.lookahead.path_cell import AxisLoad, largest_square
 from cnc_ptp.path.lookahead.path_profile import PathProfile, pieces_of
-from cnc_ptp.path.lookahead.smoothing import LONG_LINE, LONGEST_SPAN, SmoothPiece, Smoother
+from cnc_ptp.path.lookahead.smoothing import LONG_LINE, LONGEST_SPAN, Smoother, SmoothPiece
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
 
 FEED = 100.0
@@ -157,20 +157,11 @@ def test_random_contours_are_within_the_deviation_with_continuous_joints(group):
         if len(set(points)) == 1:
             assert pieces == []
             continue
-        path, track = deviations(points, pieces)
+        path, track = deviations(points, pieces, between=20_000)
         assert path <= path_dev, seed
         assert track <= track_dev, seed
         check_joints(pieces)
         check_ends(points, pieces)
-
-
-def test_between_points_and_middles_the_curve_is_as_near():
-    draw = random.Random(5)
-    for _ in range(20):
-        points = random_contour(draw)
-        if len(set(points)) > 1:
-            path, _ = deviations(points, smooth(points, 0.01, 0.0), between=20_000)
-            assert path <= 0.01 * 1.05
 
 
 def test_pieces_do_not_depend_on_when_they_are_taken():

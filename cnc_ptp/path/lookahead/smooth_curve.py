@@ -28,9 +28,12 @@ RESERVE: Final = 3
 SHARE: Final = 0.9
 """Part of the deviation that is used, so that the curve can always be continued."""
 FINEST: Final = 1.0 / 16.0
-"""Spans shorter than this part of the path deviation may use all of it."""
+"""Spans shorter than this part of the path deviation may use nearly all of it."""
+FINEST_SHARE: Final = 0.98
 SHORTEST: Final = 1e-7
 """mm of a span; before that the curve is the polyline, but for rounding."""
+LARGE_PART: Final = 0.2
+"""A chord that takes more than this part of a span is checked at its quarters, too."""
 LARGEST_RATIO: Final = 2.001
 """Of the lengths of neighbouring spans; 2 but for rounding."""
 FEWEST: Final = 3
@@ -210,7 +213,7 @@ class SmoothCurve:
             self._march(index, state)
             span.part = self._deviation(span)
             finest = span.length < FINEST * self._tolerance.path_dev
-            if span.part <= (1.0 if finest else SHARE):
+            if span.part <= (FINEST_SHARE if finest else SHARE):
                 index += 1
                 continue
             first = self._refine(index)
@@ -281,7 +284,7 @@ class SmoothCurve:
     # the check
 
     def _deviation(self, span: KnotSpan) -> float:
-        """Largest part of the deviation that a piece takes: at points, middles of chords, quarters of cut chords."""
+        """Largest part of the deviation that a piece takes: at points, middles of chords, quarters of long ones."""
         places = self.polyline.places
         index = self.polyline.chord_at(span.begin)
         begin, end, last = span.begin, span.end, len(places) - 1
@@ -292,7 +295,7 @@ class SmoothCurve:
             middle = 0.5 * (before + behind)
             if low <= middle <= high:
                 worst = max(worst, self._miss(span, index, middle))
-            if high == end or low == begin:
+            if high == end or low == begin or high - low > LARGE_PART * (end - begin):
                 for number in range(1, 4):
                     worst = max(worst, self._miss(span, index, low + 0.25 * number * (high - low)))
             worst = max(worst, self._miss(span, index, high))
