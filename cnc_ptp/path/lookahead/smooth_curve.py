@@ -56,7 +56,7 @@ class Tolerance:
 class KnotSpan:
     """From knot to knot, with the moments of the polyline there and the piece of the curve once it is known.
 
-    piece   q, q1, q2, q3 at the begin, four values for each axis
+    piece   q, q1, q2, q3 at its first knot, four values for each axis
     part    largest part of the deviation that the piece takes
     """
 
@@ -86,7 +86,7 @@ class SmoothCurve:
         self._tolerance = tolerance
         self._longest = longest
         self._state: list[float] = []
-        """q, q1, q2 at the begin of the first span, three values for each axis."""
+        """q, q1, q2 at the first knot, three values for each axis."""
         self._free = direction is None
         if direction is not None:
             self._state = state_of(polyline.points[0], direction)
@@ -241,7 +241,7 @@ class SmoothCurve:
         spans[index].piece = piece
 
     def _control(self, index: int) -> list[float]:
-        """The control point of the three knots behind the begin of a span."""
+        """The control point of the three knots behind the first one of a span."""
         spans = self._spans
         last = len(spans) - 1
         if self._closing is None or index + 2 < last:
