@@ -28,8 +28,8 @@ STANDSTILL: Final = 1e-6
 LEAST_PART: Final = 1e-3
 """A change of the feed nearer than this part of a piece to its end takes effect there."""
 
-STRAIGHT: Final = 1e-10
-"""mm that a straight piece may bend through rounding."""
+STRAIGHT: Final = 1e-9
+"""Less change of q1 over a piece, or less q2 (1/mm), is rounding."""
 
 
 class SmoothPiece(NamedTuple):
@@ -187,8 +187,7 @@ def feed_changes(polyline: Polyline, span: KnotSpan) -> list[float]:
 def cubic_of(piece: Sequence[float], length: float) -> Cubic:
     """Straight where the piece is so but for rounding: the planner has less to do there."""
     shapes = [(piece[i], piece[i + 1], piece[i + 2], piece[i + 3]) for i in range(0, len(piece), 4)]
-    square = length * length
     for _, _, q2, q3 in shapes:
-        if abs(q2) * square > STRAIGHT or abs(q3) * length * square > STRAIGHT:
+        if (abs(q2) + abs(q3) * length) * max(length, 1.0) > STRAIGHT:
             return Cubic(shapes, length)
     return Cubic([(q, q1 + length * (0.5 * q2 + length * q3 / 6.0), 0.0, 0.0) for q, q1, q2, q3 in shapes], length)
