@@ -18,7 +18,18 @@ from rich.console import Console
 
 from bench.figures import FULL, SHORT, Effort, Figure, ShowProgress, table
 
-TOPICS = ("interpreter", "motion", "control", "recording", "offline", "graph", "service", "slaves", "spindles")
+TOPICS = (
+    "interpreter",
+    "motion",
+    "control",
+    "smoothing",
+    "recording",
+    "offline",
+    "graph",
+    "service",
+    "slaves",
+    "spindles",
+)
 
 
 @contextmanager
