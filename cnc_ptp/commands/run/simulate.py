@@ -18,10 +18,9 @@ from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import error_of
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -87,7 +86,7 @@ def simulate(
     recording = None
     if record is not None:
         cycle_time_ns = parameters.cycle_time_us * 1000
-        recording = Recording(record, read_file("machine file", machine), 0, cycle_time_ns)
+        recording = Recording(record, machine_text(machine), 0, cycle_time_ns)
     try:
         with RunProgress() as progress, recording or nullcontext(), EndRequest() as end:
             for outputs in offline.run(cycles=cycles):

@@ -167,6 +167,25 @@ SPINDEL_RANGE_WAY = "P-CHAN-00074"  # spindel[i].range_way
 SPINDEL_S_SYNCH = "P-CHAN-00081"  # spindel[i].s_synch
 SPDL_ANZAHL = "P-CHAN-00082"  # spdl_anzahl
 USE_DRIVE_CURR_LIMIT = "P-CHAN-00097"  # use_drive_curr_limit
+INTERPRETER_CALL_DEPTH = "P-CHAN-90001"  # interpreter.call_depth
+INTERPRETER_REPEATS = "P-CHAN-90002"  # interpreter.repeats
+INTERPRETER_KNOWN_BLOCKS = "P-CHAN-90003"  # interpreter.known_blocks
+INTERPRETER_FOLDERS = "P-CHAN-90004"  # interpreter.folders
+
+# startup list
+NULLP_DATA = "P-STUP-00011"  # nullp_data
+PZV_DATA = "P-STUP-00012"  # pzv_data
+
+# zero list
+G53_VERFUEGBAR = "P-ZERO-00001"  # g53_verfuegbar
+DEFAULT_INDEX = "P-ZERO-00002"  # default_index
+ACHSE_VERSCH = "P-ZERO-00003"  # np_grp[i].achse[j].versch
+ACHSE_INAKTIV = "P-ZERO-00004"  # np_grp[i].achse[j].inaktiv
+NP_GRP_BEZEICHNUNG = "P-ZERO-00005"  # np_grp[i].bezeichnung
+
+# clamp list
+ACHSE_VERSATZ = "P-CLMP-00001"  # pzv_grp[i].achse[j].versatz
+PZV_GRP_BEZEICHNUNG = "P-CLMP-00002"  # pzv_grp[i].bezeichnung
 
 # compensation list
 FRICT_COMP_MODE = "P-COMP-00041"  # frict_comp.mode

@@ -14,6 +14,9 @@ from cnc_ptp.parameters.declare.ranges import default_text, range_text
 HEADLINES = {
     "axis": "Axis list (axes and spindles)",
     "channel": "Channel list (NC channels)",
+    "startup": "Start-up list (NC channels)",
+    "zero": "Zero offset list (NC channels)",
+    "clamp": "Clamp position list (NC channels)",
     "compensation": "Compensation list (axes and spindles)",
     "tool": "Tool list (NC channels)",
     "simulation": "Simulation list (axes and spindles; our own)",
