@@ -13,6 +13,7 @@ from typing import ClassVar, NoReturn
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
@@ -78,6 +79,7 @@ class ChannelUnit(Unit):
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         self._sequence = ProgramSequence(self._motion, functions, nodes)
         self._check = ProgramCheck(parameters, axes, spindles)
+        self._offsets = OffsetMemory(parameters.name, self._check.nc)
         self._program: Program | None = None
         self._library: Mapping[str, Program] = {}
         """The programs that the loaded one may call; manual blocks may call them, too."""
@@ -104,10 +106,14 @@ class ChannelUnit(Unit):
         self._error_id = 0
         self._apply_override()
 
+    def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
+        """The state in which a program starts."""
+        return self._check.state(feedback, self._links, self._shared, self._offsets.changes, self._offsets.clamp_index)
+
     def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
         parsed = parse_program(text, program, files=files)
-        state = self._check.state(self._feedback, self._links, self._shared)
+        state = self._initial_state(self._feedback)
         before = state.copy()
         known = self._check.known_blocks(parsed, self._motion.position, state)
         self._prepared = PreparedProgram(text, dict(files), parsed, self._motion.position, before, state, known)
@@ -137,7 +143,7 @@ class ChannelUnit(Unit):
         self._require_idle("start")
         if self._program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        self._begin("start", self._program, self._check.state(self._feedback, self._links, self._shared))
+        self._begin(cycle, "start", self._program, self._initial_state(self._feedback))
         self._sequence.end_couplings()
 
     def do_mdi(self, cycle: int, *, text: str) -> None:
@@ -145,7 +151,27 @@ class ChannelUnit(Unit):
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        self._begin("mdi", parse_program(text, "mdi", mdi=True, library=self._library), state)
+        self._begin(cycle, "mdi", parse_program(text, "mdi", mdi=True, library=self._library), state)
+
+    def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
+        """A value (mm, deg) of a zero offset; it counts when the offset is selected next."""
+        self._require_idle("set_zero_offset")
+        place = self._offsets.place("set_zero_offset", axis)
+        self._offsets.set("set_zero_offset", index, {place: value})
+        self._offsets.give(self._state.modal.coordinates)
+
+    def do_teach_zero_offset(self, cycle: int, *, index: int, axis: str = "", value: float = 0.0) -> None:
+        """The present position of an axis, or of all, becomes `value` (mm, deg) in a zero offset."""
+        self._require_idle("teach_zero_offset")
+        coordinates = self._state.modal.coordinates
+        self._offsets.teach("teach_zero_offset", index, axis, value, self._motion.position, coordinates)
+        self._offsets.give(coordinates)
+
+    def do_set_clamp_position(self, cycle: int, *, index: int) -> None:
+        """The clamp position of programs that are started from now on."""
+        self._require_idle("set_clamp_position")
+        self._offsets.choose_clamp_position("set_clamp_position", index)
+        self._offsets.give(self._state.modal.coordinates)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
@@ -227,9 +253,11 @@ class ChannelUnit(Unit):
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         if self._sequence.finished and self._state_at_end is not None:
             ended, self._state_at_end = self._state_at_end, None
-            self._shared = ended.values.shared
-            self._state = ended if self._is_mdi else self._check.state({}, self._links, self._shared)
+            self._shared, self._offsets.changes = ended.values.shared, ended.modal.coordinates.changes
+            self._state = ended if self._is_mdi else self._initial_state({})
         self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
+        if self._sequence.phase is Phase.IDLE:
+            self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
 
     def _channel_block(
@@ -261,6 +289,8 @@ class ChannelUnit(Unit):
             done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
             blocks_done=self._sequence.stream.done,
             blocks_total=self._sequence.stream.total,
+            programmed_position=self._offsets.programmed([state[0] for state in rows.axes[count - 1]]),
+            offsets=self._offsets.news(),
             commands=outgoing.commands,
             requests=outgoing.requests,
         )
@@ -290,6 +320,9 @@ class ChannelUnit(Unit):
             self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
             return True
         self._warn(cycle)
+        if self._sequence.offsets is not None:
+            self._offsets.reach(cycle, self._sequence.source.line, self._sequence.offsets)
+            self._sequence.offsets = None
         return goes_on
 
     def _warn(self, cycle: int) -> None:
@@ -327,7 +360,7 @@ class ChannelUnit(Unit):
             return C.IDLE if self._program is None else C.READY
         return PHASE_STATES[phase]
 
-    def _begin(self, command: str, program: Program, state: ProgramState) -> None:
+    def _begin(self, cycle: int, command: str, program: Program, state: ProgramState) -> None:
         for node, axis_state in self._axes.states.items():
             if axis_state != AxisStateCode.STANDSTILL:
                 self._refuse(
@@ -354,8 +387,9 @@ class ChannelUnit(Unit):
             state = before
             stream = BlockStream(self._check.running(program, self._motion.position, state), known.total, state.values)
         self._links = state.modal.spindle.links
-        self._state = self._check.state({}, self._links, self._shared)
+        self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
+        self._offsets.begin(cycle, before.modal.coordinates)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 

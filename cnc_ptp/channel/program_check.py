@@ -19,8 +19,11 @@ from cnc_ptp.nc.canonical import (
     SpindleCommand,
     SpindleFunction,
 )
+from cnc_ptp.nc.coordinates.codes import initial_coordinates
+from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret
 from cnc_ptp.nc.parser import NO_FILES, parse_program
@@ -39,10 +42,6 @@ from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 UNKNOWN_M_FUNCTION = 22011
 NO_CHANNEL = 26112
-
-
-MOST_BLOCKS = 100_000
-"""Blocks of a program that are kept; a longer one is interpreted again while it runs."""
 
 
 class ProgramState(NamedTuple):
@@ -105,7 +104,19 @@ class ProgramCheck:
         ratio = channel.circle_center_ratio
         self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
         tolerance = channel.circle_center_tolerance
-        self._nc = Channel(self._axis_names, indices, self._spindles, tolerance, ratio, self._rotary)
+        self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
+        self.nc = Channel(
+            self._axis_names,
+            indices,
+            self._spindles,
+            tolerance,
+            ratio,
+            self._rotary,
+            channel.offsets,
+            self._soft_limits,
+        )
+        """The channel as the interpreter knows it."""
+        self._limits = Limits(channel.call_depth, channel.repeats)
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -127,6 +138,9 @@ class ProgramCheck:
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
             files=files,
+            offsets=self._channel.offsets,
+            soft_limits=self._soft_limits,
+            limits=self._limits,
         ) or self._function_errors(text, file, files)
 
     def _function_errors(self, text: str, file: str, files: Mapping[str, str]) -> list[ProgramError]:
@@ -142,13 +156,21 @@ class ProgramCheck:
         return tuple(axis.start_position for axis in self._axes)
 
     def state(
-        self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs], shared: dict[str, Variable]
+        self,
+        feedback: Mapping[str, CycleBlock],
+        links: Mapping[int, Pairs],
+        shared: dict[str, Variable],
+        offsets: OffsetChanges = NO_CHANGES,
+        clamp_index: int = 0,
     ) -> ProgramState:
-        """The state in which programs start: gears as spindles report them, coupling groups and V.S. as they are."""
-        modal = ModalState()
+        """The state in which programs start: gears as spindles report them, the rest as it is.
+
+        `offsets`: what was changed of zero offsets, `clamp_index`: the clamp position.
+        """
+        modal = ModalState(coordinates=initial_coordinates(self.nc, offsets, clamp_index))
         modal.spindle.gears = self.gears(feedback)
         modal.spindle.links = dict(links)
-        values = Values(self._nc, modal)
+        values = Values(self.nc, modal)
         values.shared = copies(shared)
         values.begin_program()
         return ProgramState(modal, values)
@@ -177,7 +199,7 @@ class ProgramCheck:
             if block is BUSY:
                 continue
             total += 1
-            if len(blocks) < MOST_BLOCKS:
+            if len(blocks) < self._channel.known_blocks:
                 blocks.append(block)
             if awaits_path(block):
                 return KnownBlocks(blocks, False, None)
@@ -196,6 +218,9 @@ class ProgramCheck:
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
+            offsets=self._channel.offsets,
+            soft_limits=self._soft_limits,
+            limits=self._limits,
             runs=True,
         )
         for block in stream:

@@ -30,6 +30,7 @@ from cnc_ptp.nc.canonical import (
     ExplicitSynchronisation,
     LinearMove,
     Message,
+    OffsetReport,
     OrderedError,
     Source,
     WaitForPath,
@@ -102,6 +103,8 @@ class ProgramSequence:
         """Warnings for the channel to publish: number and text."""
         self.messages: list[str] = []
         """Messages of the program for the channel to publish."""
+        self.offsets: OffsetReport | None = None
+        """Offsets that count from the active block on, for the channel to publish."""
 
     # from outside
 
@@ -287,6 +290,8 @@ class ProgramSequence:
             return True
         self._block = block
         self.source = block.source
+        if block.offsets is not None:
+            self.offsets = block.offsets
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before()

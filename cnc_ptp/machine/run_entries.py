@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ def read_entries(
     """
     entries: list[Entry] = []
     if program is not None:
-        text, files = read_program(program)
+        text, files = read_program(program, program_folders(machine))
         check_program(machine, text, program, files)
         channel = next(iter(machine.channels))
         entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files))))
@@ -43,7 +43,7 @@ def read_entries(
             if entry.command.command == "load":
                 arguments = entry.command.arguments
                 arguments["program"] = str(folder / arguments["program"])
-                add_files(arguments)
+                add_files(arguments, program_folders(machine, entry.command.target))
     return sorted(entries, key=lambda entry: entry.at)
 
 
@@ -58,9 +58,15 @@ def load_arguments(program: str, text: str, files: Mapping[str, str]) -> dict[st
     return {"program": program, "text": text, **({"files": dict(files)} if files else {})}
 
 
-def add_files(arguments: dict[str, Any]) -> None:
+def program_folders(machine: MachineParameters, channel: str = "") -> tuple[str, ...]:
+    """Where programs that others call are looked for (P-CHAN-90004), by a channel or the first one."""
+    of_channel = machine.channels.get(channel) or next(iter(machine.channels.values()), None)
+    return of_channel.folders if of_channel else ()
+
+
+def add_files(arguments: dict[str, Any], folders: Sequence[str]) -> None:
     """To a load with the text of its program the texts of those that it calls. Raises CncError 26110, 26122."""
     if "text" in arguments and "files" not in arguments:
-        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent)])
+        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent), *folders])
         if files:
             arguments["files"] = files

@@ -213,13 +213,41 @@ Function = (
 Motion = LinearMove | CircularMove | Dwell
 
 
+class OffsetReport(NamedTuple):
+    """All that lies between programmed and machine positions: mm, deg, one value for each axis of the channel.
+
+    machine = shift + matrix · programmed for X, Y, Z (matrix row by row), shift + programmed for the other axes.
+    `zero_index`: 0 is G53, 1 G54; `scale` of #SCALE, `mirrored` by G21 to G23, `angle` of #ROTATION or None;
+    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on.
+    """
+
+    zero_index: int
+    zero: tuple[float, ...]
+    added: tuple[float, ...]
+    preset: tuple[float, ...]
+    clamp_index: int
+    clamp: tuple[float, ...]
+    tool: tuple[float, ...]
+    scale: tuple[float, ...]
+    mirrored: tuple[bool, ...]
+    angle: float | None
+    systems: tuple[str, ...]
+    machine: bool
+    matrix: tuple[float, ...]
+    shift: tuple[float, ...]
+
+
 class CanonicalBlock(NamedTuple):
-    """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30)."""
+    """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30).
+
+    `offsets` that count from here on, when they have changed.
+    """
 
     source: Source
     functions: tuple[Function, ...]
     motion: Motion | None
     stop: str
+    offsets: OffsetReport | None = None
 
 
 BUSY: Final = CanonicalBlock(Source("", 0, 0, ""), (), None, "")

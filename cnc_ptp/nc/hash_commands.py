@@ -222,6 +222,7 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "SCALE": commands.read_scale,
     "CS": commands.read_system,
     "ACS": commands.read_system,
+    "MCS": commands.read_machine_coordinates,
     "PSET": commands.read_preset,
     "PRESET": commands.read_preset,
     "COMMENT BEGIN": _comment,

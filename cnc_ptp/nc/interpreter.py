@@ -15,8 +15,10 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
 )
 from cnc_ptp.nc.controls import bracketed_controls
+from cnc_ptp.nc.coordinates.codes import initial_coordinates
 from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import place, refresh
+from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
@@ -29,6 +31,7 @@ from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
 
 CENTRE_OFFSET = 2.0
 """Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
@@ -52,7 +55,8 @@ def interpret(
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
-    zero_offsets: Mapping[int, tuple[float, ...]] | None = None,
+    offsets: OffsetTables = NO_OFFSET_TABLES,
+    soft_limits: tuple[tuple[float, float], ...] = (),
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
@@ -66,9 +70,10 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits counts. `rotary`: axes in deg. `zero_offsets` by index (1: G54), one value for
-    each axis. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
-    Blocks without function, motion or stop give nothing, nor does a move to the present position.
+    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` of the machine, `soft_limits` of
+    its axes for V.A. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
+    change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
     it, and BUSY in long computations. Otherwise such a line is the error 21438.
     `values`: parameters and variables to continue with, of the same `state`.
@@ -76,10 +81,11 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    channel = Channel(axes, index, table, centre_offset, ratio, frozenset(rotary), dict(zero_offsets or {}))
-    state = ModalState() if state is None else state
+    channel = Channel(axes, index, table, centre_offset, ratio, frozenset(rotary), offsets, soft_limits)
+    state = ModalState(coordinates=initial_coordinates(channel)) if state is None else state
     state.position = tuple(start)
     refresh(channel, state)
+    state.reported = True
     if values is None:
         values = Values(channel, state)
     else:
@@ -100,9 +106,16 @@ def interpret(
             motion = None if canonical is None else canonical.motion
             execution.moved = motion is not None and not isinstance(motion, Dwell)
             if canonical is not None:
-                yield canonical
+                yield canonical if state.reported else _with_offsets(channel, state, canonical)
+        if not state.reported:
+            yield _with_offsets(channel, state, CanonicalBlock(values.source, (), None, ""))
     except ProgramError as error:
         raise with_calls(error, execution) from None
+
+
+def _with_offsets(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
+    state.reported = True
+    return block._replace(offsets=offset_report(channel, state.coordinates))
 
 
 def _resolve(
@@ -194,6 +207,9 @@ def check(
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
     files: Mapping[str, str] = NO_FILES,
+    offsets: OffsetTables = NO_OFFSET_TABLES,
+    soft_limits: tuple[tuple[float, float], ...] = (),
+    limits: Limits = LIMITS,
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
@@ -213,6 +229,9 @@ def check(
             centre_offset=centre_offset,
             centre_offset_ratio=centre_offset_ratio,
             rotary=rotary,
+            offsets=offsets,
+            soft_limits=soft_limits,
+            limits=limits,
             runs=True,
         )
         for block in blocks:

@@ -1,13 +1,14 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
 
 
 class GCode(NamedTuple):
@@ -158,13 +159,11 @@ class HashCommand(NamedTuple):
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
-NO_TABLES: Final[Mapping[int, tuple[float, ...]]] = {}
-
-
 class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio).
 
-    `rotary`: axes in deg; `zero_offsets`: those of the machine by index (1: G54), one value for each axis.
+    `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
+    empty for none.
     """
 
     axes: tuple[str, ...]
@@ -173,7 +172,8 @@ class Channel(NamedTuple):
     centre_offset: float
     centre_offset_ratio: float
     rotary: frozenset[str] = frozenset()
-    zero_offsets: Mapping[int, tuple[float, ...]] = NO_TABLES
+    offsets: OffsetTables = NO_OFFSET_TABLES
+    soft_limits: tuple[tuple[float, float], ...] = ()
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -223,7 +223,7 @@ class ModalState:
     `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to.
+    `coordinates` amount to. `reported`: the canonical stream has them.
     """
 
     position: tuple[float, ...] = ()
@@ -241,6 +241,7 @@ class ModalState:
     coordinates: Coordinates = field(default_factory=Coordinates)
     frame: Frame | None = None
     programmed: tuple[float, ...] = ()
+    reported: bool = field(default=False, compare=False)
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
@@ -248,8 +249,10 @@ class ModalState:
         return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates)
 
     def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles are kept."""
+        """After a cycle: codes, feed, radius and coordinates of its caller; position, spindles and tables are kept."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
         self.feed_mode, self.block_time = other.feed_mode, other.block_time
+        changes = self.coordinates.changes
         self.slope, self.coordinates = other.slope, other.coordinates
+        self.coordinates.changes = changes

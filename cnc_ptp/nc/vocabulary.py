@@ -64,6 +64,7 @@ G_CODES: dict[int, GCode] = {
         GCode(52, "diameter"),
         *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
         GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
+        GCode(160, "activity of offsets", function=codes.offset_activity, takes_axes=True, valued=True),
         GCode(60, "block transition"),
         GCode(359, "block transition"),
         GCode(360, "block transition"),

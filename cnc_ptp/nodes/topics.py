@@ -105,6 +105,9 @@ SERVICES: dict[str, dict[str, Any]] = {
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
         "measuring_event": srv.Execute,
+        "set_zero_offset": srv.SetZeroOffset,
+        "teach_zero_offset": srv.TeachZeroOffset,
+        "set_clamp_position": srv.SetClampPosition,
     },
     "plc": {
         "acknowledge": srv.Acknowledge,
@@ -164,6 +167,10 @@ def state_topic(unit: str) -> str:
 
 def handshake_topic(channel: str) -> str:
     return f"{channel}/handshake"
+
+
+def offsets_topic(channel: str) -> str:
+    return f"{channel}/offsets"
 
 
 def recorded_topic(topic: str) -> str:

@@ -78,6 +78,9 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "reset": "aborts the program; path and spindles stop on their ramps",
         "mdi": "executes NC text (manual data input)",
         "acknowledge": "acknowledges a handshake request",
+        "set_zero_offset": "a value of a zero offset; it counts when the offset is selected next",
+        "teach_zero_offset": "the present position becomes a zero offset",
+        "set_clamp_position": "clamp position of the next program",
         "measuring_event": "the probe has switched (MNE_SNS)",
     },
     "plc": {
@@ -89,6 +92,9 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
 }
 
 ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
+    "index": ArgumentText("", "of the zero offset: 1 is G54, up to 96"),
+    "axis": ArgumentText("", "its name in programs"),
+    "value": ArgumentText("mm, °", "offset of the axis"),
     "enabled": ArgumentText("", "on or off"),
     "files": ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
     "forward": ArgumentText("", "positive direction released"),
@@ -152,6 +158,9 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
         "mm/s², °/s²", "of the compensation alone", "P-AXIS-00002"
     ),
     ("axis", "external_enable", "target"): ArgumentText("mm, °", "where the setpoints end", "not monitored"),
+    ("channel", "set_clamp_position", "index"): ArgumentText("", "0 to 149, one of the machine file"),
+    ("channel", "teach_zero_offset", "axis"): ArgumentText("", "its name in programs", "all axes of the channel"),
+    ("channel", "teach_zero_offset", "value"): ArgumentText("mm, °", "what programs will call the position", "0"),
     ("axis", "decouple", "target"): ArgumentText("mm, °", "where the axis goes", "none: the motion is endless"),
     ("axis", "decouple", "velocity"): ArgumentText("mm/s, °/s", "of the axis from now on", "unchanged"),
     ("axis", "set_feedforward", "enabled"): ArgumentText("", "on or off", "unchanged"),

@@ -159,6 +159,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "mdi": {"text": TEXT},
         "acknowledge": {"id": INTEGER},
         "measuring_event": {},
+        "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},
+        "teach_zero_offset": {"index": INTEGER, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
+        "set_clamp_position": {"index": INTEGER},
         "upstream_lost": SOURCE,
     },
     "plc": {

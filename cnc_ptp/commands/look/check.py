@@ -12,6 +12,7 @@ from cnc_ptp.commands.console import print_error
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import read_program
+from cnc_ptp.machine.run_entries import program_folders
 from cnc_ptp.nc.canonical import BUSY
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, interpret
@@ -29,15 +30,15 @@ def check(program: str, machine: str | None, canonical: bool = False) -> int:
 
     Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too.
     """
-    text, files = read_program(program)
-    if machine is None:
+    parameters = None if machine is None else read_machine(machine)
+    text, files = read_program(program, () if parameters is None else program_folders(parameters))
+    if parameters is None:
         errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, files=files)
     else:
-        parameters = read_machine(machine)
         print_notices(parameters)
         errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program, files)
     if canonical:
-        print_stream(parse_all(text, program, files=files)[0], machine)
+        print_stream(parse_all(text, program, files=files)[0], parameters)
     for error in errors:
         print_error(error)
     if not errors and not canonical:
@@ -45,12 +46,12 @@ def check(program: str, machine: str | None, canonical: bool = False) -> int:
     return WRONG_INPUT if errors else 0
 
 
-def print_stream(program: Program, machine: str | None) -> None:
+def print_stream(program: Program, machine: MachineParameters | None) -> None:
     """The canonical blocks up to the first error, or to a line that reads what only the run knows."""
     if machine is None:
         blocks = interpret(program, (0.0,) * 3, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, runs=True)
     else:
-        checked = ProgramCheck.of_first_channel(read_machine(machine), program.file)
+        checked = ProgramCheck.of_first_channel(machine, program.file)
         blocks = checked.running(program, checked.start, checked.state({}, {}, {}))
     with suppress(CncError):
         for block in blocks:

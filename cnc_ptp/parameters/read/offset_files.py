@@ -15,6 +15,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar, NamedTuple
 
+import yaml
+
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import ParameterValue, catalogue
@@ -22,7 +24,7 @@ from cnc_ptp.parameters.errors import Place, Problem
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import Given, ParameterSet
-from cnc_ptp.parameters.read.source import Entry, Reader, Scalar, Value, is_null, read_events, read_sections, yaml
+from cnc_ptp.parameters.read.source import Entry, Reader, Scalar, Value, is_null, read_events, read_sections
 from cnc_ptp.parameters.read.values import BadValue, checked_value, described, shown
 
 DIVISOR = 10_000
