@@ -91,6 +91,7 @@ def interpret(
     else:
         values.channel, values.state = channel, state
     execution = Execution(program, values, limits=limits, block_skip=block_skip)
+    source = program.main.source
     try:
         while (block := execution.next_block()) is not None:
             if block is COMPUTES:
@@ -102,13 +103,14 @@ def interpret(
                     raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
                 yield CanonicalBlock(values.source, (WaitForPath(True),), None, "")
                 continue
+            source = block.source
             canonical = _resolve(channel, state, block, check_target)
             motion = None if canonical is None else canonical.motion
             execution.moved = motion is not None and not isinstance(motion, Dwell)
             if canonical is not None:
                 yield canonical if state.reported else _with_offsets(channel, state, canonical)
         if not state.reported:
-            yield _with_offsets(channel, state, CanonicalBlock(values.source, (), None, ""))
+            yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
     except ProgramError as error:
         raise with_calls(error, execution) from None
 

@@ -190,7 +190,8 @@ class Offsets:
             text = f"{self.kind.record} {key} is outside 0 to {self.kind.last}"
             self.add_problem(errors.INDEX, place, text)
             return None
-        known = [*(f"G{53 + n}" for n in range(7)), "default"] if zero else []
+        code_meant = _CODE.fullmatch(key.upper())
+        known = [code_meant[0] if code_meant else "default"] if zero else []
         text = f"{shown(key)} is no {self.kind.record}, {self.kind.names} are{nearest(key, known)}"
         self.add_problem(errors.UNKNOWN_NAME, place, text)
         return None
@@ -208,19 +209,21 @@ class Offsets:
                 self.add(self.kind.name, (index,), entry.value, entry.place)
             elif entry.name == "inactive" and self.kind is ZERO_OFFSETS:
                 for axis in entry.value if isinstance(entry.value, tuple) else (entry.value,):
-                    self.add_axis(index, record, str(axis), entry.place, ids.ACHSE_INAKTIV, True)
-            else:
+                    if self.has_axis(record, str(axis), entry.place):
+                        self.add(ids.ACHSE_INAKTIV, (index, self.axes.index(str(axis))), True, entry.place)
+            elif self.has_axis(record, entry.name, entry.place):
                 value = self.length(f"{self.kind.record} {record.key}, axis {entry.name}", entry)
-                self.add_axis(index, record, entry.name, entry.place, self.kind.value, value)
+                if value is not None:
+                    self.add(self.kind.value, (index, self.axes.index(entry.name)), value, entry.place)
 
-    def add_axis(self, index: int, record: Record, axis: str, place: Place, parameter: str, value: Value) -> None:
-        if axis not in self.axes:
-            known = ", ".join(self.axes)
-            words = [*self.axes, "name", *(["inactive"] if self.kind is ZERO_OFFSETS else [])]
-            text = f"{self.kind.record} {record.key}: {shown(axis)} is no axis of /{self.channel.node} ({known})"
-            self.add_problem(errors.UNKNOWN_NAME, place, text + nearest(axis, words))
-        elif value is not None:
-            self.add(parameter, (index, self.axes.index(axis)), value, place)
+    def has_axis(self, record: Record, axis: str, place: Place) -> bool:
+        """Whether the channel has an axis of this name; a problem, if not."""
+        if axis in self.axes:
+            return True
+        words = [*self.axes, "name", *(["inactive"] if self.kind is ZERO_OFFSETS else [])]
+        text = f"{self.kind.record} {record.key}: {shown(axis)} is no axis of /{self.channel.node}"
+        self.add_problem(errors.UNKNOWN_NAME, place, f"{text} ({', '.join(self.axes)}){nearest(axis, words)}")
+        return False
 
     def length(self, where: str, entry: Entry) -> int | None:
         """A value of the file in units of the list; None, with a problem, if it is none."""
