@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
+from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.canonical import CanonicalBlock, OffsetReport
 from cnc_ptp.parameters import OffsetTables
 
@@ -42,6 +43,15 @@ def test_g53_selects_an_offset_where_the_machine_has_one():
     available = TABLES._replace(g53=True)
     assert targets("G53 G00 X0 Y0 Z0", offsets=available) == [(1.5, 2.0, 2.5)]
     assert targets("G159=0 G00 X0 Y0 Z0", offsets=available) == [(1.5, 2.0, 2.5)]
+
+
+def test_a_parameter_may_name_the_offset():
+    text = "P1 = 2\nG159=P1 G00 X0 Y0 Z0\nG160=P1 X1\nG159=[P1 - 1] X0 Y0 Z0\nG159=[P1] X0"
+    assert targets(text, offsets=TABLES._replace(clamp={})) == [
+        (100.0, 0.0, 300.0),
+        (10.0, 20.0, 30.0),
+        (0.0, 20.0, 30.0),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -85,6 +95,7 @@ def test_a_change_at_the_end_has_a_block_of_its_own():
     assert blocks[-1][:4] == (blocks[-1].source, (), None, "")
     assert blocks[-1].source.line == 2 and blocks[-1].offsets.zero_index == 1
     assert run("G90") == []
+    assert format_block(blocks[-1]) == "2:N0 | offsets (10.5, 20, 29.5)"
 
 
 def test_a_report_names_all_that_counts():

@@ -31,6 +31,8 @@ def format_block(block: CanonicalBlock) -> str:
         parts.append(_motion(block.motion))
     if block.stop:
         parts.append(block.stop)
+    if block.offsets is not None and len(parts) == 1:
+        parts.append(f"offsets {_numbers(block.offsets.shift)}")
     return " | ".join(parts)
 
 
