@@ -23,9 +23,13 @@ def machine_text(path: str | Path) -> str:
     Raises ParameterError 25017 for one that cannot be read.
     """
     file = str(path)
-    text = read_text(Path(path), Place(file, 1, 1), "machine file")
+    return complete_text(read_text(Path(path), Place(file, 1, 1), "machine file"), file)
+
+
+def complete_text(text: str, file: str) -> str:
+    """As `machine_text`, of a machine file that was read already. Raises ParameterError 25017 for another file."""
     files = {
-        named.name: read_text(Path(path).parent / named.name, named.place, f"{named.subject}: file {named.name}")
+        named.name: read_text(Path(file).parent / named.name, named.place, f"{named.subject}: file {named.name}")
         for named in named_files(text, file)
     }
     return with_files(text, files)

@@ -22,8 +22,9 @@ from cnc_ptp.commissioning.circle_program import CircleProgram, Plane, circle_pr
 from cnc_ptp.commissioning.faults import BAD_CIRCLE, BAD_PLANE, NOTHING_TO_COMPARE
 from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_circle
 from cnc_ptp.errors import CncError
+from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.run_entries import check_program
-from cnc_ptp.parameters import AxisParameters, MachineParameters, load_machine, machine_text
+from cnc_ptp.parameters import AxisParameters, MachineParameters, complete_text, load_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 
@@ -64,7 +65,7 @@ def circle(
     check_numbers(radius=radius, feed=feed, centre=centre, magnification=magnification)
     for output in outputs:
         check_picture(output, machine_file=machine)
-    text = machine_text(machine)
+    text = complete_text(read_file("machine file", machine), machine)
     parameters = load_machine(text, machine)
     found = find_plane(plane)
     place = find_place(parameters, found, centre)
