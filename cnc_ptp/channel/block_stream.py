@@ -25,10 +25,10 @@ class BlockStream:
         """A program of which every block is known."""
         return cls(iter(blocks), len(blocks), None)
 
-    def give(self, actual: tuple[float, ...]) -> None:
-        """Positions of the axes at this instant."""
+    def give(self, actual: tuple[float, ...], position: tuple[float, ...]) -> None:
+        """Actual and set positions of the axes at this instant."""
         if self._values is not None:
-            self._values.actual = actual
+            self._values.actual, self._values.position = actual, position
 
     def next(self) -> CanonicalBlock | None:
         """The next block, BUSY while the interpreter computes, or None at the end of the program.

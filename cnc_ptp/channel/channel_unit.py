@@ -10,13 +10,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NoReturn
 
+from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
-from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
+from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
@@ -24,6 +25,7 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Pairs
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
+from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
@@ -77,7 +79,9 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
-        self._sequence = ProgramSequence(self._motion, functions, nodes)
+        absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
+        homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
+        self._sequence = ProgramSequence(self._motion, functions, nodes, homing)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
         self._program: Program | None = None
@@ -115,7 +119,7 @@ class ChannelUnit(Unit):
         parsed = parse_program(text, program, files=files)
         state = self._initial_state(self._feedback)
         before = state.copy()
-        known = self._check.known_blocks(parsed, self._motion.position, state)
+        known = self._check.known_ahead(parsed, self._motion.position, state)
         self._prepared = PreparedProgram(text, dict(files), parsed, self._motion.position, before, state, known)
 
     # commands
@@ -245,7 +249,7 @@ class ChannelUnit(Unit):
         self._read_feedback(first_cycle, inputs)
         self._watch_handshake(first_cycle)
         outgoing = self._sequence.take_outgoing(first_cycle)
-        on_path = self._unfinished or self._sequence.phase is not Phase.IDLE
+        on_path = self._unfinished or self._sequence.phase not in OFF_PATH
         rows = CycleRows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
@@ -356,6 +360,8 @@ class ChannelUnit(Unit):
         phase = self._sequence.phase
         if phase is Phase.MOTION and self._motion.on_path:
             return C.RUNNING
+        if self._sequence.homing_held:
+            return C.HOLD
         if phase is Phase.IDLE:
             return C.IDLE if self._program is None else C.READY
         return PHASE_STATES[phase]
@@ -377,15 +383,17 @@ class ChannelUnit(Unit):
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
         before = state.copy()
-        ready = self._ready(command, program, state)
+        unreferenced = self._axes.unreferenced(self._feedback)
+        ready = None if unreferenced else self._ready(command, program, state)
         if ready is not None:
             known, state = ready.known, ready.at_end
         else:
-            known = self._check.known_blocks(program, self._motion.position, state)
+            known = self._check.known_blocks(program, self._motion.position, state, unreferenced)
         stream = BlockStream.of(known.blocks)
         if not known.complete:
             state = before
-            stream = BlockStream(self._check.running(program, self._motion.position, state), known.total, state.values)
+            blocks = self._check.running(program, self._motion.position, state, unreferenced)
+            stream = BlockStream(blocks, known.total, state.values)
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
@@ -403,7 +411,9 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        self._motion.set_override(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
+        held = self._feed_hold or self._axes.withheld
+        self._motion.set_override(0.0 if held else self._override_percent / 100.0)
+        self._sequence.set_override(0.0 if self._feed_hold else min(100.0, self._override_percent))
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """An axis on the path without feed release in its direction holds the path; one warning per element.
@@ -431,7 +441,11 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
             elif isinstance(block, SpindleBlock):
                 self._check_refused(first_cycle, node, block)
-        self._sequence.read(first_cycle, inputs)
+        try:
+            self._sequence.read(first_cycle, inputs)
+        except CncError as error:
+            source = self._sequence.source
+            self._fault(first_cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
         self._warn(first_cycle)
         self._report_held(first_cycle)
 
@@ -518,6 +532,7 @@ PHASE_STATES = {
     Phase.WAIT_GEAR: C.WAITING,
     Phase.WAIT_END: C.WAITING,
     Phase.MOTION: C.WAITING,
+    Phase.HOMING: C.RUNNING,
     Phase.WAIT_BEFORE: C.WAITING,
     Phase.WAIT_AFTER: C.WAITING,
     Phase.STOPPED: C.STOPPED,

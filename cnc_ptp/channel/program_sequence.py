@@ -6,6 +6,7 @@
 | WAIT_GEAR | the path waits for the gear; then the functions before the motion go out | WAIT_BEFORE |
 | WAIT_BEFORE | the path waits for all that must precede the motion | MOTION, without one WAIT_AFTER |
 | MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
+| HOMING | G74: the axes are off the path and home themselves | WAIT_AFTER |
 | WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
 | WAIT_END | a program without M30: the path waits for all that is still pending | IDLE |
 | STOPPED | M00, M01, single block: `resume` continues | NEXT |
@@ -17,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
+from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
@@ -28,6 +30,7 @@ from cnc_ptp.nc.canonical import (
     CanonicalBlock,
     CircularMove,
     ExplicitSynchronisation,
+    HomeAxes,
     LinearMove,
     Message,
     OffsetReport,
@@ -55,12 +58,15 @@ class Phase(Enum):
     WAIT_GEAR = auto()
     WAIT_BEFORE = auto()
     MOTION = auto()
+    HOMING = auto()
     WAIT_AFTER = auto()
     WAIT_END = auto()
     STOPPED = auto()
     RAMP_DOWN = auto()
 
 
+OFF_PATH = (Phase.IDLE, Phase.HOMING)
+"""Others may move the channel's axes."""
 WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
 ORDER = {moment: rank for rank, moment in enumerate(Moment)}
 ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
@@ -74,9 +80,10 @@ class ProgramSequence:
     `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` reports that it has finished.
     """
 
-    def __init__(self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str]) -> None:
+    def __init__(self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str], homing: AxisHoming) -> None:
         """`axes`: nodes of the channel's axes, in its order."""
         self._motion = motion
+        self._homing = homing
         self._axes = axes
         self._functions = functions
         self.phase = Phase.IDLE
@@ -132,9 +139,12 @@ class ProgramSequence:
             self._stop_spindles()
             return
         moving = self.phase is Phase.MOTION and self._motion.on_path
+        homes = self.phase is Phase.HOMING
         self.phase = Phase.RAMP_DOWN
         self._awaits_event = False
         self._outgoing = Outgoing(commands=[command for command in self._outgoing.commands if command.command in ENDS])
+        if homes:
+            self._outgoing.commands += self._homing.stop(self._feedback)
         self._functions.withdraw()
         self._waits = []
         if moving:
@@ -181,9 +191,25 @@ class ProgramSequence:
         self._functions.spindles.send(first_cycle)
         return outgoing
 
+    def set_override(self, percent: float) -> None:
+        """Override of the channel for axes that home; PathMotion has its own."""
+        self._outgoing.commands += self._homing.set_override(percent)
+
+    @property
+    def homing_held(self) -> bool:
+        """Axes that are to home are held by the override of the channel."""
+        return self.phase is Phase.HOMING and self._homing.held
+
+    def _home(self) -> None:
+        self._outgoing.commands += self._homing.go_on(self._feedback)
+        if self._homing.done():
+            self.motion_ended()
+
     def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
-        """Reads the spindles' blocks for the cycles before `cycle`."""
+        """Reads the blocks of spindles and homing axes for the cycles before `cycle`. Raises CncError 22035."""
         self._feedback = feedback
+        if self.phase is Phase.HOMING:
+            self._home()
         spindles = self._functions.spindles
         ended = spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues") for text in ended]
@@ -211,6 +237,8 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
+        if self.homing_held:
+            return "an override above 0 or the end of the feed hold"
         waits = [wait.text(self.handshake) for wait in self._waited_for()]
         return " and ".join(text for text in waits if text)
 
@@ -280,7 +308,7 @@ class ProgramSequence:
         if first_cycle == self._waited_at:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
-            self.stream.give(actual_positions(self._feedback, self._axes))
+            self.stream.give(actual_positions(self._feedback, self._axes), self._motion.position)
         block = self.stream.next()
         if block is BUSY:
             return False
@@ -323,6 +351,10 @@ class ProgramSequence:
         motion = self._block.motion if self._block else None
         if motion is None:
             self.motion_ended()
+            return
+        if isinstance(motion, HomeAxes):
+            self._homing.begin(motion.groups)
+            self.phase = Phase.HOMING
             return
         self._motion.start(motion)
         self.phase = Phase.MOTION

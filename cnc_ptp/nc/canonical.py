@@ -83,6 +83,12 @@ class Dwell(NamedTuple):
     seconds: float
 
 
+class HomeAxes(NamedTuple):
+    """G74: the axes of a group home at the same time, group after group; afterwards they are where they stand."""
+
+    groups: tuple[tuple[str, ...], ...]
+
+
 class SpindleFunction(NamedTuple):
     """A function of one spindle: `m` is 3 (clockwise), 4 (counter-clockwise), 5 (stop), 19 (positioning) or None.
 
@@ -210,7 +216,7 @@ Function = (
     | AuxiliaryFunction
     | ControlFunction
 )
-Motion = LinearMove | CircularMove | Dwell
+Motion = LinearMove | CircularMove | Dwell | HomeAxes
 
 
 class OffsetReport(NamedTuple):

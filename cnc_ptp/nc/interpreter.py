@@ -7,8 +7,8 @@ from cnc_ptp.nc.canonical import (
     BUSY,
     CanonicalBlock,
     CircularMove,
-    Dwell,
     Function,
+    HomeAxes,
     LinearMove,
     Motion,
     Source,
@@ -106,9 +106,12 @@ def interpret(
             source = block.source
             canonical = _resolve(channel, state, block, check_target)
             motion = None if canonical is None else canonical.motion
-            execution.moved = motion is not None and not isinstance(motion, Dwell)
+            execution.moved = isinstance(motion, (LinearMove, CircularMove))
             if canonical is not None:
                 yield canonical if state.reported else _with_offsets(channel, state, canonical)
+                if isinstance(motion, HomeAxes) and values.position:
+                    state.position = values.position
+                    refresh(channel, state)
         if not state.reported:
             yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
     except ProgramError as error:
@@ -151,7 +154,7 @@ def _resolve(
         functions = block_functions(channel, state, block)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
-    if motion is not None and not isinstance(motion, Dwell):
+    if isinstance(motion, (LinearMove, CircularMove)):
         programmed = motion.target
         motion = timed(channel, state, place(channel, state, block, motion))
         if motion.target == state.position and not isinstance(motion, CircularMove):
@@ -178,6 +181,11 @@ def _resolve(
 
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
+    return isinstance(block.motion, HomeAxes) or reads_the_run(block)
+
+
+def reads_the_run(block: CanonicalBlock) -> bool:
+    """The line behind this block reads what only the run knows."""
     return any(isinstance(function, WaitForPath) and function.awaited for function in block.functions)
 
 
@@ -193,7 +201,7 @@ def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_
     if isinstance(motion, CircularMove):
         for point in extreme_points(start, motion):
             check_target(point, source)
-    if not isinstance(motion, Dwell):
+    if isinstance(motion, (LinearMove, CircularMove)):
         check_target(motion.target, source)
 
 
@@ -216,18 +224,24 @@ def check(
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
     The modal check runs the program from `start` (default 0) up to its first error, the first line with a syntax
-    error, or one that reads what only the run knows, since everything after that would be a guess. An error that
-    `check_target` raises comes out as it is, unless it is a ProgramError.
+    error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
+    after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
     program, errors = parse_all(text, file, files=files)
     begin = (0.0,) * len(axes) if start is None else start
+    homed = False
+
+    def check_known(target: tuple[float, ...], source: Source) -> None:
+        if check_target is not None and not homed:
+            check_target(target, source)
+
     try:
         blocks = interpret(
             program,
             begin,
             axes,
             spindles,
-            check_target=check_target,
+            check_target=check_known,
             centre_offset=centre_offset,
             centre_offset_ratio=centre_offset_ratio,
             rotary=rotary,
@@ -237,7 +251,8 @@ def check(
             runs=True,
         )
         for block in blocks:
-            if awaits_path(block):
+            homed = homed or isinstance(block.motion, HomeAxes)
+            if reads_the_run(block):
                 break
     except ProgramError as error:
         if all((error.file, error.line) != (known.file, known.line) for known in errors):

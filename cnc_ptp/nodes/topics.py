@@ -63,6 +63,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_override_type": srv.SetOverrideType,
         "stop": srv.Execute,
         "halt": srv.Execute,
+        "home": srv.Execute,
         "emergency_stop": srv.EmergencyStop,
         "new_target": srv.NewTarget,
         "new_velocity_and_target": srv.NewVelocityAndTarget,

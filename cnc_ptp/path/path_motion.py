@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove, Motion
+from cnc_ptp.nc.canonical import STEP, CircularMove, Dwell, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, AxisState, Line
 from cnc_ptp.path.interpolator import PathInterpolator
@@ -80,7 +80,7 @@ class PathMotion:
         if position != self.states[index][0]:
             self.states = (*self.states[:index], (position, 0.0, 0.0, 0.0), *self.states[index + 1 :])
 
-    def start(self, motion: Motion) -> None:
+    def start(self, motion: LinearMove | CircularMove | Dwell) -> None:
         """Starts a motion, directly after another one at its exact end inside a cycle.
 
         Raises CncError (22101–22112, 23001) for impossible motions; then nothing is started.

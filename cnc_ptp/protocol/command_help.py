@@ -27,6 +27,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "stop": "stops on the ramp; new targets wait until the axis is at a standstill",
         "halt": "stops on the ramp; a new target acts immediately",
         "jog": "moves at a velocity until the next one; 0 ends the jog",
+        "home": "homing (G74): reference cam, zero pulse",
         "emergency_stop": "stops on a ramp of its own, never weaker than that of the start",
         "new_target": "new target on the fly",
         "new_velocity_and_target": "new target immediately, new velocity from a position on",

@@ -72,6 +72,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "stop": {},
         "halt": {},
         "jog": {"velocity": NUMBER},
+        "home": {},
+        "set_homing_override": {"percent": NUMBER},
         "emergency_stop": dict.fromkeys(("deceleration", "jerk"), LENIENT_NUMBER),
         "new_target": {"target": NUMBER},
         "new_velocity_and_target": {"velocity": NUMBER, "target": NUMBER, "activation_position": NUMBER},
@@ -175,8 +177,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 }
 COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
 """Commands that make a slave of an axis."""
-INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
-"""Commands that only watchdogs and harnesses give; a scenario may not."""
+INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer", "set_homing_override"})
+"""Commands that only watchdogs, harnesses and other units give; a scenario may not."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner"})

@@ -10,6 +10,7 @@ from cnc_ptp.nc.canonical import (
     ExplicitSynchronisation,
     Function,
     GearChange,
+    HomeAxes,
     LinearMove,
     Message,
     Motion,
@@ -88,6 +89,8 @@ def _control(function: ControlFunction) -> str:
 def _motion(motion: Motion) -> str:
     if isinstance(motion, Dwell):
         return f"dwell {number(motion.seconds)} s"
+    if isinstance(motion, HomeAxes):
+        return "home " + ", then ".join(" ".join(group) for group in motion.groups)
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     if isinstance(motion, LinearMove):
         return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope

@@ -92,6 +92,8 @@ class Values:
         """1 in the main program, one more for each call."""
         self.actual: tuple[float, ...] = ()
         """Positions of the axes at the last synchronisation."""
+        self.position: tuple[float, ...] = ()
+        """Their set positions then, which a homing has changed."""
         self.parameters: dict[int, float] = {}
         self.program: dict[str, Variable] = {}
         self.shared: dict[str, Variable] = {}
