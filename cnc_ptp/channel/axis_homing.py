@@ -1,6 +1,6 @@
 """G74 of a channel: its axes are off the path and home themselves, group after group.
 
-The block after the last one of the path lets the axes go; the commands go out with the next one. An axis that has
+The commands go out when the axes have reported that the path has let them go. An axis that has
 begun reports the state Homing at once, so that one without it has refused; one that ends without a reference point was
 stopped.
 """
@@ -48,9 +48,9 @@ class AxisHoming:
 
     def go_on(self, feedback: Mapping[str, CycleBlock]) -> list[Command]:
         """Reads the axes' blocks; returns the commands for the next group. Raises CncError 22035."""
-        if self._on_path:
-            self._on_path = False
+        if self._on_path and any(on_path(feedback.get(node)) for group in self._groups for node in group):
             return []
+        self._on_path = False
         for node in list(self._began):
             self._read(node, feedback.get(node))
         if self._began or not self._groups:
@@ -89,6 +89,11 @@ class AxisHoming:
         """The program was aborted: the axes at work stop, except those in error, which have stopped already."""
         began, self._began, self._groups = self._began, {}, []
         return [Command(node, "stop", {}) for node in began if not in_error(feedback.get(node))]
+
+
+def on_path(block: CycleBlock | None) -> bool:
+    """True until an axis has reported that the path has let it go; a slave never does, it refuses to home."""
+    return isinstance(block, AxisBlock) and block.state[-1] == AxisStateCode.SYNCHRONIZED_MOTION and not block.master
 
 
 def in_error(block: CycleBlock | None) -> bool:

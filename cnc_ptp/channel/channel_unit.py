@@ -99,7 +99,7 @@ class ChannelUnit(Unit):
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
-        """The program ended between the last cycle of the previous block and the first of the next one."""
+        """The program ended, or a homing began, between the last cycle of the previous block and the first of the next."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
@@ -259,7 +259,7 @@ class ChannelUnit(Unit):
             ended, self._state_at_end = self._state_at_end, None
             self._shared, self._offsets.changes = ended.values.shared, ended.modal.coordinates.changes
             self._state = ended if self._is_mdi else self._initial_state({})
-        self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
+        self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
         if self._sequence.phase is Phase.IDLE:
             self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
