@@ -28,7 +28,7 @@ class AxisHoming:
         self._nodes, self._absolute = nodes, absolute
         self._groups: list[list[str]] = []
         self._began: dict[str, bool] = {}
-        """The axes at work, by node; True when they have reported that they home."""
+        """The axes that home, by node; True when they have reported that they home."""
         self._on_path = False
         self._percent = FULL
 
@@ -76,7 +76,7 @@ class AxisHoming:
         del self._began[node]
 
     def set_override(self, percent: float) -> list[Command]:
-        """The override of the channel, 0 is a feed hold; also for the axes at work."""
+        """The override of the channel, 0 is a feed hold; also for the axes that home."""
         if percent == self._percent:
             return []
         self._percent = percent
@@ -86,7 +86,7 @@ class AxisHoming:
         return [Command(node, "set_homing_override", {"percent": self._percent}) for node in self._began]
 
     def stop(self, feedback: Mapping[str, CycleBlock]) -> list[Command]:
-        """The program was aborted: the axes at work stop, except those in error, which have stopped already."""
+        """The program was aborted: the axes that home stop, except those in error, which have stopped already."""
         began, self._began, self._groups = self._began, {}, []
         return [Command(node, "stop", {}) for node in began if not in_error(feedback.get(node))]
 

@@ -99,7 +99,7 @@ class ChannelUnit(Unit):
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
-        """The program ended, or a homing began, between the last cycle of the previous block and the first of the next."""
+        """The program ended, or a homing began, after the last cycle of the previous block."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False

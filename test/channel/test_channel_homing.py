@@ -127,7 +127,7 @@ def test_an_override_from_before_counts_from_the_start() -> None:
     assert bench.errors() == [] and min(bench.column("x", "set_velocity")) == pytest.approx(-25.0)
 
 
-def test_a_reset_stops_the_axes_at_work() -> None:
+def test_a_reset_stops_the_axes_that_home() -> None:
     bench = run("N10 G74 X1 Y1 Z2\nN20 G0 X10\nM30", "- {at: 0.5, to: channel, do: reset}\n")
     assert bench.errors() == [] and bench.states("z") == [S.SYNCHRONIZED_MOTION, S.STANDSTILL]
     for axis in "xy":
