@@ -18,6 +18,7 @@ from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
+from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
@@ -81,7 +82,7 @@ class ChannelUnit(Unit):
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
         homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
-        self._sequence = ProgramSequence(self._motion, functions, nodes, homing)
+        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, Timers(cycle_time))
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
         self._program: Program | None = None
@@ -318,7 +319,7 @@ class ChannelUnit(Unit):
 
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
-            goes_on = self._sequence.go_on(first_cycle)
+            goes_on = self._sequence.go_on(first_cycle, cycle)
         except CncError as error:
             source = self._sequence.source
             self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
@@ -411,8 +412,8 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        held = self._feed_hold or self._axes.withheld
-        self._motion.set_override(0.0 if held else self._override_percent / 100.0)
+        held = self._feed_hold or bool(self._axes.withheld)
+        self._motion.set_override(0.0 if held else self._override_percent / 100.0, held=held)
         self._sequence.set_override(0.0 if self._feed_hold else min(100.0, self._override_percent))
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:

@@ -23,6 +23,7 @@ from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
+from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
@@ -36,6 +37,7 @@ from cnc_ptp.nc.canonical import (
     OffsetReport,
     OrderedError,
     Source,
+    Timer,
     WaitForPath,
 )
 from cnc_ptp.path.path_motion import PathMotion
@@ -80,10 +82,13 @@ class ProgramSequence:
     `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` reports that it has finished.
     """
 
-    def __init__(self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str], homing: AxisHoming) -> None:
+    def __init__(
+        self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str], homing: AxisHoming, timers: Timers
+    ) -> None:
         """`axes`: nodes of the channel's axes, in its order."""
         self._motion = motion
         self._homing = homing
+        self._timers = timers
         self._axes = axes
         self._functions = functions
         self.phase = Phase.IDLE
@@ -248,13 +253,13 @@ class ProgramSequence:
 
     # from block to block
 
-    def go_on(self, first_cycle: int) -> bool:
-        """One step forward between motions; False when the path has to wait.
+    def go_on(self, first_cycle: int, cycle: int) -> bool:
+        """One step forward between motions at `cycle` of the block; False when the path has to wait.
 
         Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
-            return self._begin_block(first_cycle)
+            return self._begin_block(first_cycle, cycle)
         if self.phase not in WAITING:
             return False
         waits = self._waited_for()
@@ -264,7 +269,7 @@ class ProgramSequence:
         if len(done) < len(waits):
             return False
         if self.phase is Phase.WAIT_GEAR:
-            self._functions_before()
+            self._functions_before(cycle)
         elif self.phase is Phase.WAIT_BEFORE:
             self._start_motion()
         elif self.phase is Phase.WAIT_END:
@@ -303,12 +308,13 @@ class ProgramSequence:
             expected = Expectation(spindle.node)
             self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
-    def _begin_block(self, first_cycle: int) -> bool:
+    def _begin_block(self, first_cycle: int, cycle: int) -> bool:
         """False while the interpreter computes, and behind a wait for the path. Raises ProgramError."""
         if first_cycle == self._waited_at:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
-            self.stream.give(actual_positions(self._feedback, self._axes), self._motion.position)
+            actual = actual_positions(self._feedback, self._axes)
+            self.stream.give(actual, self._motion.position, self._timers.read)
         block = self.stream.next()
         if block is BUSY:
             return False
@@ -322,26 +328,28 @@ class ProgramSequence:
             self.offsets = block.offsets
         gear = self._functions.gear_change(block)
         if not gear.commands:
-            self._functions_before()
+            self._functions_before(cycle)
             return True
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
         return True
 
-    def _functions_before(self) -> None:
+    def _functions_before(self, cycle: int) -> None:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
         block = self._block
         assert block is not None
-        self._tell(block)
+        self._tell(block, cycle)
         self._queue(self._functions.of_block(block, Moment.BEFORE))
         self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.functions)
         self._wait(Phase.WAIT_BEFORE, *moments_before(block))
 
-    def _tell(self, block: CanonicalBlock) -> None:
-        """Messages of the block. Raises CncError 22029 for an error that the program orders."""
+    def _tell(self, block: CanonicalBlock, cycle: int) -> None:
+        """Messages and timers of the block. Raises CncError 22029 for an error that the program orders."""
         for function in block.functions:
             if isinstance(function, Message):
                 self.messages.append(function.text)
+            elif isinstance(function, Timer):
+                self._timers.carry_out(function, cycle)
             elif isinstance(function, OrderedError):
                 if function.severe:
                     raise CncError(ORDERED_ERROR, function.text)

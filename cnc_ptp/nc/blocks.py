@@ -21,6 +21,7 @@ from cnc_ptp.nc.flow.calls import call_of
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.flow.statement_reader import read_statement
 from cnc_ptp.nc.flow.statements import Assignment, Assignments
+from cnc_ptp.nc.gears import GEAR_M
 from cnc_ptp.nc.hash_commands import hash_line
 from cnc_ptp.nc.lexer import SKIP, Token, TokenReader, normalise, places, plain_words
 from cnc_ptp.nc.program import GCode, MCode, NcBlock, SpindleWords
@@ -30,6 +31,7 @@ from cnc_ptp.nc.vocabulary import (
     AXIS_LETTERS,
     FUNCTION_WORDS,
     G_CODES,
+    M_CODES,
     MAX_SKIP_LEVEL,
     VALUE_WORDS,
     m_code,
@@ -343,16 +345,29 @@ class BlockWords:
             raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
 
     def valued(self, token: Token) -> None:
-        """A code with a value: G159=2."""
+        """A code with a value: G159=2; M and H functions pass theirs to the PLC: M52=-345."""
+        if token.name[0] != "G":
+            self._function_value(token)
+            return
         number_ = int(token.name[1:])
-        code = G_CODES.get(number_) if token.name[0] == "G" else None
-        if code is None and token.name[0] == "G":
+        code = G_CODES.get(number_)
+        if code is None:
             raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
-        if code is None or not code.valued:
+        if not code.valued:
             raise faults.CODE_NO_VALUE.at(self.source, token.column, code=token.name)
         self._check_group(token, code, self.codes)
         self.codes.append(code)
         self.values[code.name] = float(token.text)
+
+    def _function_value(self, token: Token) -> None:
+        """An integer for a free function; those of spindles, gears and the program flow take none."""
+        code, value = token._replace(name=token.name[0], text=token.name[1:]), float(token.text)
+        if code.name == "M" and (int(code.text) in M_CODES or int(code.text) in GEAR_M):
+            raise faults.CODE_NO_VALUE.at(self.source, token.column, code=token.name)
+        if value != int(value):
+            raise faults.CODE_INTEGER.at(self.source, token.column, code=token.name, value=number(value))
+        self.word(code)
+        self.values[token.name] = value
 
     def position(self, token: Token) -> None:
         """The position of M19: `S.POS=90`."""

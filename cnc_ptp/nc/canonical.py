@@ -51,13 +51,14 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
-    `slope` of its acceleration, "" is that of P-CHAN-00071.
+    `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect.
     """
 
     target: tuple[float, ...]
     rapid: bool
     feed: float
     slope: str = ""
+    full_override: bool = False
 
 
 class CircularMove(NamedTuple):
@@ -65,7 +66,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope` as in LinearMove.
+    `slope` and `full_override` as in LinearMove.
     """
 
     target: tuple[float, ...]
@@ -75,6 +76,7 @@ class CircularMove(NamedTuple):
     sweep: float
     feed: float
     slope: str = ""
+    full_override: bool = False
 
 
 class Dwell(NamedTuple):
@@ -144,6 +146,13 @@ class WaitForPath(NamedTuple):
     awaited: bool = False
 
 
+class Timer(NamedTuple):
+    """#TIMER: START, STOP, READ or CLEAR of a timer, when the path reaches the block."""
+
+    action: str
+    number: int
+
+
 class Message(NamedTuple):
     """#MSG: a text for the operator."""
 
@@ -159,11 +168,15 @@ class OrderedError(NamedTuple):
 
 
 class AuxiliaryFunction(NamedTuple):
-    """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8]."""
+    """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8].
+
+    `value`: what M52=-345 and H5=2 pass to the PLC.
+    """
 
     letter: str
     number: int
     spindle: str = ""
+    value: float = 0.0
 
 
 class AxisFeedforward(NamedTuple):
@@ -211,6 +224,7 @@ Function = (
     | SpindleLink
     | ExplicitSynchronisation
     | WaitForPath
+    | Timer
     | Message
     | OrderedError
     | AuxiliaryFunction

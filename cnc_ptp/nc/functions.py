@@ -1,7 +1,7 @@
 """M, S, T, D and H of a block -> canonical functions."""
 
 from cnc_ptp.nc import faults, gears
-from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, number
+from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, code_name, number
 from cnc_ptp.nc.program import Channel, MCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import spindle_functions
 
@@ -28,9 +28,14 @@ def number_function(block: NcBlock, letter: str, limit: int) -> AuxiliaryFunctio
     if value < 0 or value > limit or value != int(value):
         column = block.source.column(letter)
         raise faults.NOT_AN_INTEGER.at(block.source, column, word=letter, value=number(value), limit=limit)
-    return AuxiliaryFunction(letter, int(value))
+    return AuxiliaryFunction(letter, int(value), value=function_value(block, code_name(letter, int(value))))
 
 
 def free_m(channel: Channel, state: ModalState, block: NcBlock, code: MCode) -> Function:
     """An M function without a meaning in the language: it goes to the PLC."""
-    return AuxiliaryFunction("M", code.number)
+    return AuxiliaryFunction("M", code.number, value=function_value(block, code.name))
+
+
+def function_value(block: NcBlock, name: str) -> float:
+    """The value that a function passes to the PLC (M52=-345), 0 without one."""
+    return block.values.get(name, 0.0) if block.values else 0.0

@@ -12,6 +12,7 @@ from cnc_ptp.nc.canonical import (
     LinearMove,
     Motion,
     Source,
+    Timer,
     WaitForPath,
 )
 from cnc_ptp.nc.controls import bracketed_controls
@@ -30,7 +31,7 @@ from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, G_CODES
 from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
 
 CENTRE_OFFSET = 2.0
@@ -167,6 +168,8 @@ def _resolve(
                 check_limits(channel, state, block, motion)
             if state.slope:
                 motion = motion._replace(slope=state.slope)
+            if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
+                motion = motion._replace(full_override=True)
             if state.spindle.speedless:
                 _require_speed(state, motion)
             state.position, state.programmed = motion.target, programmed
@@ -186,7 +189,12 @@ def awaits_path(block: CanonicalBlock) -> bool:
 
 def reads_the_run(block: CanonicalBlock) -> bool:
     """The line behind this block reads what only the run knows."""
-    return any(isinstance(function, WaitForPath) and function.awaited for function in block.functions)
+    for function in block.functions:
+        if isinstance(function, WaitForPath) and function.awaited:
+            return True
+        if isinstance(function, Timer) and function.action == "READ":
+            return True
+    return False
 
 
 def _require_speed(state: ModalState, motion: Motion | None) -> None:

@@ -392,7 +392,7 @@ _TARGET = re.compile(r"\s*(?:P\s*[\d\[P]|V\s*\.)", re.ASCII)
 _ASSIGNS = re.compile(r"\s*([-+*/]?=)(?!=)", re.ASCII)
 _COMBINED: Final = {"+=": Add, "-=": Subtract, "*=": Multiply, "/=": Divide}
 _COMPUTED_POSITION = re.compile(rf"\s*({_NAME})\s*\.\s*POS\s*=?", re.ASCII)
-_VALUED = re.compile(r"\s*([GM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
+_VALUED = re.compile(r"\s*([GHM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
 _COMPUTED_WORD = re.compile(r"\s*([A-Z])\s*=?", re.ASCII)
 _COMPUTED_NAME = re.compile(rf"\s*({_NAME})\s*=(?!=)", re.ASCII)
 _COMPUTED: Final = (

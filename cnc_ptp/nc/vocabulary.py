@@ -31,6 +31,8 @@ def _centre(number: int, absolute: bool) -> GCode:
     return GCode(number, "circle centre", select=select)
 
 
+FULL_OVERRIDE: Final = 166
+"""The override has no effect on the motion of the block."""
 _ARC_WORDS = frozenset("IJKR")
 
 G_CODES: dict[int, GCode] = {
@@ -85,6 +87,7 @@ G_CODES: dict[int, GCode] = {
         GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
         GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
         GCode(165, "centre correction"),
+        GCode(FULL_OVERRIDE, "path override"),
         GCode(167, "spindle override", spindle=True),
     )
 }

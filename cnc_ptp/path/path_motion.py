@@ -37,6 +37,10 @@ class PathMotion:
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
+        self._override = 1.0
+        self._held = False
+        self._full_override = False
+        """The active motion is one of G166."""
         self._element: Line | Arc | None = None
         self._evaluate: Evaluation | None = None
         """States of the axes on the active element."""
@@ -89,6 +93,7 @@ class PathMotion:
             self._interpolator.dwell(motion.seconds)
             return
         element = self._make_element(motion)
+        self._set_full_override(motion.full_override)
         rapid = isinstance(motion, LinearMove) and motion.rapid
         axis_limits = self._rapid_limits if rapid else self._feed_limits
         steps = (motion.slope or self._default_slope) == STEP
@@ -121,9 +126,19 @@ class PathMotion:
         """A cycle passes in which no motion is active."""
         self._interpolator.step(1, self._cycle_time)
 
-    def set_override(self, override: float) -> None:
-        """Override of the path, 1 is 100 %, 0 is feed hold; acts from the last cycle given out."""
-        self._interpolator.set_override(override)
+    def set_override(self, override: float, *, held: bool) -> None:
+        """Override of the path, 1 is 100 %; acts from the last cycle given out.
+
+        `held` (feed hold, feed release) comes with 0 and stops a motion of G166, too.
+        """
+        self._held = held
+        self._override = override
+        self._interpolator.set_override(1.0 if self._full_override and not held else override)
+
+    def _set_full_override(self, full: bool) -> None:
+        if full != self._full_override:
+            self._full_override = full
+            self.set_override(self._override, held=self._held)
 
     def stop(self) -> None:
         """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
@@ -134,6 +149,7 @@ class PathMotion:
         element = self._element
         self.states = standing(element.target if element and self._interpolator.done else self.position)
         self._element = None
+        self._set_full_override(False)
         self.velocity = self.distance_to_go = 0.0
 
     def abandon(self) -> None:

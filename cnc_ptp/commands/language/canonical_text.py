@@ -19,6 +19,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFeedforward,
     SpindleFunction,
     SpindleLink,
+    Timer,
     WaitForPath,
     number,
 )
@@ -40,7 +41,7 @@ def format_block(block: CanonicalBlock) -> str:
 def _function(function: Function) -> str:
     match function:
         case AuxiliaryFunction(letter, code, ""):
-            return f"{letter}{code}"
+            return f"{letter}{code}" + (f"={number(function.value)}" if function.value else "")
         case AuxiliaryFunction(letter, code, spindle):
             return f"{spindle}[{letter}{code}]"
         case SpindleCommand(spindle, command):
@@ -54,6 +55,8 @@ def _function(function: Function) -> str:
             return "wait for MVS_SLP"
         case WaitForPath():
             return "wait for the path"
+        case Timer(action, timer):
+            return f"timer {timer} {action}"
         case Message(text):
             return f"message {text!r}"
         case OrderedError(code, severe, text):
@@ -92,6 +95,7 @@ def _motion(motion: Motion) -> str:
     if isinstance(motion, HomeAxes):
         return "home " + ", then ".join(" ".join(group) for group in motion.groups)
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
+    slope += " G166" if motion.full_override else ""
     if isinstance(motion, LinearMove):
         return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"

@@ -72,7 +72,7 @@ def g_entry(number: int, text: Explanation) -> Entry:
     return Entry(code.name, "G function", text, code.group, modal, code.later)
 
 
-BLOCKWISE = (9, 60, 61)
+BLOCKWISE = (9, 60, 61, 166)
 """Codes without a handler that count for their block alone."""
 
 

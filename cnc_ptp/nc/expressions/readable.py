@@ -12,6 +12,9 @@ from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.values import Scalar, Values
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 
+LAST_TIMER: Final = 127
+"""#TIMER has the timers 0 to 127."""
+
 Units = Sequence[Scalar]
 """The axis, spindle or index of a name, in its order."""
 
@@ -192,6 +195,16 @@ def spindle_position(values: Values, units: Units, column: int) -> Scalar:
     return values.state.spindle.positions.get(spindle_of(values, units[0], column), 0.0)
 
 
+def timer(values: Values, units: Units, column: int) -> Scalar:
+    """0 for one that was never read."""
+    unit = units[0]
+    if isinstance(unit, str) or unit != int(unit) or not 0 <= unit <= LAST_TIMER:
+        shown = unit if isinstance(unit, str) else f"{unit:g}"
+        known = f"0 to {LAST_TIMER}"
+        raise values.fault(faults.UNIT_UNKNOWN, column, kind="timer", unit=shown, known=known)
+    return values.timers.get(int(unit), 0.0)
+
+
 def argument_given(values: Values, units: Units, column: int) -> Scalar:
     number = units[0]
     return 1.0 if isinstance(number, float) and f"P{number:.0f}" in values.arguments else 0.0
@@ -244,6 +257,7 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
         ),
     ),
     "V.G.@P": ((("*", "VALID"), Reading("TRUE if the call gave @P of this number", argument_given)),),
+    "V.G.TIMER": ((("*",), Reading("what #TIMER READ has found, ms", timer)),),
     "V.SPDL_PROG.SPEED": ((("*",), Reading("programmed speed, rpm", spindle_speed)),),
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),
     "V.SPDL_PROG.POSITION": ((("*",), Reading("programmed position, deg", spindle_position)),),

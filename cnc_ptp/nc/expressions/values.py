@@ -94,6 +94,8 @@ class Values:
         """Positions of the axes at the last synchronisation."""
         self.position: tuple[float, ...] = ()
         """Their set positions then, which a homing has changed."""
+        self.timers: dict[int, float] = {}
+        """V.G.TIMER, ms."""
         self.parameters: dict[int, float] = {}
         self.program: dict[str, Variable] = {}
         self.shared: dict[str, Variable] = {}
@@ -110,6 +112,7 @@ class Values:
         """Independent, with the copy of the modal state, so that a refused MDI text changes nothing."""
         other = Values(self.channel, state)
         other.parameters = dict(self.parameters)
+        other.timers = dict(self.timers)
         other.arguments = dict(self.arguments)
         other.program, other.shared = copies(self.program), copies(self.shared)
         other.local, other.cycle = copies(self.local), copies(self.cycle)
