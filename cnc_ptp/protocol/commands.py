@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, nearest_name
 
 BAD_ARGUMENT = 22001
 UNKNOWN_COMMAND = 22002
@@ -217,11 +217,11 @@ def check_command(
     """
     specification = COMMANDS[kind].get(command)
     if specification is None:
-        known = ", ".join(sorted(set(COMMANDS[kind]) - INTERNAL))
+        known = sorted(set(COMMANDS[kind]) - INTERNAL)
         raise CncError(
             UNKNOWN_COMMAND,
-            f"unknown command '{command}'",
-            f"nothing was changed. Known: {known}",
+            f"unknown command '{command}'{nearest_name(command, known)}",
+            f"nothing was changed. Known: {', '.join(known)}",
             where=f"{kind} {unit}",
             command=command,
         )

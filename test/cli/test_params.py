@@ -59,7 +59,7 @@ def test_nothing_found_is_status_2_with_the_nearest_names():
     done = call("params", "slep_mxa")
     assert (done.exit_code, done.stdout) == (2, "")
     assert done.stderr.startswith(
-        "P-ERR-25018 no parameter is called 'slep_mxa', did you mean P-AXIS-00168 getriebe[i].slep_max"
+        "P-ERR-25018 no parameter is called 'slep_mxa'; did you mean P-AXIS-00168 getriebe[i].slep_max"
     )
     assert call("params", "!!").stderr == "P-ERR-25018 no parameter is called '!!'\n"
 

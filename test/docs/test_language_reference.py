@@ -107,4 +107,4 @@ def test_an_explanation(capsys):
 def test_an_unknown_word():
     with pytest.raises(CncError) as refused:
         find("SINUS")
-    assert str(refused.value) == "P-ERR-26123 'SINUS' is no word of the NC language; did you mean SIN, SIGN, ASIN?"
+    assert str(refused.value) == "P-ERR-26123 'SINUS' is no word of the NC language; did you mean SIN or SIGN or ASIN?"

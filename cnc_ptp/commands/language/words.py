@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cnc_ptp import yaml_text
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.nc.canonical import code_name
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.expressions.readable import READABLE, forms
@@ -90,9 +89,8 @@ def find(word: str) -> list[Entry]:
     found = [entry for name, entry in known.items() if name.lstrip("#$") == wanted.lstrip("#$")]
     if found:
         return found
-    close = get_close_matches(wanted, list(known), n=3, cutoff=0.5)
-    nearest = f"; did you mean {', '.join(known[name].name for name in close)}?" if close else ""
-    raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{nearest}")
+    close = did_you_mean([known[name].name for name in nearest(wanted, known, most=3, cutoff=0.5)])
+    raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{close}")
 
 
 def normal(word: str) -> str:

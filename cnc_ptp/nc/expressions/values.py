@@ -1,9 +1,9 @@
 """Values that expressions read and assignments change: P parameters and self-defined variables."""
 
-from difflib import get_close_matches
 from math import floor
 from typing import Final
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.faults import Fault, ProgramError
@@ -37,12 +37,6 @@ def in_words(count: int, singular: str) -> str:
     """1 index, 2 indices."""
     plural = {"index": "indices"}.get(singular, f"{singular}s")
     return f"{count} {singular if count == 1 else plural}"
-
-
-def nearest_name(name: str, known: list[str]) -> str:
-    """The end of an error's text: the name that may have been meant."""
-    close = get_close_matches(name, known, n=1, cutoff=0.6)
-    return f"; did you mean {close[0]}?" if close else ""
 
 
 def shown(value: Scalar) -> str:

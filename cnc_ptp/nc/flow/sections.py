@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
-from cnc_ptp.nc.expressions.values import nearest_name
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Call, Line
