@@ -58,8 +58,8 @@ WHOLE_TEXT = {
 }
 MEANT = {
     "axis": {
-        "power", "reset", "set_override", "stop", "halt", "emergency_stop", "compensation_stop", "external_disable",
-        "set_feedforward", "set_friction_compensation", "set_feed_release",
+        "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
+        "external_disable", "set_feedforward", "set_friction_compensation", "set_feed_release",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
