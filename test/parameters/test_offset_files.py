@@ -175,7 +175,7 @@ ZERO = "zero list, P-ZERO-0000"
         ("np_grp[1].achse[3].versch: 1", f"25006 m.yaml:5:32: {ZERO}3 np_grp[1].achse[3].versch of /ch: there is no axis 3, the channel has 3 axes (X, Y, C), the first one is 0"),
         ("np_grp[1].achse[0].versch: 1.5", f"25007 m.yaml:5:32: {ZERO}3 np_grp[1].achse[0].versch of /ch: value 1.5 is a number, an integer is needed"),
         ("np_grp[1].achse[0].versch: 3000000000", f"25008 m.yaml:5:32: {ZERO}3 np_grp[1].achse[0].versch of /ch: value 3000000000 is above the maximum 2147483647 (0.0001°)"),
-        ("np_grp[1].achse[0].verschiebung: 1", "25005 m.yaml:5:38: channel /ch has no parameter 'np_grp.1.achse.0.verschiebung', did you mean np_grp[i].achse[j].versch (P-ZERO-00003)?"),
+        ("np_grp[1].achse[0].verschiebung: 1", "25005 m.yaml:5:38: channel /ch has no parameter 'np_grp.1.achse.0.verschiebung'; did you mean np_grp[i].achse[j].versch (P-ZERO-00003)?"),
         ("np_grp[0].achse[0].versch: 1", f"25009 m.yaml:5:32: {ZERO}3 np_grp[0].achse[0].versch of /ch: G53 selects no offset; give P-ZERO-00001 (g53_verfuegbar) = 1 if it shall"),
         ("default_index: 97", f"25008 m.yaml:5:20: {ZERO}2 default_index of /ch: value 97 is above the maximum 96"),
         ("pzv_grp[150].achse[0].versatz: 1", "25006 m.yaml:5:36: clamp list, P-CLMP-00001 pzv_grp[150].achse[0].versatz of /ch: index 150 is outside 0 to 149"),
