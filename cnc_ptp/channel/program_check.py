@@ -32,6 +32,7 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
+from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,
@@ -117,6 +118,7 @@ class ProgramCheck:
             self._spindles,
             tolerance,
             ratio,
+            TWINCAT,
             self._rotary,
             channel.offsets,
             self._soft_limits,

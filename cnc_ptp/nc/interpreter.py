@@ -28,10 +28,10 @@ from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_c
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import NO_FILES, parse_all
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, G_CODES
+from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
 from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
 
 CENTRE_OFFSET = 2.0
@@ -82,7 +82,8 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    channel = Channel(axes, index, table, centre_offset, ratio, frozenset(rotary), offsets, soft_limits)
+    vocabulary = program.vocabulary
+    channel = Channel(axes, index, table, centre_offset, ratio, vocabulary, frozenset(rotary), offsets, soft_limits)
     state = ModalState(coordinates=initial_coordinates(channel)) if state is None else state
     state.position = tuple(start)
     refresh(channel, state)
@@ -131,16 +132,18 @@ def _resolve(
     if block.command is not None:
         commanded = block.command.run(channel, state, block, block.command)
         return CanonicalBlock(block.source, commanded, None, "") if commanded else None
-    path = G_CODES[state.path]
+    path: GCode | None = None
     control: tuple[Function, ...] = ()
     moves = True
     for code in block.codes:
         if code.motion is not None:
             path = code
-            if code.modal:
-                state.path = code.number
         elif code.select is not None:
             code.select(state)
+    if path is None:
+        path = channel.vocabulary.paths[state.path]
+    elif path.modal:
+        state.path = path.number
     for code in block.codes:
         if code.prepare is not None:
             code.prepare(channel, state, block, code)
@@ -228,6 +231,7 @@ def check(
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
     limits: Limits = LIMITS,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
@@ -235,7 +239,7 @@ def check(
     error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
     after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
-    program, errors = parse_all(text, file, files=files)
+    program, errors = parse_all(text, file, files=files, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
     homed = False
 

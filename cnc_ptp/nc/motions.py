@@ -10,7 +10,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults, feeds
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
-from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
+from cnc_ptp.nc.spindles import current_main
 
 MM_PER_MIN = 60.0
 
@@ -50,14 +50,14 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
                 state.block_time = value
             else:
                 state.feed = value * unit / MM_PER_MIN
-        elif word not in FUNCTION_WORDS and word not in code.words:
+        elif word not in channel.vocabulary.function_words and word not in code.words:
             raise _unused(channel, block, code, word)
     return target
 
 
 def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
     column = block.source.column(word)
-    if word in "IJKR":
+    if word[0] not in channel.vocabulary.axis_letters:
         return faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
     return faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
 

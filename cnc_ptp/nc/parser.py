@@ -21,7 +21,9 @@ from cnc_ptp.nc.flow.sections import Program, Section
 from cnc_ptp.nc.flow.statements import Declarations
 from cnc_ptp.nc.flow.structures import CLOSING, DIVIDES, OPENED, Place, StructureReader
 from cnc_ptp.nc.lexer import normalise
+from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 MOST_ERRORS: Final = 1000
 """Errors of a file that are kept; the rest is not looked for."""
@@ -43,22 +45,28 @@ def parse_program(
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> Program:
     """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks).
 
     `files`: the texts of the programs that it may call, by name; `library`: such programs that have been read already.
     """
-    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library)
+    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library, vocabulary=vocabulary)
     if errors:
         raise errors[0]
     return program
 
 
 def parse_all(
-    text: str, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES
+    text: str,
+    file: str,
+    *,
+    mdi: bool = False,
+    files: Mapping[str, str] = NO_FILES,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> tuple[Program, list[ProgramError]]:
     """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached."""
-    return parse_text(ProgramText(text), file, mdi=mdi, files=files)
+    return parse_text(ProgramText(text), file, mdi=mdi, files=files, vocabulary=vocabulary)
 
 
 def parse_text(
@@ -68,11 +76,14 @@ def parse_text(
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> tuple[Program, list[ProgramError]]:
     """As parse_all, from memory or from a file."""
-    called = {name.upper(): Program(name, ProgramText(content), read_line) for name, content in files.items()}
+    called = {
+        name.upper(): Program(name, ProgramText(content), read_line, vocabulary) for name, content in files.items()
+    }
     known = {**(library or {}), **called}
-    program = Program(file, text, read_line)
+    program = Program(file, text, read_line, vocabulary)
     errors: list[ProgramError] = []
     with paused_collector():
         for each in (program, *called.values()):
@@ -103,7 +114,7 @@ class _Reader:
         number, offset = 1, 0
         program = self.program
         while offset >= 0 and len(self.errors) < MOST_ERRORS:
-            line = read_line(program.file, program.text, number, offset)
+            line = read_line(program.file, program.text, number, offset, program.vocabulary)
             if self.opened is None:
                 self._line(line, offset)
             else:

@@ -1,14 +1,16 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
+
+MAX_M: Final = 999
 
 
 class GCode(NamedTuple):
@@ -38,6 +40,11 @@ class GCode(NamedTuple):
     later: str = ""
 
     @property
+    def is_plain(self) -> bool:
+        """A line with this code may be read by the fast method."""
+        return not (self.spindle or self.valued or self.later)
+
+    @property
     def name(self) -> str:
         """As printed in programs and errors: G01, G161."""
         return code_name("G", self.number)
@@ -58,6 +65,50 @@ class MCode(NamedTuple):
     def name(self) -> str:
         """As printed in programs and errors: M03, M130."""
         return code_name("M", self.number)
+
+
+class Vocabulary:
+    """The tables of one language: `twincat` is nc/vocabulary.py.
+
+    g_codes         rows by number
+    m_codes         rows of M functions with a meaning of their own; those without go to the PLC
+    paths           rows of the modal path functions, by the number that ModalState.path holds
+    axis_letters    with which names of axes begin
+    value_words     letters with a number and a meaning of their own
+    function_words  those of them that are functions for spindles and PLC
+    plain_codes     G codes whose lines the fast method may read, by number
+    plain_words     letters of such lines that are no codes
+    """
+
+    def __init__(
+        self,
+        name: str,
+        g_codes: "Sequence[GCode]",
+        m_codes: "Sequence[MCode]",
+        *,
+        axis_letters: frozenset[str],
+        value_words: frozenset[str],
+        function_words: frozenset[str],
+        free_m: "Callable[[Channel, ModalState, NcBlock, MCode], Function]",
+    ) -> None:
+        self.name = name
+        self.g_codes = {float(code.number): code for code in g_codes}
+        self.m_codes = {code.number: code for code in m_codes}
+        self.paths = {code.number: code for code in g_codes if code.motion is not None and code.modal}
+        self.axis_letters, self.value_words, self.function_words = axis_letters, value_words, function_words
+        self.plain_codes = {number: code for number, code in self.g_codes.items() if code.is_plain}
+        self.plain_words = value_words | axis_letters
+        self._free_m = free_m
+
+    def m_code(self, number: int) -> "MCode | None":
+        """Row of an M function: its own, that of a free function, or None if there is no such function.
+
+        M40 to M45 are free functions too, as long as P-CHAN-00052 does not make them select gears.
+        """
+        known = self.m_codes.get(number)
+        if known is not None or not 0 <= number <= MAX_M:
+            return known
+        return MCode(number, f"M{number}", "", self._free_m)
 
 
 class SpindleWords(NamedTuple):
@@ -160,7 +211,7 @@ class HashCommand(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio).
+    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
     `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
     empty for none.
@@ -171,6 +222,7 @@ class Channel(NamedTuple):
     table: SpindleTable
     centre_offset: float
     centre_offset_ratio: float
+    vocabulary: Vocabulary
     rotary: frozenset[str] = frozenset()
     offsets: OffsetTables = NO_OFFSET_TABLES
     soft_limits: tuple[tuple[float, float], ...] = ()

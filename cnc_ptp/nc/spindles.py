@@ -28,7 +28,6 @@ from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
 M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
-FUNCTION_WORDS: Final[frozenset[str]] = frozenset("STDH")
 MOST_AXES: Final = 32
 """Of a channel."""
 
@@ -75,7 +74,7 @@ def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> 
                 words: dict[str, Value] = {"value": number(value), "limit": MOST_AXES}
                 raise spindle_faults.HOMING_ORDER.at(block.source, block.source.column(word), word=word, **words)
             orders.setdefault(value, []).append(word)
-        elif word not in FUNCTION_WORDS:
+        elif word not in channel.vocabulary.function_words:
             raise faults.WORD_NOT_USED.at(block.source, block.source.column(word), word=word, g=code.name)
     if orders:
         return HomeAxes(tuple([tuple(orders[order]) for order in sorted(orders)]))

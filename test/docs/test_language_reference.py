@@ -14,7 +14,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.statement_reader import KEYWORDS
 from cnc_ptp.nc.flow.structures import CLOSING
 from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
-from cnc_ptp.nc.vocabulary import G_CODES, M_CODES, VALUE_WORDS
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 DOCS = HERE.parents[1] / "docs"
 TEXTS = explanations()
@@ -41,9 +41,9 @@ def test_document_is_up_to_date():
 
 
 def test_every_word_has_a_text_and_no_text_is_left_over():
-    assert set(TEXTS["G function"]) == set(G_CODES)
-    assert set(TEXTS["M function"]) == set(M_CODES)
-    assert set(VALUE_WORDS) <= set(TEXTS["word"])
+    assert set(TEXTS["G function"]) == set(TWINCAT.g_codes)
+    assert set(TEXTS["M function"]) == set(TWINCAT.m_codes)
+    assert set(TWINCAT.value_words) <= set(TEXTS["word"])
     ends = {"ENDVAR", "COMMENT END"}
     assert set(TEXTS["command"]) == (set(COMMANDS) | set(STATEMENTS)) - ends
     divided = " ".join(row.syntax for row in TEXTS["control statement"].values())
@@ -72,7 +72,7 @@ def test_every_example_is_a_program(entry):
     run(f"{before}{text}\nM30", files=FILES)
 
 
-@pytest.mark.parametrize("number", [number for number, code in G_CODES.items() if code.later])
+@pytest.mark.parametrize("number", [code.number for code in TWINCAT.g_codes.values() if code.later])
 def test_what_comes_later_is_refused_and_explained(number, capsys):
     with pytest.raises(ProgramError, match=f"G{number} is not available yet"):
         run(f"G{number}")

@@ -10,7 +10,7 @@ from typing import Any
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.flow.statement_reader import KEYWORDS
 from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 
 def alternatives(words: list[str]) -> str:
@@ -21,7 +21,9 @@ def alternatives(words: list[str]) -> str:
 
 def grammar() -> dict[str, Any]:
     """The TextMate grammar; VS Code, Sublime Text and others read it."""
-    codes = alternatives([str(number) for number in G_CODES] + [str(number) for number in range(80, 90)])
+    codes = alternatives(
+        [str(code.number) for code in TWINCAT.g_codes.values()] + [str(number) for number in range(80, 90)]
+    )
     commands = alternatives([*COMMANDS, *STATEMENTS])
     rules = [
         ("comment.line.semicolon.nc", ";.*$"),

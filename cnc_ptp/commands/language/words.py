@@ -11,7 +11,7 @@ from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.nc.canonical import code_name
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.expressions.readable import READABLE, forms
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 UNKNOWN_WORD = 26123
 
@@ -44,7 +44,7 @@ def explanations() -> dict[str, dict[Any, Explanation]]:
 def entries() -> list[Entry]:
     """All words in the order of the reference."""
     texts = explanations()
-    found = [g_entry(number, texts["G function"][number]) for number in sorted(G_CODES)]
+    found = [g_entry(number, texts["G function"][number]) for number in sorted(texts["G function"])]
     found += [Entry(code_name("M", number), "M function", text) for number, text in texts["M function"].items()]
     for kind in ("word", "control statement"):
         found += [Entry(name, kind, text) for name, text in texts[kind].items()]
@@ -66,7 +66,7 @@ def readable_entry(name: str) -> Entry:
 
 
 def g_entry(number: int, text: Explanation) -> Entry:
-    code = G_CODES[number]
+    code = TWINCAT.g_codes[number]
     modal = code.modal and not (code.function is not None or code.spindle or number in BLOCKWISE)
     return Entry(code.name, "G function", text, code.group, modal, code.later)
 
