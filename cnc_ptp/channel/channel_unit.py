@@ -24,7 +24,8 @@ from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import Pairs
+from cnc_ptp.nc.program import Pairs, Vocabulary
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
@@ -85,6 +86,8 @@ class ChannelUnit(Unit):
         self._sequence = ProgramSequence(self._motion, functions, nodes, homing, Timers(cycle_time))
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
+        self._vocabulary = self._check.vocabulary
+        """That of the last load; manual blocks are read in it."""
         self._program: Program | None = None
         self._library: Mapping[str, Program] = {}
         """The programs that the loaded one may call; manual blocks may call them, too."""
@@ -115,9 +118,9 @@ class ChannelUnit(Unit):
         """The state in which a program starts."""
         return self._check.state(feedback, self._links, self._shared, self._offsets.changes, self._offsets.clamp_index)
 
-    def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES) -> None:
+    def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
-        parsed = parse_program(text, program, files=files)
+        parsed = parse_program(text, program, files=files, vocabulary=self._vocabulary_of(dialect))
         state = self._initial_state(self._feedback)
         before = state.copy()
         known = self._check.known_ahead(parsed, self._motion.position, state)
@@ -126,19 +129,33 @@ class ChannelUnit(Unit):
     # commands
 
     def do_load(
-        self, cycle: int, *, program: str, text: str | None = None, files: Mapping[str, str] = NO_FILES
+        self,
+        cycle: int,
+        *,
+        program: str,
+        text: str | None = None,
+        files: Mapping[str, str] = NO_FILES,
+        dialect: str | None = None,
     ) -> None:
-        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
+        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009.
+
+        `dialect`: its vocabulary, also of the manual blocks behind it; None: that of the machine file.
+        """
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'", program=program)
-        prepared = self._prepared
-        if prepared is not None and (prepared.text, prepared.files, prepared.program.file) == (text, files, program):
+        prepared, vocabulary = self._prepared, self._vocabulary_of(dialect)
+        if prepared is not None and prepared.is_of(text, files, program, vocabulary):
             self._program = prepared.program
         else:
-            self._program = parse_program(text, program, files=files)
+            self._program = parse_program(text, program, files=files, vocabulary=vocabulary)
+        if vocabulary is not self._vocabulary:
+            self._vocabulary, self._state = vocabulary, self._check.state({}, self._links, self._shared)
         self._library = self._program.library
         self._sequence.source = NO_SOURCE
+
+    def _vocabulary_of(self, dialect: str | None) -> Vocabulary:
+        return self._check.vocabulary if dialect is None else VOCABULARIES[dialect]
 
     def do_start(self, cycle: int) -> None:
         """Starts the program, which is interpreted as a whole first; or resumes it after M00 or in single block."""
@@ -156,7 +173,8 @@ class ChannelUnit(Unit):
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        self._begin(cycle, "mdi", parse_program(text, "mdi", mdi=True, library=self._library), state)
+        program = parse_program(text, "mdi", mdi=True, library=self._library, vocabulary=self._vocabulary)
+        self._begin(cycle, "mdi", program, state)
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
         """A value (mm, deg) of a zero offset; it counts when the offset is selected next."""

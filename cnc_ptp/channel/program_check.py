@@ -30,9 +30,9 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret
-from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
-from cnc_ptp.nc.vocabulary import TWINCAT
+from cnc_ptp.nc.parser import NO_FILES, parse_all
+from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,
@@ -90,6 +90,11 @@ class PreparedProgram(NamedTuple):
     at_end: ProgramState
     known: KnownBlocks
 
+    def is_of(self, text: str, files: Mapping[str, str], file: str, vocabulary: Vocabulary) -> bool:
+        """Whether a load with these arguments means this program."""
+        same = (self.text, self.files, self.program.file) == (text, files, file)
+        return same and self.program.vocabulary is vocabulary
+
 
 class ProgramCheck:
     """Checks a program against a machine: soft limits, speeds that the spindles reach, M functions it knows."""
@@ -111,6 +116,8 @@ class ProgramCheck:
         ratio = channel.circle_center_ratio
         self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
         tolerance = channel.circle_center_tolerance
+        self.vocabulary = VOCABULARIES[channel.dialect]
+        """That of the machine file."""
         self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
         self.nc = Channel(
             self._axis_names,
@@ -118,7 +125,7 @@ class ProgramCheck:
             self._spindles,
             tolerance,
             ratio,
-            TWINCAT,
+            self.vocabulary,
             self._rotary,
             channel.offsets,
             self._soft_limits,
@@ -133,7 +140,9 @@ class ProgramCheck:
             raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
         return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
 
-    def errors(self, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> list[ProgramError]:
+    def errors(
+        self, text: str, file: str, files: Mapping[str, str] = NO_FILES, vocabulary: Vocabulary | None = None
+    ) -> list[ProgramError]:
         """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
         return check(
             text,
@@ -149,11 +158,12 @@ class ProgramCheck:
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             limits=self._limits,
-        ) or self._function_errors(text, file, files)
+            vocabulary=vocabulary or self.vocabulary,
+        ) or self._function_errors(parse_all(text, file, files=files, vocabulary=vocabulary or self.vocabulary)[0])
 
-    def _function_errors(self, text: str, file: str, files: Mapping[str, str]) -> list[ProgramError]:
+    def _function_errors(self, program: Program) -> list[ProgramError]:
         try:
-            self.blocks(parse_program(text, file, files=files), self.start)
+            self.blocks(program, self.start)
         except ProgramError as error:
             return [error]
         return []

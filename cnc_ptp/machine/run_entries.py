@@ -10,16 +10,23 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.machine.program_files import called_programs, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.parser import NO_FILES, parse_program
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.protocol.blocks import Command
 
 
 def read_entries(
-    machine: MachineParameters, *, program: str | None, scenario: str | None, may_be_empty: bool = False
+    machine: MachineParameters,
+    *,
+    program: str | None,
+    scenario: str | None,
+    may_be_empty: bool = False,
+    dialect: str | None = None,
 ) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
+    `dialect`: vocabulary of `program`; None: that of the machine file.
     `may_be_empty`: a scenario may have no entries. Loads carry the text of their program; a path in a scenario,
     relative to its file, becomes one relative to the working directory.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
@@ -27,9 +34,9 @@ def read_entries(
     entries: list[Entry] = []
     if program is not None:
         text, files = read_program(program, program_folders(machine))
-        check_program(machine, text, program, files)
+        check_program(machine, text, program, files, dialect)
         channel = next(iter(machine.channels))
-        entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files))))
+        entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))
         entries.append(Entry(0.0, Command(channel, "start", {})))
     if scenario is not None:
         folder = Path(scenario).parent
@@ -47,15 +54,23 @@ def read_entries(
     return sorted(entries, key=lambda entry: entry.at)
 
 
-def check_program(machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> None:
+def check_program(
+    machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None
+) -> None:
     """Interprets a program for the first channel as started from the start positions. Raises ProgramError, 26112."""
     check = ProgramCheck.of_first_channel(machine, file)
-    check.blocks(parse_program(text, file, files=files), check.start)
+    vocabulary = check.vocabulary if dialect is None else VOCABULARIES[dialect]
+    check.blocks(parse_program(text, file, files=files, vocabulary=vocabulary), check.start)
 
 
-def load_arguments(program: str, text: str, files: Mapping[str, str]) -> dict[str, Any]:
+def load_arguments(program: str, text: str, files: Mapping[str, str], dialect: str | None = None) -> dict[str, Any]:
     """Arguments of the command `load`."""
-    return {"program": program, "text": text, **({"files": dict(files)} if files else {})}
+    arguments: dict[str, Any] = {"program": program, "text": text}
+    if files:
+        arguments["files"] = dict(files)
+    if dialect is not None:
+        arguments["dialect"] = dialect
+    return arguments
 
 
 def program_folders(machine: MachineParameters, channel: str = "") -> tuple[str, ...]:

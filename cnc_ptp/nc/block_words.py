@@ -48,7 +48,7 @@ class BlockWords:
         elif token.name == "N":
             integer(token, self.source, MAX_BLOCK_NUMBER)
             raise faults.BLOCK_NUMBER_PLACE.at(self.source, token.column, word=token.shown)
-        elif token.name in self.vocabulary.plain_words:
+        elif token.name in self.vocabulary.words:
             self._value(token)
         else:
             raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)

@@ -23,6 +23,8 @@ from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.flow.statement_reader import read_statement
 from cnc_ptp.nc.flow.statements import Assignment, Assignments
 from cnc_ptp.nc.hash_commands import hash_line
+from cnc_ptp.nc.iso.lines import iso_line
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.lexer import SKIP, Token, TokenReader, normalise, places, plain_words
 from cnc_ptp.nc.program import GCode, MCode, NcBlock, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
@@ -45,6 +47,7 @@ def plain_block(file: str, line: int, text: str, vocabulary: Vocabulary) -> NcBl
     if not names:
         return None
     plain, function_words = vocabulary.plain_words, vocabulary.function_words
+    plain_codes, plain_names = vocabulary.plain_codes, vocabulary.plain_names
     codes: tuple[GCode, ...] = ()
     words: dict[str, float] = {}
     functions = False
@@ -58,11 +61,11 @@ def plain_block(file: str, line: int, text: str, vocabulary: Vocabulary) -> NcBl
             if letter in function_words:
                 functions = True
         elif letter == "G":
-            code = vocabulary.plain_codes.get(value)
+            code = plain_codes.get(value)
             if code is None or (codes and any(code.group == other.group for other in codes)):
                 return None
             codes += (code,)
-            names[index] = code.name
+            names[index] = plain_names[value]
         elif letter == "N" and index == 0 and value >= 0.0 and value == int(value):
             block_number = int(value)
         else:
@@ -76,12 +79,14 @@ def read_line(file: str, text: ProgramText, number: int, offset: int, vocabulary
     content, next_offset = text.line_at(offset)
     content = content.rstrip()
     next_number = number + 1
-    block = plain_block(file, number, content, vocabulary) if len(content) <= LONGEST_BLOCK else None
+    is_iso = vocabulary is ISO
+    plain = len(content) <= LONGEST_BLOCK and not (is_iso and "=" in content)
+    block = plain_block(file, number, content, vocabulary) if plain else None
     if block is not None:
         line = Line(number, block.source, next_number, next_offset)
         line.block = block
         return line
-    while continues(content) and next_offset >= 0 and len(content) <= LONGEST_BLOCK:
+    while not is_iso and continues(content) and next_offset >= 0 and len(content) <= LONGEST_BLOCK:
         more, next_offset = text.line_at(next_offset)
         content = content[:-1] + " " + more.rstrip()
         next_number += 1
@@ -93,7 +98,9 @@ def read_line(file: str, text: ProgramText, number: int, offset: int, vocabulary
         if len(content) > LONGEST_BLOCK:
             shown = source._replace(text=content[:SHOWN])
             raise flow_faults.LINE_TOO_LONG.at(shown, LONGEST_BLOCK + 1, length=len(content), limit=LONGEST_BLOCK)
-        if content.lstrip().startswith("%"):
+        if is_iso:
+            iso_line(line)
+        elif content.lstrip().startswith("%"):
             line.header = True
         else:
             careful_line(line)

@@ -11,13 +11,14 @@ MAX_H = 65_535
 
 def block_functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Function, ...]:
     """All functions of a block in the order T, D, main spindle, other spindles, M, H; keeps speeds in the state."""
-    functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in "TD" if letter in block.words]
+    words = channel.vocabulary.function_words & block.words.keys()
+    functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in "TD" if letter in words]
     functions += spindle_functions(channel, state, block)
     gear_change = channel.table.gear_change
     for code in block.m:
         if code.handler is not None and not (gear_change and code.number in gears.GEAR_M):
             functions.append(code.handler(channel, state, block, code))
-    if "H" in block.words:
+    if "H" in words:
         functions.append(number_function(block, "H", MAX_H))
     return tuple(functions)
 

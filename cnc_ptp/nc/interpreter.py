@@ -16,7 +16,7 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
 )
 from cnc_ptp.nc.controls import bracketed_controls
-from cnc_ptp.nc.coordinates.codes import initial_coordinates
+from cnc_ptp.nc.coordinates.codes import initial_coordinates, select_offset
 from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
@@ -28,7 +28,7 @@ from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_c
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import NO_FILES, parse_all
-from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Vocabulary
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
@@ -88,6 +88,8 @@ def interpret(
     state.position = tuple(start)
     refresh(channel, state)
     state.reported = True
+    if vocabulary.first_offset and not state.coordinates.own.zero_index:
+        select_offset(channel, state, vocabulary.first_offset)
     if values is None:
         values = Values(channel, state)
     else:
@@ -109,8 +111,11 @@ def interpret(
             canonical = _resolve(channel, state, block, check_target)
             motion = None if canonical is None else canonical.motion
             execution.moved = isinstance(motion, (LinearMove, CircularMove))
-            if canonical is not None:
-                yield canonical if state.reported else _with_offsets(channel, state, canonical)
+            if state.following is not None:
+                steps, state.following = state.following, None
+                yield from _followed(channel, state, block, canonical, steps, check_target)
+            elif canonical is not None:
+                yield _reported(channel, state, canonical)
                 if isinstance(motion, HomeAxes) and values.position:
                     state.position = values.position
                     refresh(channel, state)
@@ -133,17 +138,21 @@ def _resolve(
         commanded = block.command.run(channel, state, block, block.command)
         return CanonicalBlock(block.source, commanded, None, "") if commanded else None
     path: GCode | None = None
+    modal = -1
     control: tuple[Function, ...] = ()
     moves = True
     for code in block.codes:
         if code.motion is not None:
-            path = code
-        elif code.select is not None:
+            if code.modal:
+                modal = code.number
+            if path is None or not code.modal:
+                path = code
+        if code.select is not None:
             code.select(state)
+    if modal >= 0:
+        state.path = modal
     if path is None:
         path = channel.vocabulary.paths[state.path]
-    elif path.modal:
-        state.path = path.number
     for code in block.codes:
         if code.prepare is not None:
             code.prepare(channel, state, block, code)
@@ -158,24 +167,8 @@ def _resolve(
         functions = block_functions(channel, state, block)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
-    if isinstance(motion, (LinearMove, CircularMove)):
-        programmed = motion.target
-        motion = timed(channel, state, place(channel, state, block, motion))
-        if motion.target == state.position and not isinstance(motion, CircularMove):
-            motion = None
-            state.programmed = programmed
-        else:
-            if check_target is not None:
-                _check_move(state.position, motion, block.source, check_target)
-            if state.coordinates.limits:
-                check_limits(channel, state, block, motion)
-            if state.slope:
-                motion = motion._replace(slope=state.slope)
-            if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
-                motion = motion._replace(full_override=True)
-            if state.spindle.speedless:
-                _require_speed(state, motion)
-            state.position, state.programmed = motion.target, programmed
+    if motion is not None:
+        motion = _moved(channel, state, block, motion, check_target)
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":
         _require_speed(state, None)
@@ -183,6 +176,60 @@ def _resolve(
     if motion is None and not functions and not stop:
         return None
     return CanonicalBlock(block.source, functions, motion, stop)
+
+
+def _moved(
+    channel: Channel, state: ModalState, block: NcBlock, motion: Motion, check_target: CheckTarget | None
+) -> Motion | None:
+    """A motion in machine coordinates, checked; the state is at its end then. None if it goes nowhere."""
+    if not isinstance(motion, (LinearMove, CircularMove)):
+        return motion
+    programmed = motion.target
+    motion = timed(channel, state, place(channel, state, block, motion))
+    if motion.target == state.position and not isinstance(motion, CircularMove):
+        state.programmed = programmed
+        return None
+    if check_target is not None:
+        _check_move(state.position, motion, block.source, check_target)
+    if state.coordinates.limits:
+        check_limits(channel, state, block, motion)
+    if state.slope:
+        motion = motion._replace(slope=state.slope)
+    if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
+        motion = motion._replace(full_override=True)
+    if state.spindle.speedless:
+        _require_speed(state, motion)
+    state.position, state.programmed = motion.target, programmed
+    return motion
+
+
+def _followed(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    first: CanonicalBlock | None,
+    steps: Iterator[Step],
+    check_target: CheckTarget | None,
+) -> Iterator[CanonicalBlock]:
+    """A block and its further motions (cycles, G28); what stops the program comes behind the last one."""
+    stop = "" if first is None else first.stop
+    if first is not None and (first.functions or first.motion is not None):
+        yield _reported(channel, state, first._replace(stop=""))
+    for step in steps:
+        if step.machine:
+            state.frame, state.programmed = None, state.position
+        motion = None if step.motion is None else _moved(channel, state, block, step.motion, check_target)
+        if motion is not None or step.functions:
+            yield _reported(channel, state, CanonicalBlock(block.source, step.functions, motion, ""))
+    reported = state.reported
+    refresh(channel, state)
+    state.reported = reported
+    if stop:
+        yield _reported(channel, state, CanonicalBlock(block.source, (), None, stop))
+
+
+def _reported(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
+    return block if state.reported else _with_offsets(channel, state, block)
 
 
 def awaits_path(block: CanonicalBlock) -> bool:

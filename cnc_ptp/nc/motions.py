@@ -12,8 +12,6 @@ from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 from cnc_ptp.nc.spindles import current_main
 
-MM_PER_MIN = 60.0
-
 
 class Plane(NamedTuple):
     """Main plane: first and second axis, and the words for the centre along them."""
@@ -46,11 +44,10 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
         elif word == "F":
             if value < 0.0:
                 raise faults.FEED_NEGATIVE.at(block.source, block.source.column("F"), value=number(value))
-            if state.feed_mode == feeds.TIME:
-                state.block_time = value
-            else:
-                state.feed = value * unit / MM_PER_MIN
+            feeds.note(state, value)
         elif word not in channel.vocabulary.function_words and word not in code.words:
+            if any(word in other.words for other in block.codes):
+                continue
             raise _unused(channel, block, code, word)
     return target
 

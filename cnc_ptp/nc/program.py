@@ -1,6 +1,6 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
@@ -22,7 +22,7 @@ class GCode(NamedTuple):
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
     `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path. `prepare` changes
     the coordinates before the motion of its block; `valued`: it takes a value (G159=2). `later`: what it stands for is
-    not built yet, so it is refused when the program is read.
+    not built yet, so it is refused when the program is read. `minor`: digit behind the point (G54.1).
     """
 
     number: int
@@ -38,6 +38,12 @@ class GCode(NamedTuple):
     prepare: "Callable[[Channel, ModalState, NcBlock, GCode], None] | None" = None
     valued: bool = False
     later: str = ""
+    minor: int = 0
+
+    @property
+    def key(self) -> float:
+        """The number as it is written: 54.1 is `number` 54, `minor` 1."""
+        return float(f"{self.number}.{self.minor}")
 
     @property
     def is_plain(self) -> bool:
@@ -46,8 +52,9 @@ class GCode(NamedTuple):
 
     @property
     def name(self) -> str:
-        """As printed in programs and errors: G01, G161."""
-        return code_name("G", self.number)
+        """As printed in programs and errors: G01, G161, G54.1."""
+        name = code_name("G", self.number)
+        return f"{name}.{self.minor}" if self.minor else name
 
 
 class MCode(NamedTuple):
@@ -68,16 +75,19 @@ class MCode(NamedTuple):
 
 
 class Vocabulary:
-    """The tables of one language: `twincat` is nc/vocabulary.py.
+    """The tables of one language: `twincat` is nc/vocabulary.py, `iso` nc/iso/vocabulary.py.
 
-    g_codes         rows by number
+    g_codes         rows by number (54.1)
     m_codes         rows of M functions with a meaning of their own; those without go to the PLC
     paths           rows of the modal path functions, by the number that ModalState.path holds
     axis_letters    with which names of axes begin
     value_words     letters with a number and a meaning of their own
     function_words  those of them that are functions for spindles and PLC
+    words           letters of words that are no codes
     plain_codes     G codes whose lines the fast method may read, by number
-    plain_words     letters of such lines that are no codes
+    plain_names     their names
+    plain_words     `words` without those that need the careful one
+    first_offset    zero offset that is on at the start, 0: none
     """
 
     def __init__(
@@ -90,14 +100,22 @@ class Vocabulary:
         value_words: frozenset[str],
         function_words: frozenset[str],
         free_m: "Callable[[Channel, ModalState, NcBlock, MCode], Function]",
+        careful_words: frozenset[str] = frozenset(),
+        further_paths: "Sequence[GCode]" = (),
+        first_offset: int = 0,
     ) -> None:
         self.name = name
-        self.g_codes = {float(code.number): code for code in g_codes}
+        self.g_codes = {code.key: code for code in g_codes}
         self.m_codes = {code.number: code for code in m_codes}
-        self.paths = {code.number: code for code in g_codes if code.motion is not None and code.modal}
+        self.paths = {
+            code.number: code for code in (*further_paths, *g_codes) if code.motion is not None and code.modal
+        }
         self.axis_letters, self.value_words, self.function_words = axis_letters, value_words, function_words
         self.plain_codes = {number: code for number, code in self.g_codes.items() if code.is_plain}
-        self.plain_words = value_words | axis_letters
+        self.plain_names = {code.key: code.name for code in self.plain_codes.values()}
+        self.words = value_words | axis_letters
+        self.plain_words = self.words - careful_words
+        self.first_offset = first_offset
         self._free_m = free_m
 
     def m_code(self, number: int) -> "MCode | None":
@@ -210,6 +228,36 @@ class HashCommand(NamedTuple):
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
+class Step(NamedTuple):
+    """A further motion of a block, in programmed or in `machine` coordinates, with functions before it."""
+
+    motion: Motion | None
+    functions: tuple[Function, ...] = ()
+    machine: bool = False
+
+
+class Drilling(NamedTuple):
+    """Numbers of the drilling cycles of the vocabulary iso that stay from block to block.
+
+    to_r      G99: back to the retract plane
+    running   a cycle is on, in the plane `plane`
+    initial   position of the drill axis before it, mm
+    r, z      levels of the retract plane and of the bottom, mm; q peck depth, mm; p dwell, s; None: not programmed
+    """
+
+    to_r: bool = False
+    running: bool = False
+    plane: int = 17
+    initial: float = 0.0
+    r: float | None = None
+    z: float | None = None
+    q: float | None = None
+    p: float | None = None
+
+
+NO_DRILLING: Final = Drilling()
+
+
 class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
@@ -275,7 +323,8 @@ class ModalState:
     `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to. `reported`: the canonical stream has them.
+    `coordinates` amount to. `reported`: the canonical stream has them. `path_tolerance`: that of G64, mm; None: exact
+    stop. `following`: further motions of a block while it is resolved.
     """
 
     position: tuple[float, ...] = ()
@@ -294,6 +343,9 @@ class ModalState:
     frame: Frame | None = None
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
+    drilling: Drilling = NO_DRILLING
+    path_tolerance: float | None = None
+    following: Iterator[Step] | None = None
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""

@@ -107,7 +107,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> li
 def _words(channel: Channel, state: ModalState, block: NcBlock) -> Iterator[tuple[SpindleWords, str]]:
     """The words of each spindle with the word that errors point at; DIN words together as those of the main spindle."""
     main_name = channel.table.main_name
-    own = [words for words in block.spindles if words.din and words.name == main_name]
+    own = [words for words in block.spindles if words.din and words.name in (main_name, "")]
     m_code = next((code for code in block.m if code.group == "spindle"), None)
     positioning = any(code.number == 19 for code in block.m)
     g_codes = [code.number for code in block.codes if code.spindle]

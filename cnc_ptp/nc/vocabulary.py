@@ -1,4 +1,4 @@
-"""The language as data: G codes with their modal groups, M codes, words. A new code needs a new row and its handler.
+"""The vocabulary `twincat`: G codes with their modal groups, M codes, words. A new code is a new row with its handler.
 
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """
@@ -10,25 +10,31 @@ from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 
 
-def _plane(number: int) -> GCode:
+def plane(number: int) -> GCode:
+    """G17 to G19."""
+
     def select(state: ModalState) -> None:
         state.plane = number
 
     return GCode(number, "plane", select=select)
 
 
-def _dimension(number: int, absolute: bool) -> GCode:
+def dimension(number: int, absolute: bool) -> GCode:
+    """G90, G91."""
+
     def select(state: ModalState) -> None:
         state.absolute = absolute
 
     return GCode(number, "dimensions", select=select)
 
 
-def _centre(number: int, absolute: bool) -> GCode:
+def centre(number: int, absolute: bool, minor: int = 0) -> GCode:
+    """I, J, K as positions or as distances from the start."""
+
     def select(state: ModalState) -> None:
         state.centre_absolute = absolute
 
-    return GCode(number, "circle centre", select=select)
+    return GCode(number, "circle centre", select=select, minor=minor)
 
 
 FULL_OVERRIDE: Final = 166
@@ -41,16 +47,16 @@ _G_CODES = (
     GCode(2, "path", motion=motions.circular, words=_ARC_WORDS),
     GCode(3, "path", motion=motions.circular, words=_ARC_WORDS),
     GCode(4, "path", motion=motions.dwell, modal=False, own_words=True),
-    _plane(17),
-    _plane(18),
-    _plane(19),
+    plane(17),
+    plane(18),
+    plane(19),
     GCode(feedforward.ON, feedforward.SELECTION, function=feedforward.block_function),
     GCode(feedforward.WEIGHTS, "feedforward weights", function=feedforward.block_function, takes_axes=True),
     GCode(feedforward.OFF, feedforward.SELECTION, function=feedforward.block_function),
-    _dimension(90, True),
-    _dimension(91, False),
-    _centre(161, True),
-    _centre(162, False),
+    dimension(90, True),
+    dimension(91, False),
+    centre(161, True),
+    centre(162, False),
     GCode(9, "block end"),
     GCode(20, "mirror", prepare=codes.mirror),
     GCode(21, "mirror", prepare=codes.mirror),

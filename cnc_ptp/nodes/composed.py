@@ -111,7 +111,7 @@ def unit_nodes(machine: MachineParameters, options: RunOptions, **of_nodes: Any)
     nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
-            entries = read_entries(machine, program=options.program, scenario=options.scenario)
+            entries = read_entries(machine, program=options.program, scenario=options.scenario, dialect=options.dialect)
             idle_ends = options.duration is None and not options.stay
             nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **of_nodes))
         else:

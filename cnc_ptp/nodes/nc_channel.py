@@ -29,12 +29,20 @@ class ChannelNode(UnitNode):
     Action: /<channel>/run_program (RunProgram); cancel = reset.
     """
 
-    def __init__(self, machine: MachineParameters, name: str, *, program: str | None = None, **options: Any) -> None:
-        """`program`: a file that the PLC will load first; it is interpreted here, before the clock starts."""
+    def __init__(
+        self,
+        machine: MachineParameters,
+        name: str,
+        *,
+        program: str | None = None,
+        dialect: str | None = None,
+        **options: Any,
+    ) -> None:
+        """`program`: a file that the PLC will load first, in `dialect`; it is interpreted before the clock starts."""
         node_command_line.require_unit(machine, name, ["channel"])
         unit = build_unit(machine, name)
         if program is not None and isinstance(unit, ChannelUnit):
-            unit.prepare(program, *read_program(program, machine.channels[name].folders))
+            unit.prepare(program, *read_program(program, machine.channels[name].folders), dialect)
         self._folders = machine.channels[name].folders
         super().__init__(machine, unit, **options)
 
@@ -66,7 +74,9 @@ class ChannelNode(UnitNode):
                 text, files = read_program(path, self._folders)
             except CncError as error:
                 return self.refuse(command, error.number, error.reason)
-            command = Command(self.unit.name, "load", load_arguments(path, text, files))
+            command = Command(
+                self.unit.name, "load", load_arguments(path, text, files, command.arguments.get("dialect"))
+            )
         return super().command(command)
 
     def complete_commands(self, block: PlcBlock) -> None:
@@ -109,7 +119,8 @@ def program_result(block: CycleBlock, result: Any) -> bool | None:
 
 
 PROGRAM = click.Option(["--program"], help="NC program that will be loaded first: interpreted before the clock starts.")
-main = node_command_line.unit_main(ChannelNode, "NC channel", PROGRAM)
+DIALECT = click.Option(["--dialect"], type=click.Choice(("twincat", "iso")), help="Vocabulary of --program.")
+main = node_command_line.unit_main(ChannelNode, "NC channel", PROGRAM, DIALECT)
 
 if __name__ == "__main__":
     main()

@@ -42,6 +42,7 @@ ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
+DIALECT = Argument("text", required=False, choices=("twincat", "iso"))
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
 """Source of a spindle command: the name of a channel, or plc for the PLC's own commands."""
@@ -151,7 +152,12 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "upstream_lost": SOURCE,
     },
     "channel": {
-        "load": {"program": TEXT, "text": OPTIONAL_TEXT, "files": Argument("files", required=False)},
+        "load": {
+            "program": TEXT,
+            "text": OPTIONAL_TEXT,
+            "files": Argument("files", required=False),
+            "dialect": DIALECT,
+        },
         "start": {},
         "feed_hold": {"enabled": SWITCH},
         "set_override": {"percent": NUMBER},

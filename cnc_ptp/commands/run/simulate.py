@@ -73,11 +73,12 @@ def simulate(
     duration: float | None,
     record: str | None,
     strict: bool = False,
+    dialect: str | None = None,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    job = read_entries(parameters, program=program, scenario=scenario)
+    job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()

@@ -1,5 +1,7 @@
 """G codes of coordinates: units, zero offsets, G92, mirror, software limits."""
 
+from typing import Final
+
 from cnc_ptp.nc import faults as nc_faults
 from cnc_ptp.nc.canonical import Function, number
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
@@ -10,11 +12,13 @@ from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 LAST_OFFSET = 96
 """P-ZERO: np_grp[0] to np_grp[96]."""
 FIRST_OFFSET_CODE = 53
+INCH_CODES: Final = (20, 70)
+"""Of the two vocabularies."""
 
 
 def unit(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G70: lengths and feeds in inch, G71: in mm."""
-    state.coordinates.unit = INCH if code.number == 70 else 1.0
+    """G70 (iso: G20): lengths and feeds in inch, G71 (G21): in mm."""
+    state.coordinates.unit = INCH if code.number in INCH_CODES else 1.0
 
 
 def zero_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
@@ -110,9 +114,11 @@ def axis_values(
     found: list[tuple[int, float]] = []
     for word, value in block.words.items():
         index = channel.axis_index.get(word)
+        if word in code.words:
+            continue
         if index is None:
             column = block.source.column(word)
-            if word in "FSTDHIJKR":
+            if word[0] not in channel.vocabulary.axis_letters:
                 raise nc_faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
             raise nc_faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
         plain = not scaled or word in channel.rotary

@@ -77,6 +77,7 @@ class Coordinates:
     clamp_index number of the clamp position
     limits      software limits of G98 and G99 by place of the axis: negative, positive
     outside     what was there before #MCS ON, None without it
+    suspended   offset that G92.2 has switched off (vocabulary iso)
     """
 
     unit: float = 1.0
@@ -95,6 +96,7 @@ class Coordinates:
     clamp_index: int = 0
     limits: dict[int, tuple[float, float]] | None = None
     outside: "Coordinates | None" = None
+    suspended: Offsets = ()
 
     def copy(self) -> "Coordinates":
         """Independent: what the fields hold is replaced as a whole, never changed."""

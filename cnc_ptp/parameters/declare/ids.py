@@ -177,6 +177,7 @@ INTERPRETER_CALL_DEPTH = "P-CHAN-90001"  # interpreter.call_depth
 INTERPRETER_REPEATS = "P-CHAN-90002"  # interpreter.repeats
 INTERPRETER_KNOWN_BLOCKS = "P-CHAN-90003"  # interpreter.known_blocks
 INTERPRETER_FOLDERS = "P-CHAN-90004"  # interpreter.folders
+INTERPRETER_DIALECT = "P-CHAN-90010"  # interpreter.dialect
 
 # startup list
 NULLP_DATA = "P-STUP-00011"  # nullp_data

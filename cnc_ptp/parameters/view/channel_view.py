@@ -99,6 +99,8 @@ class ChannelParameters:
     known_blocks: Annotated[int, ids.INTERPRETER_KNOWN_BLOCKS] = 100_000
     folders: tuple[str, ...] = ()
     """In which called programs are looked for besides that of the main program (P-CHAN-90004)."""
+    dialect: str = "twincat"
+    """Vocabulary of its programs: twincat or iso (P-CHAN-90010)."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
@@ -116,6 +118,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
         tool_records=frozenset(channel.used_indexes("wz")),
+        dialect=channel.text(ids.INTERPRETER_DIALECT),
         slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
         offsets=offset_tables(channel, len(axes)),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
