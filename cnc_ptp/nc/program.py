@@ -240,13 +240,13 @@ class Drilling(NamedTuple):
     """Numbers of the drilling cycles of the vocabulary iso that stay from block to block.
 
     to_r      G99: back to the retract plane
-    running   a cycle is on, in the plane `plane`
+    running   number of the cycle that is on (81), 0: none; in the plane `plane`
     initial   position of the drill axis before it, mm
     r, z      levels of the retract plane and of the bottom, mm; q peck depth, mm; p dwell, s; None: not programmed
     """
 
     to_r: bool = False
-    running: bool = False
+    running: int = 0
     plane: int = 17
     initial: float = 0.0
     r: float | None = None

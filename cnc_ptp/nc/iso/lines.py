@@ -18,7 +18,8 @@ LARGEST_PROGRAM: Final = 99_999_999
 _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})(?![\d.])", re.ASCII)
 _WORD = re.compile(rf"\s*(?P<shown>(?P<letter>[A-Z])\s*(?P<number>{NUMBER}))(?![\d.])", re.ASCII)
 _O_NUMBER = re.compile(r"\s*(O\s*(\d{1,8}))\s*(.*)", re.ASCII)
-_O_WORD = re.compile(r"O\s*(?:<[^>]*>?|\d+)\s*[A-Z]*", re.ASCII)
+_KEYWORDS = "SUB|ENDSUB|CALL|RETURN|IF|ELSE|ELSEIF|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|CONTINUE|BREAK"
+_O_WORD = re.compile(rf"O\s*(?:<[^>]*>?\s*[A-Z]*|\d+\s*(?:{_KEYWORDS})(?![A-Z]))", re.ASCII)
 _MACRO = re.compile(r"#\s*<?\w*>?|\[[^\]]*\]?|[A-Z]\s*[+-]?\s*(?:#\s*<?\w*>?|\[[^\]]*\]?)", re.ASCII)
 _UNREADABLE = re.compile(r"[A-Z]\s*[-+.\d]*|[-+.\d]+|.", re.ASCII | re.DOTALL)
 
@@ -74,7 +75,7 @@ def _program_number(line: Line, text: str) -> None:
         return
     begin = len(text) - len(text.lstrip())
     word = _O_WORD.match(text, begin)
-    if word is not None and (word[0][-1].isalpha() or "<" in word[0]) and len(word[0]) > 2:
+    if word is not None:
         raise iso_faults.O_WORD.at(line.source, begin + 1, word=word[0].strip())
     raise iso_faults.PROGRAM_NUMBER.at(line.source, begin + 1, word=text.strip())
 
@@ -104,7 +105,7 @@ def _words(line: Line, text: str, at: int) -> NcBlock | None:
     found: list[Token] = []
     while at < len(text):
         match = _WORD.match(text, at)
-        if match is None:
+        if match is None or match["letter"] == "O":
             raise _unreadable(line.source, text, at)
         found.append(Token("word", match["letter"], match["number"], match.start("shown") + 1, match["shown"]))
         at = match.end()

@@ -51,11 +51,15 @@ def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> D
     return Dwell(seconds)
 
 
+def require_axes(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G28 moves the axes that it names. Raises ProgramError 21602 if it names none."""
+    if channel.axis_index.keys().isdisjoint(block.words):
+        raise coordinate_faults.AXES_MISSING.at(block.source, block.source.column(code.name), word=code.name)
+
+
 def reference_point(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove:
     """G28: the axes of the block at rapid speed to the intermediate point, from there to the reference point."""
-    target = motions.target_of(channel, state, block, code)
-    if target is None:
-        raise coordinate_faults.AXES_MISSING.at(block.source, block.source.column(code.name), word=code.name)
+    target = motions.target_of(channel, state, block, code) or state.programmed
     state.following = _to_reference(state, [channel.axis_index[word] for word in block.words if word in channel.axes])
     return LinearMove(tuple(target), True, 0.0)
 

@@ -36,9 +36,11 @@ def further_offset(channel: Channel, state: ModalState, block: NcBlock, code: GC
 
 def set_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
     """G10 L2: the values of a zero offset; L20: those with which the present position has the values of the block."""
-    kind = integer(block, code, "L", 2, 20, "L2 or L20")
-    if kind not in (2, 20):
-        raise faults.RANGE.at(block.source, block.source.column("L"), word="L", value=number(kind), low=2, high=20)
+    kind = block.words.get("L")
+    if kind is None:
+        raise faults.WORD_MISSING.at(block.source, block.source.column("G10"), g="G10", word="L", what="L2 or L20")
+    if kind not in (2.0, 20.0):
+        raise faults.OFFSET_KIND.at(block.source, block.source.column("L"), value=number(kind))
     index = integer(block, code, "P", 0, SYSTEMS, "the number of the zero offset; P0 is the active one")
     own = state.coordinates.own
     index = index or own.zero_index
@@ -46,7 +48,7 @@ def set_offset(channel: Channel, state: ModalState, block: NcBlock, code: GCode)
     values = list(offset_values(channel, changes, index))
     active = own.zero or (0.0,) * len(channel.axes)
     for axis, value in axis_values(channel, state, block, code):
-        values[axis] = value if kind == 2 else active[axis] + state.programmed[axis] - value
+        values[axis] = value if kind == 2.0 else active[axis] + state.programmed[axis] - value
     state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(values)})
     if index == own.zero_index:
         select_offset(channel, state, index)

@@ -38,7 +38,7 @@ _G_CODES = (
     plane(19),
     GCode(20, "units", prepare=codes.unit),
     GCode(21, "units", prepare=codes.unit),
-    GCode(28, "block", motion=own.reference_point, modal=False),
+    GCode(28, "block", motion=own.reference_point, modal=False, prepare=own.require_axes),
     GCode(30, "block", later="a second reference point"),
     GCode(33, "path", later="thread cutting"),
     GCode(40, "tool radius"),
