@@ -97,6 +97,7 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "axis": ArgumentText("", "its name in programs"),
     "value": ArgumentText("mm, °", "offset of the axis"),
     "enabled": ArgumentText("", "on or off"),
+    "dialect": ArgumentText("", "vocabulary of the program: twincat or iso", "that of P-CHAN-90010"),
     "files": ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
     "forward": ArgumentText("", "positive direction released"),
     "backward": ArgumentText("", "negative direction released"),

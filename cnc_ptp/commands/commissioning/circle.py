@@ -226,7 +226,7 @@ def run_variant(
 ) -> VariantResult | None:
     """The result of one run, None when it failed (reported on standard error)."""
     job = [
-        Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text})),
+        Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text, "dialect": "twincat"})),
         Entry(0.0, Command(place.channel, "start", {})),
     ]
     trial = run_trial(

@@ -1,8 +1,9 @@
 """Drilling cycles G73, G81 to G83, G85, G86, G89: one line makes all motions of its holes.
 
-R and Z are levels of the drill axis (Z in G17, Y in G18, X in G19), kept until G80 or G00 to G03: absolute with G90, with
-G91 R counts from the level before the cycle and Z from R. Q and P are kept until the next cycle. Each hole: rapid to its position, rapid to R,
-the work of the cycle, and back: to R with G99, with G98 to the level before the cycle if that is above R.
+R and Z are levels of the drill axis (Z in G17, Y in G18, X in G19), kept until G80 or G00 to G03: absolute with G90,
+with G91 R counts from the level before the cycle and Z from R. Q and P are kept until the next cycle. Each hole: rapid
+to its position, rapid to R, the work of the cycle, and back: to R with G99, with G98 to the level before the cycle
+if that is above R.
 Source: LinuxCNC, "canned cycles"; Fanuc where the text says so.
 """
 
