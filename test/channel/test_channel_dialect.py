@@ -54,11 +54,11 @@ def test_an_unknown_vocabulary_is_refused() -> None:
 
 def test_a_load_may_name_another_one() -> None:
     channel = bench()
-    assert channel.refused("load", program="a.nc", text="G54.1 P1\nM30").startswith("P-ERR-20131 a.nc line 1 column 1")
-    channel.accepted("load", program="a.nc", text="G54.1 P1\nM30", dialect="iso")
+    assert channel.refused("load", program="a.nc", text="G59.1\nM30").startswith("P-ERR-20131 a.nc line 1 column 1")
+    channel.accepted("load", program="a.nc", text="G59.1\nM30", dialect="iso")
     channel = bench(iso_mill())
-    channel.accepted("load", program="a.nc", text="G54.1 P1\nM30")
-    assert channel.refused("load", program="a.nc", text="G54.1 P1\nM30", dialect="twincat").startswith("P-ERR-20131")
+    channel.accepted("load", program="a.nc", text="G59.1\nM30")
+    assert channel.refused("load", program="a.nc", text="G59.1\nM30", dialect="twincat").startswith("P-ERR-20131")
     assert channel.refused("load", program="a.nc", text="M30", dialect="din").startswith("P-ERR-")
 
 
@@ -67,7 +67,7 @@ def test_manual_blocks_are_read_as_the_last_load_was() -> None:
     channel.accepted("load", program="a.nc", text=INCH, dialect="iso")
     channel.accepted("mdi", text="G20")
     channel.run(100)
-    channel.accepted("mdi", text="G81 R1 Z-1 F100")
+    channel.accepted("mdi", text="G59.1 G98 F100")
     channel.run(100)
     assert channel.refused("mdi", text="L X").startswith("P-ERR-21820")
     channel.accepted("load", program="a.nc", text="M30")
