@@ -11,14 +11,15 @@ MAX_H = 65_535
 
 def block_functions(channel: Channel, state: ModalState, block: NcBlock) -> tuple[Function, ...]:
     """All functions of a block in the order T, D, main spindle, other spindles, M, H; keeps speeds in the state."""
-    words = channel.vocabulary.function_words & block.words.keys()
-    functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in "TD" if letter in words]
+    letters = channel.vocabulary.function_words
+    used = [letter for letter in "TDH" if letter in block.words and letter in letters]
+    functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in used if letter != "H"]
     functions += spindle_functions(channel, state, block)
     gear_change = channel.table.gear_change
     for code in block.m:
         if code.handler is not None and not (gear_change and code.number in gears.GEAR_M):
             functions.append(code.handler(channel, state, block, code))
-    if "H" in words:
+    if "H" in used:
         functions.append(number_function(block, "H", MAX_H))
     return tuple(functions)
 
