@@ -19,6 +19,7 @@ from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.vocabulary import TWINCAT
+from cnc_ptp.parameters import OffsetTables
 
 AXES = ("X", "Y", "Z")
 HEADERS = [
@@ -108,7 +109,7 @@ def test_the_reference_point_is_exact_whatever_the_offsets():
 
 
 def test_a_zero_offset_of_the_machine_is_on_at_the_start():
-    blocks = run("G0 X1\nG53 X1", dialect="iso", zero_offsets={1: (10.0, 0.0, 0.0)})
+    blocks = run("G0 X1\nG53 X1", dialect="iso", offsets=OffsetTables(zero={1: (10.0, 0.0, 0.0)}))
     assert [block.motion.target[0] for block in blocks] == [11.0, 1.0]
 
 
