@@ -67,6 +67,7 @@ docs: setup $(VENV)/.docs
 	$(BIN)/python -m cnc_ptp.parameters.declare.reference > docs/parameters.md
 	$(BIN)/python -m cnc_ptp.commands.reference > docs/commands.md
 	$(BIN)/python -m cnc_ptp.commands.language.reference > docs/nc_language.md
+	$(BIN)/python -m cnc_ptp.commands.language.reference iso > docs/iso_language.md
 	$(BIN)/python -m cnc_ptp.commands.language.grammar > tools/nc.tmLanguage.json
 	$(BIN)/python -m figures.gallery > docs/gallery.md
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -d build/site-cache docs build/site

@@ -13,6 +13,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 ROOT = Path(__file__).parents[1]
 AXES = ("X", "Y", "Z")
@@ -66,6 +67,8 @@ WORDS = (
         "\\",
         "\n",
     ),
+    *("G81 X1 Y1 Z-1 R1", "G83 Z-5 R1 Q", "L3", "G28 X0", "G53 ", "G43 H", "G54.1 P", "G10 L20 P1 X", "M98 P", "M99"),
+    *("O100", "%", "G92.2", "G80", "#1=", "o<a> call", "G64 P", "K2", "G90.1", "G93", "F"),
     *("'H", "/2", "(", ")", ";", "%d", "9" * 12, ".", ",", "\t", "\x00", "\ufeff", "é", "1e9", "-113.0", "0.1"),
 )
 """Pieces that make mutations meaningful."""
@@ -102,7 +105,8 @@ def mutated(texts: Sequence[str], draw: random.Random) -> str:
 
 def survives(text: str) -> None:
     """Raises whatever is no ProgramError."""
-    program, errors = parse_all(text, "fuzz.nc", files={"a.nc": "X[@P1]\nM29"})
+    vocabulary = VOCABULARIES["iso" if "dialect iso" in text else "twincat"]
+    program, errors = parse_all(text, "fuzz.nc", files={"a.nc": "X[@P1]\nM29"}, vocabulary=vocabulary)
     try:
         for _ in interpret(program, (0.0, 0.0, 0.0), AXES, SPINDLES, limits=LIMITS):
             pass

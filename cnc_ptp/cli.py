@@ -29,6 +29,16 @@ STARTS_NODES = ("run", "replay", *CLIENTS)
 """Commands that take ROS arguments."""
 
 
+DIALECT = click.option(
+    "--dialect",
+    type=click.Choice(("twincat", "iso")),
+    help="Vocabulary of the program; default: that of the machine file (P-CHAN-90010).",
+)
+DIALECT_OF_A_FILE = click.option(
+    "--dialect", type=click.Choice(("twincat", "iso")), default="twincat", show_default=True, help="Vocabulary."
+)
+
+
 def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options that offline run and graph share."""
     for option in (
@@ -38,6 +48,7 @@ def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
             "--duration", type=DURATION, help="End after this many seconds; default: when everything is finished."
         ),
         click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML)."),
+        DIALECT,
         click.option("--program", type=click.Path(dir_okay=False), help="NC program for the first channel."),
         MACHINE,
     ):
@@ -188,6 +199,7 @@ def watch_command(machine: str | None, **options: Any) -> None:
 
 @main.command("explain")
 @click.argument("words", nargs=-1, required=True, metavar="WORD...")
+@DIALECT_OF_A_FILE
 def explain_command(**options: Any) -> None:
     """Say what a word of the NC language means.
 
@@ -201,6 +213,7 @@ def explain_command(**options: Any) -> None:
 @main.command("format")
 @click.argument("program", type=click.Path(dir_okay=False))
 @click.option("--in-place", is_flag=True, help="Write the file instead of printing it.")
+@DIALECT_OF_A_FILE
 @click.option("--check", "check_only", is_flag=True, help="Only say whether it would change (status 1).")
 def format_command(**options: Any) -> None:
     """Print an NC program in one style.
@@ -215,6 +228,7 @@ def format_command(**options: Any) -> None:
 @main.command("check")
 @click.argument("program", type=click.Path(dir_okay=False))
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
+@DIALECT
 @click.option("--canonical", is_flag=True, help="Print the blocks that result: line, functions, machine positions.")
 def check_command(**options: Any) -> None:
     """Check an NC program: syntax and modal states.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 
 Value = float | int | str
 WRONG_INPUT = 2
@@ -37,6 +38,25 @@ class CncError(Exception):
 
     def __str__(self) -> str:
         return f"P-ERR-{self.number} {self.message}"
+
+
+LONGEST_WORD = 100
+"""Characters of a misspelled word that are compared."""
+
+
+def nearest(word: str, known: Iterable[str], *, most: int = 1, cutoff: float = 0.6) -> list[str]:
+    """The names that may have been meant, the most similar one first."""
+    return get_close_matches(word[:LONGEST_WORD], list(known), n=most, cutoff=cutoff)
+
+
+def did_you_mean(names: Sequence[str]) -> str:
+    """The end of an error's text: the names that may have been meant; empty without any."""
+    return f"; did you mean {' or '.join(names)}?" if names else ""
+
+
+def nearest_name(word: str, known: Iterable[str]) -> str:
+    """The end of an error's text: the name that may have been meant."""
+    return did_you_mean(nearest(word, known))
 
 
 def warning_text(number: int, text: str) -> str:

@@ -12,6 +12,7 @@ from launch import LaunchDescription
 
 OPTIONS = {
     "program": "NC program for the first channel",
+    "dialect": "vocabulary of the program: twincat or iso; default: that of the machine file",
     "scenario": "timed PLC commands (YAML)",
     "duration": "seconds until the run ends; default: when everything is finished",
     "record": "MCAP recording to write",
@@ -60,7 +61,7 @@ def separate_nodes(given, switches, namespace):
     )
     check_recording(options.record, machine_file=options.machine, NC_program=options.program, scenario=options.scenario)
     machine = read_machine(options.machine)
-    read_entries(machine, program=options.program, scenario=options.scenario)
+    read_entries(machine, program=options.program, scenario=options.scenario, dialect=options.dialect)
     observers = [RECORDER] if options.record else []
     return [
         node(executable, arguments, name=name, namespace=namespace, on_exit=Shutdown() if name == CLOCK else refused)

@@ -19,7 +19,7 @@ from cnc_ptp.axis.faults import (
     JOG_AT_LIMIT,
 )
 from cnc_ptp.axis.override_filter import OverrideFilter
-from cnc_ptp.axis.ptp import PtpGenerator
+from cnc_ptp.axis.ptp import SMALLEST_OVERRIDE, PtpGenerator
 from cnc_ptp.axis.target_window import TargetWindow
 from cnc_ptp.errors import Value
 from cnc_ptp.motion.setpoints import MotionState, Setpoints
@@ -85,6 +85,7 @@ class Axis:
         self.path_direction = 0.0
         """-1 or +1: the direction in which the path of a channel waits for the feed release."""
         self.override_percent = 100.0
+        self._homing_override = 1.0
         self._master_velocity = 0.0
         self._master_has_job = False
         self._propagation_delay = round(parameters.error_propagation_delay / cycle_time)
@@ -192,9 +193,19 @@ class Axis:
 
     def set_override(self, cycle: int, percent: float) -> bool:
         """Applies an override; False when it does not change the active motion."""
-        acts = self.ptp.set_override(cycle, percent / 100.0)
-        self.override_percent = float(percent) if self.ptp.override else 0.0
+        acts = self.ptp.set_override(cycle, percent / 100.0 * self._homing_override)
+        self.override_percent = float(percent) if percent / 100.0 >= SMALLEST_OVERRIDE else 0.0
         return acts
+
+    def set_homing_override(self, cycle: int, percent: float) -> None:
+        """Applies the override of the channel that homes the axis, in addition to its own."""
+        self._homing_override = percent / 100.0
+        self.set_override(cycle, self.override_percent)
+
+    def _end_homing(self) -> None:
+        """The override of the channel no longer counts."""
+        self._homing_override = 1.0
+        self.ptp.override = self.override_percent / 100.0
 
     def release_feed(self, cycle: int, *, forward: bool, backward: bool) -> None:
         """Releases each direction of motion, or withholds it."""
@@ -221,7 +232,7 @@ class Axis:
 
     @property
     def has_job(self) -> bool:
-        return self._master_has_job if self.coupled else self.ptp.job is not None
+        return self._master_has_job if self.coupled else self.ptp.job is not None or self.state == S.HOMING
 
     def follow_master(self, target_velocity: float, has_job: bool) -> None:
         """What the master reports about its motion besides its setpoints."""
@@ -263,13 +274,20 @@ class Axis:
         self.ptp.advance(cycle)
 
     def basic_motion(self, cycle: int, count: int) -> Setpoints:
-        """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them."""
+        """The basic motion of `count` cycles, fewer (but one at least) when something comes due among them.
+
+        One cycle at a time while a homing looks for its signals.
+        """
+        if self.state == S.HOMING:
+            return self.ptp.setpoints(cycle, 1)
         due = self.override_filter.due_cycle
         return self.ptp.setpoints(cycle, count if due is None else max(1, min(count, due - cycle)))
 
     def take(self, transition: Transition) -> None:
         """Changes the state; nothing else does. Every test checks that only transitions of the table are taken."""
         require_source(self.name, self.state, transition)
+        if self.state == S.HOMING:
+            self._end_homing()
         self.state = transition.target
 
     def advance_state(self, cycle: int) -> None:
@@ -322,6 +340,8 @@ class Axis:
             bits |= StatusBit.HAS_BEEN_STOPPED
         if self.ptp.restricted and self.feed_withheld:
             bits |= StatusBit.FEED_WITHHELD
+        if not self.checks.referenced:
+            bits |= StatusBit.NOT_REFERENCED
         if self.superposed:
             bits |= StatusBit.COMPENSATING if self.compensation.active else 0
             bits |= StatusBit.EXT_SETPOINT if self.external.mode is not None else 0

@@ -13,6 +13,8 @@ from cnc_ptp.axis.coupling_commands import CouplingCommands
 from cnc_ptp.axis.decoupling_commands import DecouplingCommands
 from cnc_ptp.axis.external_commands import ExternalCommands
 from cnc_ptp.axis.feed_release_commands import FeedReleaseCommands
+from cnc_ptp.axis.homing import Homing
+from cnc_ptp.axis.homing_commands import HomingCommands
 from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.override_commands import OverrideCommands
@@ -62,6 +64,9 @@ class AxisUnit(Unit):
             limits=CouplingLimits(parameters.max_velocity, parameters.max_acceleration, parameters.jerk),
             drive=drive or make_drive(parameters.control, cycle_time),
         )
+        if not parameters.referenced_at_start:
+            self._loop.count_from(parameters.start_position)
+        self._homing = Homing(self._axis, self._loop)
         begin, length = self._axis.modulo_range
         self._make_block = partial(
             AxisBlock, modulo_begin=begin, modulo_length=length, torque_digits=self._loop.torque_digits
@@ -77,6 +82,7 @@ class AxisUnit(Unit):
             OverrideCommands(self._axis),
             StopCommands(self._axis),
             JogCommands(self._axis),
+            HomingCommands(self._axis, self._homing),
             CompensationCommands(self._axis),
             ExternalCommands(self._axis),
             CouplingCommands(self._axis, axes=known, cycle_time=cycle_time),
@@ -224,6 +230,8 @@ class AxisUnit(Unit):
         """Adds one cycle, in which anything can happen."""
         axis, loop = self._axis, self._loop
         setpoint = axis.superimposed(cycle, base)
+        if axis.state == S.HOMING:
+            setpoint = self._homing.watch(cycle, setpoint)
         actual_position = loop.position
         if axis.state in MOVING_ALONE:
             axis.advance_state(cycle)

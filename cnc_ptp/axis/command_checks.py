@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import copysign, inf
 from typing import NamedTuple
 
 from cnc_ptp.axis.faults import (
@@ -41,6 +42,8 @@ class MotionChecks:
         negative_text = f"negative soft limit {negative} {self._unit} (P-AXIS-00177)"
         self._positive_limit = SoftLimit(positive, SOFT_LIMIT_POSITIVE, positive_text)
         self._negative_limit = SoftLimit(negative, SOFT_LIMIT_NEGATIVE, negative_text)
+        self.referenced = parameters.referenced_at_start
+        """The coordinates of the axis are those of the machine; without that there are no soft limits."""
 
     def refusal(self, command: str, number: int, reason: str, /, **values: Value) -> CncError:
         where = f"axis {self._parameters.name}: {command} refused"
@@ -106,8 +109,9 @@ class MotionChecks:
         return limits._replace(jerk=highest), warning_text(JERK_RESCALED, warning)
 
     def soft_limit(self, direction: float) -> SoftLimit:
-        """The soft limit in this direction of motion (> 0: positive)."""
-        return self._positive_limit if direction > 0.0 else self._negative_limit
+        """The soft limit in this direction of motion (> 0: positive); infinity until the axis is referenced."""
+        limit = self._positive_limit if direction > 0.0 else self._negative_limit
+        return limit if self.referenced else limit._replace(position=copysign(inf, direction))
 
     def soft_limits(self, command: str, target: float) -> None:
         """Raises 120002 and 120003 for a target outside, 23002 for one out of range; the start may be anywhere."""

@@ -22,7 +22,6 @@ class Monitoring:
         self._axis = axis
         self._report_warning = report_warning
         self._longest_silence = round(axis.parameters.external_timeout / cycle_time)
-        self._low, self._high = axis.parameters.soft_limit_negative, axis.parameters.soft_limit_positive
         self._before: tuple[int, MotionState] | None = None
         """The last cycle with superimposed motion, and its setpoint."""
 
@@ -34,12 +33,15 @@ class Monitoring:
         axis = self._axis
         if axis.superposed or axis.error_id or (axis.ptp.restricted and axis.state == S.SYNCHRONIZED_MOTION):
             return False
+        if axis.state == S.HOMING:
+            return False
         last_cycle = first_cycle + len(setpoints) - 1
         if axis.state in MOVING_ALONE and axis.ptp.arrived(last_cycle):
             return False
         if axis.coupling is not None or axis.state == S.CONTINUOUS_MOTION:
+            low, high = axis.checks.soft_limit(-1.0).position, axis.checks.soft_limit(1.0).position
             for position in setpoints.positions:
-                if not self._low <= position <= self._high:
+                if not low <= position <= high:
                     return False
         if axis.ptp.job is not None or 0.0 not in setpoints.velocities:
             axis.target_window.moves()

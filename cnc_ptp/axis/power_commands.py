@@ -7,6 +7,7 @@ from collections.abc import Callable
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import ENABLE_REMOVED, STILL_MOVING
+from cnc_ptp.axis.transitions import STOPPABLE
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 
 
@@ -49,7 +50,7 @@ class PowerCommands:
         elif axis.state == S.SYNCHRONIZED_MOTION:
             what = "path motion" if axis.on_path else "synchronous motion"
             axis.fault(cycle, ENABLE_REMOVED, f"the enable was removed during {what}")
-        elif axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
+        elif axis.state in STOPPABLE:
             axis.stop(cycle)
             axis.take(T.STOP)
             axis.has_been_stopped = True
@@ -57,7 +58,7 @@ class PowerCommands:
     def do_reset(self, cycle: int) -> None:
         """Leaves ErrorStop; refused while the axis moves (23008). PTP motion and external setpoints are aborted."""
         axis = self._axis
-        if axis.state in (S.DISCRETE_MOTION, S.CONTINUOUS_MOTION):
+        if axis.state in STOPPABLE:
             axis.stop(cycle)
             axis.take(T.STOP)
             axis.has_been_stopped = True

@@ -7,7 +7,7 @@ from math import inf, nan
 from cnc_ptp.axis import transitions as T
 from cnc_ptp.axis.axis import Axis
 from cnc_ptp.axis.faults import EMERGENCY_CORRECTED, IN_BRAKE_PHASE, NOT_READY, SLAVE_LOCKED
-from cnc_ptp.axis.transitions import MOVING
+from cnc_ptp.axis.transitions import STOPPABLE
 from cnc_ptp.errors import warning_text
 from cnc_ptp.motion import Limits
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
@@ -26,7 +26,7 @@ class StopCommands:
 
     def do_halt(self, cycle: int) -> str | None:
         """Stops on the ramp of the start, but a new target acts immediately (state DiscreteMotion)."""
-        return self._stop("halt", cycle, locks=self._axis.state == S.CONTINUOUS_MOTION)
+        return self._stop("halt", cycle, locks=self._axis.state in (S.CONTINUOUS_MOTION, S.HOMING))
 
     def _stop(self, command: str, cycle: int, *, locks: bool) -> str | None:
         axis = self._axis
@@ -34,7 +34,7 @@ class StopCommands:
         cancelled = self._cancel_target(command)
         if cancelled is not None:
             return cancelled
-        if axis.state not in MOVING:
+        if axis.state not in STOPPABLE:
             return without_effect(axis.name, command, axis.state)
         axis.stop(cycle, locks=locks)
         self._stopped(locks)
@@ -72,7 +72,7 @@ class StopCommands:
         """
         axis, command = self._axis, "emergency_stop"
         self._refuse_synchronous(command)
-        if axis.state not in MOVING and axis.state != S.STOPPING:
+        if axis.state not in STOPPABLE and axis.state != S.STOPPING:
             return without_effect(axis.name, command, axis.state)
         if self._brakes_naturally(cycle):
             axis.refuse(command, IN_BRAKE_PHASE, "the axis is in its brake phase")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.expressions.values import Values
@@ -25,10 +25,11 @@ class BlockStream:
         """A program of which every block is known."""
         return cls(iter(blocks), len(blocks), None)
 
-    def give(self, actual: tuple[float, ...]) -> None:
-        """Positions of the axes at this instant."""
+    def give(self, actual: tuple[float, ...], position: tuple[float, ...], timers: Mapping[int, float]) -> None:
+        """Actual and set positions of the axes at this instant, and the timers that were read (ms)."""
         if self._values is not None:
-            self._values.actual = actual
+            self._values.actual, self._values.position = actual, position
+            self._values.timers = dict(timers)
 
     def next(self) -> CanonicalBlock | None:
         """The next block, BUSY while the interpreter computes, or None at the end of the program.

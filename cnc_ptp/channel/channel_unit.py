@@ -10,19 +10,24 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NoReturn
 
+from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
-from cnc_ptp.channel.program_sequence import NO_SOURCE, Phase, ProgramSequence
+from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
+from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import Pairs
+from cnc_ptp.nc.program import Pairs, Vocabulary
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
+from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
@@ -76,8 +81,13 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
-        self._sequence = ProgramSequence(self._motion, functions, nodes)
+        absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
+        homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
+        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, Timers(cycle_time))
         self._check = ProgramCheck(parameters, axes, spindles)
+        self._offsets = OffsetMemory(parameters.name, self._check.nc)
+        self._vocabulary = self._check.vocabulary
+        """That of the last load; manual blocks are read in it."""
         self._program: Program | None = None
         self._library: Mapping[str, Program] = {}
         """The programs that the loaded one may call; manual blocks may call them, too."""
@@ -93,7 +103,7 @@ class ChannelUnit(Unit):
         self._commands_sent = 0
         self._just_started = False
         self._unfinished = False
-        """The program ended between the last cycle of the previous block and the first of the next one."""
+        """The program ended, or a homing began, after the last cycle of the previous block."""
         self._feedback: Mapping[str, CycleBlock] = {}
         self._override_percent = min(100.0, parameters.max_override_percent)
         self._feed_hold = False
@@ -104,30 +114,48 @@ class ChannelUnit(Unit):
         self._error_id = 0
         self._apply_override()
 
-    def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES) -> None:
+    def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
+        """The state in which a program starts."""
+        return self._check.state(feedback, self._links, self._shared, self._offsets.changes, self._offsets.clamp_index)
+
+    def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
-        parsed = parse_program(text, program, files=files)
-        state = self._check.state(self._feedback, self._links, self._shared)
+        parsed = parse_program(text, program, files=files, vocabulary=self._vocabulary_of(dialect))
+        state = self._initial_state(self._feedback)
         before = state.copy()
-        known = self._check.known_blocks(parsed, self._motion.position, state)
+        known = self._check.known_ahead(parsed, self._motion.position, state)
         self._prepared = PreparedProgram(text, dict(files), parsed, self._motion.position, before, state, known)
 
     # commands
 
     def do_load(
-        self, cycle: int, *, program: str, text: str | None = None, files: Mapping[str, str] = NO_FILES
+        self,
+        cycle: int,
+        *,
+        program: str,
+        text: str | None = None,
+        files: Mapping[str, str] = NO_FILES,
+        dialect: str | None = None,
     ) -> None:
-        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009."""
+        """Takes over a program: syntax is checked here, the rest at the start. Raises ProgramError, 22004, 22009.
+
+        `dialect`: its vocabulary, also of the manual blocks behind it; None: that of the machine file.
+        """
         self._require_idle("load")
         if text is None:
             self._refuse("load", NO_TEXT, f"no text came with program '{program}'", program=program)
-        prepared = self._prepared
-        if prepared is not None and (prepared.text, prepared.files, prepared.program.file) == (text, files, program):
+        prepared, vocabulary = self._prepared, self._vocabulary_of(dialect)
+        if prepared is not None and prepared.is_of(text, files, program, vocabulary):
             self._program = prepared.program
         else:
-            self._program = parse_program(text, program, files=files)
+            self._program = parse_program(text, program, files=files, vocabulary=vocabulary)
+        if vocabulary is not self._vocabulary:
+            self._vocabulary, self._state = vocabulary, self._check.state({}, self._links, self._shared)
         self._library = self._program.library
         self._sequence.source = NO_SOURCE
+
+    def _vocabulary_of(self, dialect: str | None) -> Vocabulary:
+        return self._check.vocabulary if dialect is None else VOCABULARIES[dialect]
 
     def do_start(self, cycle: int) -> None:
         """Starts the program, which is interpreted as a whole first; or resumes it after M00 or in single block."""
@@ -137,7 +165,7 @@ class ChannelUnit(Unit):
         self._require_idle("start")
         if self._program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        self._begin("start", self._program, self._check.state(self._feedback, self._links, self._shared))
+        self._begin(cycle, "start", self._program, self._initial_state(self._feedback))
         self._sequence.end_couplings()
 
     def do_mdi(self, cycle: int, *, text: str) -> None:
@@ -145,7 +173,28 @@ class ChannelUnit(Unit):
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        self._begin("mdi", parse_program(text, "mdi", mdi=True, library=self._library), state)
+        program = parse_program(text, "mdi", mdi=True, library=self._library, vocabulary=self._vocabulary)
+        self._begin(cycle, "mdi", program, state)
+
+    def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
+        """A value (mm, deg) of a zero offset; it counts when the offset is selected next."""
+        self._require_idle("set_zero_offset")
+        place = self._offsets.place("set_zero_offset", axis)
+        self._offsets.set("set_zero_offset", index, {place: value})
+        self._offsets.give(self._state.modal.coordinates)
+
+    def do_teach_zero_offset(self, cycle: int, *, index: int, axis: str = "", value: float = 0.0) -> None:
+        """The present position of an axis, or of all, becomes `value` (mm, deg) in a zero offset."""
+        self._require_idle("teach_zero_offset")
+        coordinates = self._state.modal.coordinates
+        self._offsets.teach("teach_zero_offset", index, axis, value, self._motion.position, coordinates)
+        self._offsets.give(coordinates)
+
+    def do_set_clamp_position(self, cycle: int, *, index: int) -> None:
+        """The clamp position of programs that are started from now on."""
+        self._require_idle("set_clamp_position")
+        self._offsets.choose_clamp_position("set_clamp_position", index)
+        self._offsets.give(self._state.modal.coordinates)
 
     def do_feed_hold(self, cycle: int, *, enabled: bool) -> None:
         """Feed hold: the path stops on its ramp, and resumes when the hold is off."""
@@ -219,7 +268,7 @@ class ChannelUnit(Unit):
         self._read_feedback(first_cycle, inputs)
         self._watch_handshake(first_cycle)
         outgoing = self._sequence.take_outgoing(first_cycle)
-        on_path = self._unfinished or self._sequence.phase is not Phase.IDLE
+        on_path = self._unfinished or self._sequence.phase not in OFF_PATH
         rows = CycleRows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
@@ -227,9 +276,11 @@ class ChannelUnit(Unit):
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         if self._sequence.finished and self._state_at_end is not None:
             ended, self._state_at_end = self._state_at_end, None
-            self._shared = ended.values.shared
-            self._state = ended if self._is_mdi else self._check.state({}, self._links, self._shared)
-        self._unfinished = self._sequence.phase is Phase.IDLE and rows.axes[count - 1] != self._motion.states
+            self._shared, self._offsets.changes = ended.values.shared, ended.modal.coordinates.changes
+            self._state = ended if self._is_mdi else self._initial_state({})
+        self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
+        if self._sequence.phase is Phase.IDLE:
+            self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
 
     def _channel_block(
@@ -261,6 +312,8 @@ class ChannelUnit(Unit):
             done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
             blocks_done=self._sequence.stream.done,
             blocks_total=self._sequence.stream.total,
+            programmed_position=self._offsets.programmed([state[0] for state in rows.axes[count - 1]]),
+            offsets=self._offsets.news(),
             commands=outgoing.commands,
             requests=outgoing.requests,
         )
@@ -275,21 +328,26 @@ class ChannelUnit(Unit):
                 self._add(rows, [self._motion.point])
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
-        """Rows of the active motion; it ends early when the motion does, at the exact instant inside a cycle."""
+        """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
         self._add(rows, points)
-        if len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
+        if self._motion.passes:
+            self._sequence.pass_block(cycle + len(points))
+        elif len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
             self._sequence.motion_ended()
-            self._warn(cycle)
+        self._warn(cycle)
 
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
-            goes_on = self._sequence.go_on(first_cycle)
+            goes_on = self._sequence.go_on(first_cycle, cycle)
         except CncError as error:
             source = self._sequence.source
             self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
             return True
         self._warn(cycle)
+        if self._sequence.offsets is not None:
+            self._offsets.reach(cycle, self._sequence.source.line, self._sequence.offsets)
+            self._sequence.offsets = None
         return goes_on
 
     def _warn(self, cycle: int) -> None:
@@ -323,11 +381,13 @@ class ChannelUnit(Unit):
         phase = self._sequence.phase
         if phase is Phase.MOTION and self._motion.on_path:
             return C.RUNNING
+        if self._sequence.homing_held:
+            return C.HOLD
         if phase is Phase.IDLE:
             return C.IDLE if self._program is None else C.READY
         return PHASE_STATES[phase]
 
-    def _begin(self, command: str, program: Program, state: ProgramState) -> None:
+    def _begin(self, cycle: int, command: str, program: Program, state: ProgramState) -> None:
         for node, axis_state in self._axes.states.items():
             if axis_state != AxisStateCode.STANDSTILL:
                 self._refuse(
@@ -344,18 +404,21 @@ class ChannelUnit(Unit):
             if node in self._axes.nodes or any(node == spindle.node for spindle in self._parameters.spindles):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
         before = state.copy()
-        ready = self._ready(command, program, state)
+        unreferenced = self._axes.unreferenced(self._feedback)
+        ready = None if unreferenced else self._ready(command, program, state)
         if ready is not None:
             known, state = ready.known, ready.at_end
         else:
-            known = self._check.known_blocks(program, self._motion.position, state)
+            known = self._check.known_blocks(program, self._motion.position, state, unreferenced)
         stream = BlockStream.of(known.blocks)
         if not known.complete:
             state = before
-            stream = BlockStream(self._check.running(program, self._motion.position, state), known.total, state.values)
+            blocks = self._check.running(program, self._motion.position, state, unreferenced)
+            stream = BlockStream(blocks, known.total, state.values)
         self._links = state.modal.spindle.links
-        self._state = self._check.state({}, self._links, self._shared)
+        self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
+        self._offsets.begin(cycle, before.modal.coordinates)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 
@@ -369,7 +432,9 @@ class ChannelUnit(Unit):
     # override, feedback, faults
 
     def _apply_override(self) -> None:
-        self._motion.set_override(0.0 if self._feed_hold or self._axes.withheld else self._override_percent / 100.0)
+        held = self._feed_hold or bool(self._axes.withheld)
+        self._motion.set_override(0.0 if held else self._override_percent / 100.0, held=held)
+        self._sequence.set_override(0.0 if self._feed_hold else min(100.0, self._override_percent))
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """An axis on the path without feed release in its direction holds the path; one warning per element.
@@ -397,7 +462,11 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
             elif isinstance(block, SpindleBlock):
                 self._check_refused(first_cycle, node, block)
-        self._sequence.read(first_cycle, inputs)
+        try:
+            self._sequence.read(first_cycle, inputs)
+        except CncError as error:
+            source = self._sequence.source
+            self._fault(first_cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
         self._warn(first_cycle)
         self._report_held(first_cycle)
 
@@ -484,6 +553,7 @@ PHASE_STATES = {
     Phase.WAIT_GEAR: C.WAITING,
     Phase.WAIT_END: C.WAITING,
     Phase.MOTION: C.WAITING,
+    Phase.HOMING: C.RUNNING,
     Phase.WAIT_BEFORE: C.WAITING,
     Phase.WAIT_AFTER: C.WAITING,
     Phase.STOPPED: C.STOPPED,

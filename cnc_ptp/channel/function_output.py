@@ -206,7 +206,7 @@ class FunctionOutput:
         if synchronisation & OUTPUT:
             node = self.spindles[function.spindle].node if function.spindle else ""
             waits = bool(synchronisation & WAITING)
-            request = self._request(source, function.letter, node, function.number, waits=waits)
+            request = self._request(source, function.letter, node, function.number, waits=waits, value=function.value)
             self._ask(request, synchronisation, NOTHING, outgoing)
 
     def _check_tool(self, tool: int, source: Source, outgoing: Outgoing) -> None:

@@ -36,6 +36,7 @@ class PathAxes:
         self.beside: list[str] = []
         self.withheld: list[str] = []
         self._given = motion.states
+        self._referenced_at_start = {node: axes[node].referenced_at_start for node in nodes}
 
     def give(self, setpoints: AxisStates, *, on_path: bool) -> None:
         """Keeps the last setpoints of a block, one for each axis."""
@@ -66,6 +67,11 @@ class PathAxes:
             self.states[node] = state
             self._motion.place(index, position)
 
+    def unreferenced(self, feedback: Mapping[str, CycleBlock]) -> list[str]:
+        """Nodes of the axes whose reference point is not known."""
+        at_start = self._referenced_at_start.items()
+        return [node for node, referenced in at_start if not is_referenced(feedback.get(node), referenced)]
+
     def read_releases(self, inputs: Mapping[str, CycleBlock], *, can_be_held: bool) -> list[str]:
         """Finds the axes on the path without feed release in their direction; returns those that had it before."""
         before, nodes = self.withheld, self.nodes if can_be_held and self.on_path else ()
@@ -78,6 +84,11 @@ def is_beside(block: CycleBlock | None, position: float) -> bool:
     if not isinstance(block, AxisBlock) or block.state[-1] != AxisStateCode.SYNCHRONIZED_MOTION:
         return False
     return block.set_position[-1] != position
+
+
+def is_referenced(block: CycleBlock | None, at_start: bool) -> bool:
+    """True for an axis whose reference point is known; `at_start` counts until it has reported."""
+    return not block.status_bits[-1] & StatusBit.NOT_REFERENCED if isinstance(block, AxisBlock) else at_start
 
 
 def lacks_release(block: CycleBlock | None) -> bool:

@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 from math import inf
 from typing import NamedTuple
 
-from cnc_ptp.axis.faults import SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.axis.faults import HOMING_DISABLED, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
     BUSY,
     AuxiliaryFunction,
     CanonicalBlock,
+    CircularMove,
     CompensationSwitch,
     Function,
+    HomeAxes,
+    LinearMove,
     Source,
     SpindleCommand,
     SpindleFunction,
 )
+from cnc_ptp.nc.coordinates.codes import initial_coordinates
+from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret
-from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable
+from cnc_ptp.nc.parser import NO_FILES, parse_all
+from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
     ChannelParameters,
@@ -34,15 +42,13 @@ from cnc_ptp.parameters import (
     catalogue,
 )
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.homing_view import DISABLED
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 UNKNOWN_M_FUNCTION = 22011
+NOT_REFERENCED = 22034
 NO_CHANNEL = 26112
-
-
-MOST_BLOCKS = 100_000
-"""Blocks of a program that are kept; a longer one is interpreted again while it runs."""
 
 
 class ProgramState(NamedTuple):
@@ -84,6 +90,11 @@ class PreparedProgram(NamedTuple):
     at_end: ProgramState
     known: KnownBlocks
 
+    def is_of(self, text: str, files: Mapping[str, str], file: str, vocabulary: Vocabulary) -> bool:
+        """Whether a load with these arguments means this program."""
+        same = (self.text, self.files, self.program.file) == (text, files, file)
+        return same and self.program.vocabulary is vocabulary
+
 
 class ProgramCheck:
     """Checks a program against a machine: soft limits, speeds that the spindles reach, M functions it knows."""
@@ -105,7 +116,22 @@ class ProgramCheck:
         ratio = channel.circle_center_ratio
         self._rotary = frozenset(axis.name for axis in channel.axes if axes[axis.node].rotary)
         tolerance = channel.circle_center_tolerance
-        self._nc = Channel(self._axis_names, indices, self._spindles, tolerance, ratio, self._rotary)
+        self.vocabulary = VOCABULARIES[channel.dialect]
+        """That of the machine file."""
+        self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
+        self.nc = Channel(
+            self._axis_names,
+            indices,
+            self._spindles,
+            tolerance,
+            ratio,
+            self.vocabulary,
+            self._rotary,
+            channel.offsets,
+            self._soft_limits,
+        )
+        """The channel as the interpreter knows it."""
+        self._limits = Limits(channel.call_depth, channel.repeats)
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -114,7 +140,9 @@ class ProgramCheck:
             raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
         return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
 
-    def errors(self, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> list[ProgramError]:
+    def errors(
+        self, text: str, file: str, files: Mapping[str, str] = NO_FILES, vocabulary: Vocabulary | None = None
+    ) -> list[ProgramError]:
         """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
         return check(
             text,
@@ -122,16 +150,20 @@ class ProgramCheck:
             self._axis_names,
             self._spindles,
             start=self.start,
-            check_target=self.check_target,
+            check_target=partial(self.check_target, unlimited=self._names(self.unreferenced_at_start)),
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
             files=files,
-        ) or self._function_errors(text, file, files)
+            offsets=self._channel.offsets,
+            soft_limits=self._soft_limits,
+            limits=self._limits,
+            vocabulary=vocabulary or self.vocabulary,
+        ) or self._function_errors(parse_all(text, file, files=files, vocabulary=vocabulary or self.vocabulary)[0])
 
-    def _function_errors(self, text: str, file: str, files: Mapping[str, str]) -> list[ProgramError]:
+    def _function_errors(self, program: Program) -> list[ProgramError]:
         try:
-            self.blocks(parse_program(text, file, files=files), self.start)
+            self.blocks(program, self.start)
         except ProgramError as error:
             return [error]
         return []
@@ -142,13 +174,21 @@ class ProgramCheck:
         return tuple(axis.start_position for axis in self._axes)
 
     def state(
-        self, feedback: Mapping[str, CycleBlock], links: Mapping[int, Pairs], shared: dict[str, Variable]
+        self,
+        feedback: Mapping[str, CycleBlock],
+        links: Mapping[int, Pairs],
+        shared: dict[str, Variable],
+        offsets: OffsetChanges = NO_CHANGES,
+        clamp_index: int = 0,
     ) -> ProgramState:
-        """The state in which programs start: gears as spindles report them, coupling groups and V.S. as they are."""
-        modal = ModalState()
+        """The state in which programs start: gears as spindles report them, the rest as it is.
+
+        `offsets`: what was changed of zero offsets, `clamp_index`: the clamp position.
+        """
+        modal = ModalState(coordinates=initial_coordinates(self.nc, offsets, clamp_index))
         modal.spindle.gears = self.gears(feedback)
         modal.spindle.links = dict(links)
-        values = Values(self._nc, modal)
+        values = Values(self.nc, modal)
         values.shared = copies(shared)
         values.begin_program()
         return ProgramState(modal, values)
@@ -164,27 +204,50 @@ class ProgramCheck:
 
     def blocks(self, program: Program, start: Sequence[float]) -> list[CanonicalBlock]:
         """The blocks of a program that is started from the initial state, as far as they are known before it runs."""
-        return self.known_blocks(program, start, self.state({}, {}, {})).blocks
+        return self.known_ahead(program, start, self.state({}, {}, {})).blocks
 
-    def known_blocks(self, program: Program, start: Sequence[float], state: ProgramState) -> KnownBlocks:
+    def known_ahead(self, program: Program, start: Sequence[float], state: ProgramState) -> KnownBlocks:
+        """`known_blocks` before the machine runs: others may still home its axes."""
+        return self.known_blocks(program, start, state, self.unreferenced_at_start, required=False)
+
+    def known_blocks(
+        self,
+        program: Program,
+        start: Sequence[float],
+        state: ProgramState,
+        unreferenced: Collection[str] = (),
+        *,
+        required: bool = True,
+    ) -> KnownBlocks:
         """Interprets a program from `start` (mm, in the channel's order of axes) before anything moves.
 
-        All of it, up to a line that reads what only the run knows. Raises ProgramError; then `state` is void.
+        All of it, up to a homing or a line that reads what only the run knows. `unreferenced`: nodes of axes without
+        soft limits, which it must not move before it homes them if that is `required` (P-MACH-00061).
+        Raises ProgramError; then `state` is void.
         """
         blocks: list[CanonicalBlock] = []
         total = 0
-        for block in self.running(program, start, state):
+        for block in self.running(program, start, state, unreferenced, required=required):
             if block is BUSY:
                 continue
             total += 1
-            if len(blocks) < MOST_BLOCKS:
+            if len(blocks) < self._channel.known_blocks:
                 blocks.append(block)
             if awaits_path(block):
                 return KnownBlocks(blocks, False, None)
         return KnownBlocks(blocks, total == len(blocks), total)
 
-    def running(self, program: Program, start: Sequence[float], state: ProgramState) -> Iterator[CanonicalBlock]:
+    def running(
+        self,
+        program: Program,
+        start: Sequence[float],
+        state: ProgramState,
+        unreferenced: Collection[str] = (),
+        *,
+        required: bool = True,
+    ) -> Iterator[CanonicalBlock]:
         """The blocks one by one, also BUSY and those with WaitForPath. Raises ProgramError; then `state` is void."""
+        missing = self._names(unreferenced)
         stream = interpret(
             program,
             tuple(start),
@@ -192,22 +255,65 @@ class ProgramCheck:
             self._spindles,
             state=state.modal,
             values=state.values,
-            check_target=self.check_target,
+            check_target=partial(self.check_target, unlimited=missing),
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
+            offsets=self._channel.offsets,
+            soft_limits=self._soft_limits,
+            limits=self._limits,
             runs=True,
         )
+        position = tuple(start)
         for block in stream:
             for function in block.functions:
                 self._function(function, block.source)
+            if isinstance(block.motion, HomeAxes):
+                missing.difference_update(self._homed(block.motion, block.source))
+            elif missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
+                self._require_references(position, block.motion, block.source, missing)
+                position = block.motion.target
             yield block
+            if isinstance(block.motion, HomeAxes) and state.values.position:
+                position = state.values.position
 
-    def check_target(self, target: tuple[float, ...], source: Source) -> None:
-        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit."""
+    def _names(self, nodes: Collection[str]) -> set[str]:
+        """Names in programs of the axes with these nodes."""
+        return {name for name, axis in zip(self._axis_names, self._axes, strict=True) if axis.name in nodes}
+
+    @property
+    def unreferenced_at_start(self) -> list[str]:
+        """Nodes of the axes that are not referenced when the machine starts."""
+        return [axis.name for axis in self._axes if not axis.referenced_at_start]
+
+    def _homed(self, motion: HomeAxes, source: Source) -> set[str]:
+        """The axes of G74. Raises ProgramError 60313 for one that cannot be homed."""
+        homed = {name for group in motion.groups for name in group}
+        for name, axis in zip(self._axis_names, self._axes, strict=True):
+            if name in homed and axis.homing.kind == DISABLED:
+                text = f"axis {name} cannot be homed (P-AXIS-00299 = DISABLED)"
+                raise ProgramError(HOMING_DISABLED, text, source, source.column(name))
+        return homed
+
+    def _require_references(
+        self,
+        start: tuple[float, ...],
+        motion: LinearMove | CircularMove,
+        source: Source,
+        missing: Collection[str],
+    ) -> None:
+        """Raises ProgramError 22034 for a motion of an axis in `missing`."""
+        circle = motion.plane if isinstance(motion, CircularMove) else ()
+        for index, (name, axis) in enumerate(zip(self._axis_names, self._axes, strict=True)):
+            if axis.homing.required and name in missing and (motion.target[index] != start[index] or index in circle):
+                text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
+                raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
+
+    def check_target(self, target: tuple[float, ...], source: Source, unlimited: Collection[str] = ()) -> None:
+        """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none."""
         for name, axis, position in zip(self._axis_names, self._axes, target, strict=True):
             unit = "deg" if axis.rotary else "mm"
-            if axis.soft_limit_negative <= position <= axis.soft_limit_positive:
+            if axis.soft_limit_negative <= position <= axis.soft_limit_positive or name in unlimited:
                 continue
             if position > axis.soft_limit_positive:
                 limit = f"positive soft limit {axis.soft_limit_positive:g} {unit} (P-AXIS-00178)"

@@ -6,6 +6,7 @@
 | WAIT_GEAR | the path waits for the gear; then the functions before the motion go out | WAIT_BEFORE |
 | WAIT_BEFORE | the path waits for all that must precede the motion | MOTION, without one WAIT_AFTER |
 | MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
+| HOMING | G74: the axes are off the path and home themselves | WAIT_AFTER |
 | WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
 | WAIT_END | a program without M30: the path waits for all that is still pending | IDLE |
 | STOPPED | M00, M01, single block: `resume` continues | NEXT |
@@ -17,11 +18,13 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
+from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.following_blocks import LATER_WAITS, FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
+from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
@@ -29,10 +32,13 @@ from cnc_ptp.nc.canonical import (
     CanonicalBlock,
     CircularMove,
     ExplicitSynchronisation,
+    HomeAxes,
     LinearMove,
     Message,
+    OffsetReport,
     OrderedError,
     Source,
+    Timer,
     WaitForPath,
 )
 from cnc_ptp.path.path_motion import PathMotion
@@ -55,12 +61,15 @@ class Phase(Enum):
     WAIT_GEAR = auto()
     WAIT_BEFORE = auto()
     MOTION = auto()
+    HOMING = auto()
     WAIT_AFTER = auto()
     WAIT_END = auto()
     STOPPED = auto()
     RAMP_DOWN = auto()
 
 
+OFF_PATH = (Phase.IDLE, Phase.HOMING)
+"""Others may move the channel's axes."""
 WAITING = (Phase.WAIT_GEAR, Phase.WAIT_BEFORE, Phase.WAIT_AFTER, Phase.WAIT_END)
 ORDER = {moment: rank for rank, moment in enumerate(Moment)}
 ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
@@ -74,9 +83,13 @@ class ProgramSequence:
     `phase` is MOTION or RAMP_DOWN, PathMotion makes the cycles and `motion_ended` reports that it has finished.
     """
 
-    def __init__(self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str]) -> None:
+    def __init__(
+        self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str], homing: AxisHoming, timers: Timers
+    ) -> None:
         """`axes`: nodes of the channel's axes, in its order."""
         self._motion = motion
+        self._homing = homing
+        self._timers = timers
         self._axes = axes
         self._functions = functions
         self.phase = Phase.IDLE
@@ -104,6 +117,8 @@ class ProgramSequence:
         """Warnings for the channel to publish: number and text."""
         self.messages: list[str] = []
         """Messages of the program for the channel to publish."""
+        self.offsets: OffsetReport | None = None
+        """Offsets that count from the active block on, for the channel to publish."""
 
     # from outside
 
@@ -132,9 +147,12 @@ class ProgramSequence:
             self._stop_spindles()
             return
         moving = self.phase is Phase.MOTION and self._motion.on_path
+        homes = self.phase is Phase.HOMING
         self.phase = Phase.RAMP_DOWN
         self._awaits_event = False
         self._outgoing = Outgoing(commands=[command for command in self._outgoing.commands if command.command in ENDS])
+        if homes:
+            self._outgoing.commands += self._homing.stop(self._feedback)
         self._functions.withdraw()
         self._waits = []
         if moving:
@@ -181,9 +199,25 @@ class ProgramSequence:
         self._functions.spindles.send(first_cycle)
         return outgoing
 
+    def set_override(self, percent: float) -> None:
+        """Override of the channel for axes that home; PathMotion has its own."""
+        self._outgoing.commands += self._homing.set_override(percent)
+
+    @property
+    def homing_held(self) -> bool:
+        """Axes that are to home are held by the override of the channel."""
+        return self.phase is Phase.HOMING and self._homing.held
+
+    def _home(self) -> None:
+        self._outgoing.commands += self._homing.go_on(self._feedback)
+        if self._homing.done():
+            self.motion_ended()
+
     def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
-        """Reads the spindles' blocks for the cycles before `cycle`."""
+        """Reads the blocks of spindles and homing axes for the cycles before `cycle`. Raises CncError 22035."""
         self._feedback = feedback
+        if self.phase is Phase.HOMING:
+            self._home()
         spindles = self._functions.spindles
         ended = spindles.read(cycle, feedback)
         self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues") for text in ended]
@@ -211,6 +245,8 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
+        if self.homing_held:
+            return "an override above 0 or the end of the feed hold"
         waits = [wait.text(self.handshake) for wait in self._waited_for()]
         return " and ".join(text for text in waits if text)
 
@@ -220,13 +256,13 @@ class ProgramSequence:
 
     # from block to block
 
-    def go_on(self, first_cycle: int) -> bool:
-        """One step forward between motions; False when the path has to wait.
+    def go_on(self, first_cycle: int, cycle: int) -> bool:
+        """One step forward between motions at `cycle` of the block; False when the path has to wait.
 
         Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
-            return self._begin_block(first_cycle)
+            return self._begin_block(first_cycle, cycle)
         if self.phase not in WAITING:
             return False
         waits = self._waited_for()
@@ -236,7 +272,7 @@ class ProgramSequence:
         if len(done) < len(waits):
             return False
         if self.phase is Phase.WAIT_GEAR:
-            self._functions_before()
+            self._functions_before(cycle)
         elif self.phase is Phase.WAIT_BEFORE:
             self._start_motion()
         elif self.phase is Phase.WAIT_END:
@@ -255,9 +291,6 @@ class ProgramSequence:
             self._motion.abandon()
             self._end_program()
             self._stop_spindles()
-            return
-        if self._motion.passes:
-            self._pass_block()
             return
         self._motion.finish()
         if self._awaits_event:
@@ -278,12 +311,13 @@ class ProgramSequence:
             expected = Expectation(spindle.node)
             self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
-    def _begin_block(self, first_cycle: int) -> bool:
+    def _begin_block(self, first_cycle: int, cycle: int) -> bool:
         """False while the interpreter computes, and behind a wait for the path. Raises ProgramError."""
         if first_cycle == self._waited_at:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
-            self.stream.give(actual_positions(self._feedback, self._axes))
+            actual = actual_positions(self._feedback, self._axes)
+            self.stream.give(actual, self._motion.position, self._timers.read)
         block = self._following.take()
         if block is BUSY:
             return False
@@ -293,28 +327,32 @@ class ProgramSequence:
             return True
         self._block = block
         self.source = block.source
+        if block.offsets is not None:
+            self.offsets = block.offsets
         gear = self._functions.gear_change(block)
         if not gear.commands:
-            self._functions_before()
+            self._functions_before(cycle)
             return True
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
         return True
 
-    def _functions_before(self) -> None:
+    def _functions_before(self, cycle: int) -> None:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
         block = self._block
         assert block is not None
-        self._tell(block)
+        self._tell(block, cycle)
         self._queue(self._functions.of_block(block, Moment.BEFORE))
         self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.functions)
         self._wait(Phase.WAIT_BEFORE, *moments_before(block))
 
-    def _tell(self, block: CanonicalBlock) -> None:
-        """Messages of the block. Raises CncError 22029 for an error that the program orders."""
+    def _tell(self, block: CanonicalBlock, cycle: int) -> None:
+        """Messages and timers of the block. Raises CncError 22029 for an error that the program orders."""
         for function in block.functions:
             if isinstance(function, Message):
                 self.messages.append(function.text)
+            elif isinstance(function, Timer):
+                self._timers.carry_out(function, cycle)
             elif isinstance(function, OrderedError):
                 if function.severe:
                     raise CncError(ORDERED_ERROR, function.text)
@@ -325,6 +363,10 @@ class ProgramSequence:
         if motion is None:
             self.motion_ended()
             return
+        if isinstance(motion, HomeAxes):
+            self._homing.begin(motion.groups)
+            self.phase = Phase.HOMING
+            return
         self._motion.start(motion, self._following)
         self.phase = Phase.MOTION
 
@@ -332,16 +374,20 @@ class ProgramSequence:
         """The path has to stop behind the active block, whatever follows."""
         return self.single_block or any(wait.until in LATER_WAITS for wait in self._waits)
 
-    def _pass_block(self) -> None:
-        """The path goes on into the next block without a stop; blocks without motion in between are done at once."""
+    def pass_block(self, cycle: int) -> None:
+        """The path goes on into the next block without a stop; blocks without motion in between are done at once.
+
+        On the ramp of an aborted program their functions do not go out any more.
+        """
         moves = False
         while not moves:
             self.stream.done += 1
             block = self._following.take()
             assert block is not None
             self._block, self.source = block, block.source
-            self._tell(block)
-            self._queue(self._functions.of_block(block, Moment.BEFORE))
+            if self.phase is Phase.MOTION:
+                self._tell(block, cycle)
+                self._queue(self._functions.of_block(block, Moment.BEFORE))
             moves = block.motion is not None
         self._motion.pass_block()
 

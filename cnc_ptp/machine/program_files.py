@@ -1,6 +1,7 @@
 """NC programs and those that they call, read before they are loaded: the kernel itself opens no file.
 
-A called program is looked for in the folder of its caller's main program, then among those that ship with cnc_ptp.
+A called program is looked for in the folder of its caller's main program, then in those of the machine file
+(P-CHAN-90004), then among those that ship with cnc_ptp. Nothing outside these folders is read, whatever a link says.
 """
 
 from __future__ import annotations
@@ -37,10 +38,13 @@ def read_file(what: str, path: str) -> str:
         ) from None
 
 
-def read_program(path: str) -> tuple[str, dict[str, str]]:
-    """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122."""
+def read_program(path: str, folders: Sequence[str] = ()) -> tuple[str, dict[str, str]]:
+    """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122.
+
+    `folders` of the machine file, besides that of the program.
+    """
     text = read_file("NC program", path)
-    return text, called_programs(text, [str(Path(path).parent)])
+    return text, called_programs(text, [str(Path(path).parent), *folders])
 
 
 def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
@@ -75,15 +79,24 @@ def called_names(text: str) -> list[str]:
 
 def find(name: str, folders: Sequence[str]) -> Path | None:
     """The file of this name in the first folder that has it; upper and lower case are not distinguished."""
-    for folder in (*map(Path, folders), SHIPPED):
+    searched = (*map(Path, folders), SHIPPED)
+    for folder in searched:
         exact = folder / name
-        if exact.is_file():
+        if is_within(exact, searched):
             return exact
         try:
             entries = sorted(folder.iterdir())
         except OSError:
             continue
         for entry in entries:
-            if entry.name.upper() == name.upper() and entry.is_file():
+            if entry.name.upper() == name.upper() and is_within(entry, searched):
                 return entry
     return None
+
+
+def is_within(path: Path, folders: Sequence[Path]) -> bool:
+    """Whether a path is a file that lies in one of the folders, also behind links."""
+    if not path.is_file():
+        return False
+    target = path.resolve()
+    return any(target.is_relative_to(folder.resolve()) for folder in folders)

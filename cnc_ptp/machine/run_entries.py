@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,26 +10,33 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.machine.program_files import called_programs, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.parser import NO_FILES, parse_program
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.protocol.blocks import Command
 
 
 def read_entries(
-    machine: MachineParameters, *, program: str | None, scenario: str | None, may_be_empty: bool = False
+    machine: MachineParameters,
+    *,
+    program: str | None,
+    scenario: str | None,
+    may_be_empty: bool = False,
+    dialect: str | None = None,
 ) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
+    `dialect`: vocabulary of `program`; None: that of the machine file.
     `may_be_empty`: a scenario may have no entries. Loads carry the text of their program; a path in a scenario,
     relative to its file, becomes one relative to the working directory.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
     """
     entries: list[Entry] = []
     if program is not None:
-        text, files = read_program(program)
-        check_program(machine, text, program, files)
+        text, files = read_program(program, program_folders(machine))
+        check_program(machine, text, program, files, dialect)
         channel = next(iter(machine.channels))
-        entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files))))
+        entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))
         entries.append(Entry(0.0, Command(channel, "start", {})))
     if scenario is not None:
         folder = Path(scenario).parent
@@ -43,24 +50,38 @@ def read_entries(
             if entry.command.command == "load":
                 arguments = entry.command.arguments
                 arguments["program"] = str(folder / arguments["program"])
-                add_files(arguments)
+                add_files(arguments, program_folders(machine, entry.command.target))
     return sorted(entries, key=lambda entry: entry.at)
 
 
-def check_program(machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES) -> None:
+def check_program(
+    machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None
+) -> None:
     """Interprets a program for the first channel as started from the start positions. Raises ProgramError, 26112."""
     check = ProgramCheck.of_first_channel(machine, file)
-    check.blocks(parse_program(text, file, files=files), check.start)
+    vocabulary = check.vocabulary if dialect is None else VOCABULARIES[dialect]
+    check.blocks(parse_program(text, file, files=files, vocabulary=vocabulary), check.start)
 
 
-def load_arguments(program: str, text: str, files: Mapping[str, str]) -> dict[str, Any]:
+def load_arguments(program: str, text: str, files: Mapping[str, str], dialect: str | None = None) -> dict[str, Any]:
     """Arguments of the command `load`."""
-    return {"program": program, "text": text, **({"files": dict(files)} if files else {})}
+    arguments: dict[str, Any] = {"program": program, "text": text}
+    if files:
+        arguments["files"] = dict(files)
+    if dialect is not None:
+        arguments["dialect"] = dialect
+    return arguments
 
 
-def add_files(arguments: dict[str, Any]) -> None:
+def program_folders(machine: MachineParameters, channel: str = "") -> tuple[str, ...]:
+    """Where programs that others call are looked for (P-CHAN-90004), by a channel or the first one."""
+    of_channel = machine.channels.get(channel) or next(iter(machine.channels.values()), None)
+    return of_channel.folders if of_channel else ()
+
+
+def add_files(arguments: dict[str, Any], folders: Sequence[str]) -> None:
     """To a load with the text of its program the texts of those that it calls. Raises CncError 26110, 26122."""
     if "text" in arguments and "files" not in arguments:
-        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent)])
+        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent), *folders])
         if files:
             arguments["files"] = files

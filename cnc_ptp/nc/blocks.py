@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
 
-from cnc_ptp.nc import faults, feedforward, friction_switch
-from cnc_ptp.nc.canonical import CompensationSwitch, Source, SpindleFeedforward, number
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.block_words import BlockWords
+from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
@@ -22,20 +23,13 @@ from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.flow.statement_reader import read_statement
 from cnc_ptp.nc.flow.statements import Assignment, Assignments
 from cnc_ptp.nc.hash_commands import hash_line
+from cnc_ptp.nc.iso.lines import iso_line
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.lexer import SKIP, Token, TokenReader, normalise, places, plain_words
-from cnc_ptp.nc.program import GCode, MCode, NcBlock, SpindleWords
+from cnc_ptp.nc.program import GCode, MCode, NcBlock, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
-from cnc_ptp.nc.spindle_words import spindle_bracket
-from cnc_ptp.nc.vocabulary import (
-    AXIS_LETTERS,
-    FUNCTION_WORDS,
-    G_CODES,
-    MAX_SKIP_LEVEL,
-    VALUE_WORDS,
-    m_code,
-)
+from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL, TWINCAT
 
-MAX_BLOCK_NUMBER = 999_999_999
 LONGEST_BLOCK: Final = 4000
 """Characters of a block, as the vendor has it."""
 SHOWN: Final = 60
@@ -47,39 +41,31 @@ _BLOCK_NUMBER = re.compile(r"\s*N\s*(\d{1,9})(?![\d.])", re.ASCII)
 _LABEL_NAME = re.compile(r"\s*\[\s*([A-Z_][A-Z0-9_]*)\s*\]", re.ASCII)
 
 
-def is_plain(code: GCode) -> bool:
-    """A code whose line the fast method may read."""
-    return not (code.spindle or code.valued or code.later)
-
-
-_PLAIN_VALUES = VALUE_WORDS | AXIS_LETTERS
-_PLAIN_CODES = {float(number_): code for number_, code in G_CODES.items() if is_plain(code)}
-_PLAIN_NAMES = {code.number: code.name for code in G_CODES.values()}
-
-
-def plain_block(file: str, line: int, text: str) -> NcBlock | None:
+def plain_block(file: str, line: int, text: str, vocabulary: Vocabulary) -> NcBlock | None:
     """The fast method, for known letters with numbers and G codes only; None if the line needs the careful one."""
     names, values, columns = plain_words(text)
     if not names:
         return None
+    plain, function_words = vocabulary.plain_words, vocabulary.function_words
+    plain_codes, plain_names = vocabulary.plain_codes, vocabulary.plain_names
     codes: tuple[GCode, ...] = ()
     words: dict[str, float] = {}
     functions = False
     block_number = 0
     for index in range(len(names)):
         letter, value = names[index], values[index]
-        if letter in _PLAIN_VALUES:
+        if letter in plain:
             if letter in words:
                 return None
             words[letter] = value
-            if letter in FUNCTION_WORDS:
+            if letter in function_words:
                 functions = True
         elif letter == "G":
-            code = _PLAIN_CODES.get(value)
+            code = plain_codes.get(value)
             if code is None or (codes and any(code.group == other.group for other in codes)):
                 return None
             codes += (code,)
-            names[index] = _PLAIN_NAMES[code.number]
+            names[index] = plain_names[value]
         elif letter == "N" and index == 0 and value >= 0.0 and value == int(value):
             block_number = int(value)
         else:
@@ -88,17 +74,19 @@ def plain_block(file: str, line: int, text: str) -> NcBlock | None:
     return NcBlock(source, codes, words, (), (), None, "", functions)
 
 
-def read_line(file: str, text: ProgramText, number: int, offset: int) -> Line:
+def read_line(file: str, text: ProgramText, number: int, offset: int, vocabulary: Vocabulary) -> Line:
     """The line that begins at `offset`; a syntax error is kept in it."""
     content, next_offset = text.line_at(offset)
     content = content.rstrip()
     next_number = number + 1
-    block = plain_block(file, number, content) if len(content) <= LONGEST_BLOCK else None
+    is_iso = vocabulary is ISO
+    plain = len(content) <= LONGEST_BLOCK and not (is_iso and "=" in content)
+    block = plain_block(file, number, content, vocabulary) if plain else None
     if block is not None:
         line = Line(number, block.source, next_number, next_offset)
         line.block = block
         return line
-    while continues(content) and next_offset >= 0 and len(content) <= LONGEST_BLOCK:
+    while not is_iso and continues(content) and next_offset >= 0 and len(content) <= LONGEST_BLOCK:
         more, next_offset = text.line_at(next_offset)
         content = content[:-1] + " " + more.rstrip()
         next_number += 1
@@ -110,7 +98,9 @@ def read_line(file: str, text: ProgramText, number: int, offset: int) -> Line:
         if len(content) > LONGEST_BLOCK:
             shown = source._replace(text=content[:SHOWN])
             raise flow_faults.LINE_TOO_LONG.at(shown, LONGEST_BLOCK + 1, length=len(content), limit=LONGEST_BLOCK)
-        if content.lstrip().startswith("%"):
+        if is_iso:
+            iso_line(line)
+        elif content.lstrip().startswith("%"):
             line.header = True
         else:
             careful_line(line)
@@ -196,7 +186,7 @@ def ending_of(found: Sequence[Token]) -> MCode | None:
     """The M function of a line that ends the program or the subroutine."""
     for token in found:
         if token.kind == "word" and token.name == "M" and token.value is None:
-            code = m_code(int(float(token.text)))
+            code = TWINCAT.m_code(int(float(token.text)))
             if code is not None and code.flow in ("end", "return"):
                 return code
     return None
@@ -205,7 +195,7 @@ def ending_of(found: Sequence[Token]) -> MCode | None:
 def _fixed_block(line: Line, found: Sequence[Token]) -> NcBlock | None:
     if not found:
         return None
-    words = BlockWords(line.source)
+    words = BlockWords(line.source, TWINCAT)
     for token in found:
         words.take(token)
     return words.block()
@@ -225,7 +215,7 @@ class ComputedWords(Statement):
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
         values = execution.values
-        words = BlockWords(line.source)
+        words = BlockWords(line.source, TWINCAT)
         for token in self.tokens:
             if token.target is not None:
                 _assignment(token).assign(values)
@@ -256,152 +246,3 @@ def _skip_level(line: str, source: Source) -> tuple[int, int]:
     if not 1 <= level <= MAX_SKIP_LEVEL:
         raise faults.SKIP_LEVEL.at(source, match.start(1) + 1, level=match[1], limit=MAX_SKIP_LEVEL)
     return 1 << (level - 1), match.end()
-
-
-def _integer(token: Token, source: Source, limit: int) -> int:
-    value = float(token.text)
-    if value < 0 or value != int(value) or value > limit:
-        raise faults.NOT_AN_INTEGER.at(source, token.column, word=token.name, value=token.text, limit=limit)
-    return int(value)
-
-
-class BlockWords:
-    """The words of one block as the careful method collects them."""
-
-    def __init__(self, source: Source) -> None:
-        self.source = source
-        self.codes: list[GCode] = []
-        self.m: list[MCode] = []
-        self.words: dict[str, float] = {}
-        self.spindles: list[SpindleWords] = []
-        self.controls: list[SpindleFeedforward | CompensationSwitch] = []
-        self.direct: float | None = None
-        self.values: dict[str, float] = {}
-
-    def take(self, token: Token) -> None:
-        """Adds one token."""
-        _TAKERS[token.kind](self, token)
-
-    def word(self, token: Token) -> None:
-        """A letter with a number."""
-        if token.name == "G":
-            self._g(token)
-        elif token.name == "M":
-            self._m(token)
-        elif token.name == "N":
-            _integer(token, self.source, MAX_BLOCK_NUMBER)
-            raise faults.BLOCK_NUMBER_PLACE.at(self.source, token.column, word=token.shown)
-        elif token.name in _PLAIN_VALUES:
-            self._value(token)
-        else:
-            raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
-
-    def _g(self, token: Token) -> None:
-        value = float(token.text)
-        code = G_CODES.get(int(value)) if value == int(value) else None
-        if code is None:
-            raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
-        if code.later:
-            raise faults.LATER.at(self.source, token.column, g=code.name, what=code.later)
-        if code.valued:
-            raise faults.CODE_VALUE.at(self.source, token.column, g=code.name)
-        self._check_group(token, code, self.codes)
-        self.codes.append(code)
-
-    def _m(self, token: Token) -> None:
-        value = float(token.text)
-        code = m_code(int(value)) if value == int(value) else None
-        if code is None:
-            raise faults.UNKNOWN_M.at(self.source, token.column, word=token.shown)
-        self._check_group(token, code, self.m)
-        self.m.append(code)
-
-    def _check_group(self, token: Token, code: GCode | MCode, before: Sequence[GCode | MCode]) -> None:
-        rival = next((other for other in before if other.group == code.group), None)
-        if rival is None:
-            return
-        if rival.number == code.number:
-            raise faults.TWICE.at(self.source, token.column, word=code.name)
-        names = {"first": rival.name, "second": code.name, "group": code.group}
-        raise faults.SAME_GROUP.at(self.source, token.column, **names)
-
-    def _value(self, token: Token) -> None:
-        value = float(token.text)
-        if token.name in self.words:
-            fault = faults.DUPLICATE_AXIS if token.name[0] in AXIS_LETTERS else faults.DUPLICATE_WORD
-            first, second = number(self.words[token.name]), number(value)
-            raise fault.at(self.source, token.column, word=token.name, first=first, second=second)
-        self.words[token.name] = value
-
-    def named(self, token: Token) -> None:
-        """A longer name with an equals sign: an axis, or a spindle's speed."""
-        if token.name[0] in AXIS_LETTERS:
-            self._value(token)
-        elif token.name[0] == "S":
-            self.spindles.append(SpindleWords(token.name, None, float(token.text), din=True))
-        else:
-            raise faults.UNKNOWN_WORD.at(self.source, token.column, word=token.shown)
-
-    def valued(self, token: Token) -> None:
-        """A code with a value: G159=2."""
-        number_ = int(token.name[1:])
-        code = G_CODES.get(number_) if token.name[0] == "G" else None
-        if code is None and token.name[0] == "G":
-            raise faults.UNKNOWN_G.at(self.source, token.column, word=token.shown)
-        if code is None or not code.valued:
-            raise faults.CODE_NO_VALUE.at(self.source, token.column, code=token.name)
-        self._check_group(token, code, self.codes)
-        self.codes.append(code)
-        self.values[code.name] = float(token.text)
-
-    def position(self, token: Token) -> None:
-        """The position of M19: `S.POS=90`."""
-        name = token.name.removesuffix(".POS")
-        self.spindles.append(SpindleWords(name, None, None, float(token.text), din=True))
-
-    def bracket(self, token: Token) -> None:
-        """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
-        if token.name[0] in AXIS_LETTERS:
-            self.controls.append(friction_switch.bracket(token, self.source))
-            return
-        if token.name[0] == "S" and feedforward.is_in(token):
-            self.controls.append(feedforward.bracket(token, self.source))
-            return
-        if token.name[0] != "S":
-            column = token.column + token.shown.index("[")
-            raise faults.UNEXPECTED_CHARACTER.at(self.source, column, character="[")
-        self.spindles.append(spindle_bracket(token, self.source))
-
-    def bare(self, token: Token) -> None:
-        """A number without a letter: the time of G04."""
-        if self.direct is not None or not any(code.own_words for code in self.codes):
-            raise faults.NUMBER_WITHOUT_WORD.at(self.source, token.column, word=token.shown)
-        self.direct = float(token.text)
-
-    def block(self) -> NcBlock:
-        """The finished block."""
-        functions = bool(self.m or self.spindles or not FUNCTION_WORDS.isdisjoint(self.words))
-        functions = functions or any(code.spindle for code in self.codes)
-        flow = next((code.flow for code in self.m if code.flow), "")
-        return NcBlock(
-            self.source,
-            tuple(self.codes),
-            self.words,
-            tuple(self.m),
-            tuple(self.spindles),
-            self.direct,
-            flow,
-            functions,
-            controls=tuple(self.controls),
-            values=self.values or None,
-        )
-
-
-_TAKERS = {
-    "word": BlockWords.word,
-    "named": BlockWords.named,
-    "position": BlockWords.position,
-    "bracket": BlockWords.bracket,
-    "bare": BlockWords.bare,
-    "valued": BlockWords.valued,
-}

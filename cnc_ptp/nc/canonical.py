@@ -53,14 +53,15 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
-    `slope` of its acceleration, "" is that of P-CHAN-00071. `exact`: the path stops at the end; `contour`: the corner
-    there may be rounded like that.
+    `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect. `exact`:
+    the path stops at the end; `contour`: the corner there may be rounded like that.
     """
 
     target: tuple[float, ...]
     rapid: bool
     feed: float
     slope: str = ""
+    full_override: bool = False
     exact: bool = False
     contour: Contour | None = None
 
@@ -70,7 +71,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope`, `exact` and `contour` as in LinearMove.
+    `slope`, `full_override`, `exact` and `contour` as in LinearMove.
     """
 
     target: tuple[float, ...]
@@ -80,6 +81,7 @@ class CircularMove(NamedTuple):
     sweep: float
     feed: float
     slope: str = ""
+    full_override: bool = False
     exact: bool = False
     contour: Contour | None = None
 
@@ -88,6 +90,12 @@ class Dwell(NamedTuple):
     """G04: the path dwells for `seconds`."""
 
     seconds: float
+
+
+class HomeAxes(NamedTuple):
+    """G74: the axes of a group home at the same time, group after group; afterwards they are where they stand."""
+
+    groups: tuple[tuple[str, ...], ...]
 
 
 class SpindleFunction(NamedTuple):
@@ -145,6 +153,13 @@ class WaitForPath(NamedTuple):
     awaited: bool = False
 
 
+class Timer(NamedTuple):
+    """#TIMER: START, STOP, READ or CLEAR of a timer, when the path reaches the block."""
+
+    action: str
+    number: int
+
+
 class Message(NamedTuple):
     """#MSG: a text for the operator."""
 
@@ -160,11 +175,15 @@ class OrderedError(NamedTuple):
 
 
 class AuxiliaryFunction(NamedTuple):
-    """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8]."""
+    """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8].
+
+    `value`: what M52=-345 and H5=2 pass to the PLC.
+    """
 
     letter: str
     number: int
     spindle: str = ""
+    value: float = 0.0
 
 
 class AxisFeedforward(NamedTuple):
@@ -212,21 +231,50 @@ Function = (
     | SpindleLink
     | ExplicitSynchronisation
     | WaitForPath
+    | Timer
     | Message
     | OrderedError
     | AuxiliaryFunction
     | ControlFunction
 )
-Motion = LinearMove | CircularMove | Dwell
+Motion = LinearMove | CircularMove | Dwell | HomeAxes
+
+
+class OffsetReport(NamedTuple):
+    """All that lies between programmed and machine positions: mm, deg, one value for each axis of the channel.
+
+    machine = shift + matrix · programmed for X, Y, Z (matrix row by row), shift + programmed for the other axes.
+    `zero_index`: 0 is G53, 1 G54; `scale` of #SCALE, `mirrored` by G21 to G23, `angle` of #ROTATION or None;
+    `systems`: #ACS and #CS that are on, the outermost first; `machine`: #MCS is on.
+    """
+
+    zero_index: int
+    zero: tuple[float, ...]
+    added: tuple[float, ...]
+    preset: tuple[float, ...]
+    clamp_index: int
+    clamp: tuple[float, ...]
+    tool: tuple[float, ...]
+    scale: tuple[float, ...]
+    mirrored: tuple[bool, ...]
+    angle: float | None
+    systems: tuple[str, ...]
+    machine: bool
+    matrix: tuple[float, ...]
+    shift: tuple[float, ...]
 
 
 class CanonicalBlock(NamedTuple):
-    """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30)."""
+    """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30).
+
+    `offsets` that count from here on, when they have changed.
+    """
 
     source: Source
     functions: tuple[Function, ...]
     motion: Motion | None
     stop: str
+    offsets: OffsetReport | None = None
 
 
 BUSY: Final = CanonicalBlock(Source("", 0, 0, ""), (), None, "")

@@ -67,6 +67,8 @@ UNKNOWN_M = Fault(20160, "unknown M function {word}")
 SAME_GROUP = Fault(21012, "{first} and {second} belong to one group ({group}) and cannot be in one block")
 LATER = Fault(21050, "{g} is not available yet: {what}")
 CODE_NO_VALUE = Fault(21052, "{code} takes no value")
+MACROS = Fault(21054, "{word} is no word: texts are values of expressions, macros are not available")
+CODE_INTEGER = Fault(21053, "the value of {code} must be an integer, it is {value}")
 CODE_VALUE = Fault(21051, "{g} needs a value, as in {g}=1")
 WORD_NOT_USED = Fault(21013, "{word} has no meaning with {g}")
 

@@ -1,4 +1,4 @@
-"""Feeds: G94 in mm/min, G93 as the time of a block."""
+"""Feeds: G94 in mm/min, G93 as the time of a block or its inverse."""
 
 from math import hypot, radians
 from typing import Final
@@ -8,6 +8,8 @@ from cnc_ptp.nc.canonical import CircularMove, LinearMove
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
 TIME: Final = 93
+INVERSE: Final = 930
+"""G93 of the vocabulary iso."""
 PER_MINUTE: Final = 94
 
 
@@ -21,18 +23,37 @@ def time_of_block(state: ModalState) -> None:
     state.feed_mode = TIME
 
 
+def inverse_time(state: ModalState) -> None:
+    """G93 of the vocabulary iso: each block lasts 1/F minutes and needs an F of its own."""
+    state.feed_mode = INVERSE
+    state.block_time = 0.0
+
+
+def note(state: ModalState, value: float) -> None:
+    """Takes an F that is not negative into the state."""
+    if state.feed_mode == PER_MINUTE:
+        state.feed = value * state.coordinates.unit / 60.0
+    elif state.feed_mode == TIME:
+        state.block_time = value
+    else:
+        state.block_time = 60.0 / value if value else 0.0
+
+
 def require_feed(state: ModalState, block: NcBlock, code: GCode) -> None:
     """Raises ProgramError 20008 for a motion without a feed."""
-    if state.block_time if state.feed_mode == TIME else state.feed:
+    if state.feed if state.feed_mode == PER_MINUTE else state.block_time:
         return
     raise faults.FEED_MISSING.at(block.source, block.source.column(code.name), g=code.name)
 
 
 def timed(channel: Channel, state: ModalState, motion: LinearMove | CircularMove) -> LinearMove | CircularMove:
     """With G93: the motion (machine coordinates) with the feed that takes the programmed time at a constant speed."""
-    if state.feed_mode != TIME or (isinstance(motion, LinearMove) and motion.rapid):
+    if state.feed_mode == PER_MINUTE or (isinstance(motion, LinearMove) and motion.rapid):
         return motion
-    return motion._replace(feed=path_length(channel, state.position, motion) / state.block_time)
+    feed = path_length(channel, state.position, motion) / state.block_time
+    if state.feed_mode == INVERSE:
+        state.block_time = 0.0
+    return motion._replace(feed=feed)
 
 
 def path_length(channel: Channel, start: tuple[float, ...], motion: LinearMove | CircularMove) -> float:

@@ -8,9 +8,10 @@ import re
 from collections.abc import Callable
 
 from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links
-from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, WaitForPath
+from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
+from cnc_ptp.nc.expressions.readable import LAST_TIMER
 from cnc_ptp.nc.expressions.reader import ExpressionReader
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
@@ -24,6 +25,7 @@ _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCI
 """[NBR] says that spindles are given by number; that is recognised anyway."""
 _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
+_TIMER = re.compile(r"ID\s*=?\s*(\d{1,3})", re.ASCII)
 
 
 def hash_line(line: Line, text: str, begin: int, outside: str) -> bool:
@@ -183,6 +185,14 @@ def default_slope(channel: Channel, state: ModalState, block: NcBlock, command: 
     return ()
 
 
+def timer(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
+    """#TIMER START [ID=1], also with SYN: all of them act when the path reaches the block."""
+    found = _TIMER.fullmatch(",".join(command.arguments or ()))
+    if found is None or int(found[1]) > LAST_TIMER:
+        raise arguments_fault(block, command, f"with [ID=0] to [ID={LAST_TIMER}]")
+    return (Timer(command.name.split()[1], int(found[1])),)
+
+
 def arguments_fault(block: NcBlock, command: HashCommand, syntax: str) -> faults.ProgramError:
     """The error for a command with wrong syntax."""
     return spindle_faults.COMMAND_ARGUMENTS.at(block.source, command.column, command=f"#{command.name}", syntax=syntax)
@@ -203,6 +213,7 @@ COMMANDS: dict[str, Run] = {
     "FLUSH": flush,
     "FLUSH WAIT": flush,
     "FLUSH CONTINUE": flush_continue,
+    **{f"TIMER {action}{mode}": timer for action in ("START", "STOP", "READ", "CLEAR") for mode in ("", " SYN")},
 }
 
 
@@ -222,6 +233,7 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "SCALE": commands.read_scale,
     "CS": commands.read_system,
     "ACS": commands.read_system,
+    "MCS": commands.read_machine_coordinates,
     "PSET": commands.read_preset,
     "PRESET": commands.read_preset,
     "COMMENT BEGIN": _comment,

@@ -7,16 +7,19 @@ from cnc_ptp.nc.canonical import (
     BUSY,
     CanonicalBlock,
     CircularMove,
-    Dwell,
     Function,
+    HomeAxes,
     LinearMove,
     Motion,
     Source,
+    Timer,
     WaitForPath,
 )
 from cnc_ptp.nc.controls import bracketed_controls
+from cnc_ptp.nc.coordinates.codes import initial_coordinates, select_offset
 from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import place, refresh
+from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
@@ -25,10 +28,11 @@ from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_c
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import NO_FILES, parse_all
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock, SpindleTable
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
+from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
 
 CENTRE_OFFSET = 2.0
 """Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
@@ -52,7 +56,8 @@ def interpret(
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
-    zero_offsets: Mapping[int, tuple[float, ...]] | None = None,
+    offsets: OffsetTables = NO_OFFSET_TABLES,
+    soft_limits: tuple[tuple[float, float], ...] = (),
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
@@ -66,9 +71,10 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits counts. `rotary`: axes in deg. `zero_offsets` by index (1: G54), one value for
-    each axis. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
-    Blocks without function, motion or stop give nothing, nor does a move to the present position.
+    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` of the machine, `soft_limits` of
+    its axes for V.A. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
+    change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
     it, and BUSY in long computations. Otherwise such a line is the error 21438.
     `values`: parameters and variables to continue with, of the same `state`.
@@ -76,15 +82,20 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    channel = Channel(axes, index, table, centre_offset, ratio, frozenset(rotary), dict(zero_offsets or {}))
-    state = ModalState() if state is None else state
+    vocabulary = program.vocabulary
+    channel = Channel(axes, index, table, centre_offset, ratio, vocabulary, frozenset(rotary), offsets, soft_limits)
+    state = ModalState(coordinates=initial_coordinates(channel)) if state is None else state
     state.position = tuple(start)
     refresh(channel, state)
+    state.reported = True
+    if vocabulary.first_offset and not state.coordinates.own.zero_index:
+        select_offset(channel, state, vocabulary.first_offset)
     if values is None:
         values = Values(channel, state)
     else:
         values.channel, values.state = channel, state
     execution = Execution(program, values, limits=limits, block_skip=block_skip)
+    source = program.main.source
     try:
         while (block := execution.next_block()) is not None:
             if block is COMPUTES:
@@ -96,13 +107,27 @@ def interpret(
                     raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
                 yield CanonicalBlock(values.source, (WaitForPath(True),), None, "")
                 continue
+            source = block.source
             canonical = _resolve(channel, state, block, check_target)
             motion = None if canonical is None else canonical.motion
-            execution.moved = motion is not None and not isinstance(motion, Dwell)
-            if canonical is not None:
-                yield canonical
+            execution.moved = isinstance(motion, (LinearMove, CircularMove))
+            if state.following is not None:
+                steps, state.following = state.following, None
+                yield from _followed(channel, state, block, canonical, steps, check_target)
+            elif canonical is not None:
+                yield _reported(channel, state, canonical)
+                if isinstance(motion, HomeAxes) and values.position:
+                    state.position = values.position
+                    refresh(channel, state)
+        if not state.reported:
+            yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
     except ProgramError as error:
         raise with_calls(error, execution) from None
+
+
+def _with_offsets(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
+    state.reported = True
+    return block._replace(offsets=offset_report(channel, state.coordinates))
 
 
 def _resolve(
@@ -112,16 +137,22 @@ def _resolve(
     if block.command is not None:
         commanded = block.command.run(channel, state, block, block.command)
         return CanonicalBlock(block.source, commanded, None, "") if commanded else None
-    path = G_CODES[state.path]
+    path: GCode | None = None
+    modal = -1
     control: tuple[Function, ...] = ()
     moves = True
     for code in block.codes:
         if code.motion is not None:
-            path = code
             if code.modal:
-                state.path = code.number
-        elif code.select is not None:
+                modal = code.number
+            if path is None or not code.modal:
+                path = code
+        if code.select is not None:
             code.select(state)
+    if modal >= 0:
+        state.path = modal
+    if path is None:
+        path = channel.vocabulary.paths[state.path]
     for code in block.codes:
         if code.prepare is not None:
             code.prepare(channel, state, block, code)
@@ -136,22 +167,8 @@ def _resolve(
         functions = block_functions(channel, state, block)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
-    if motion is not None and not isinstance(motion, Dwell):
-        programmed = motion.target
-        motion = timed(channel, state, place(channel, state, block, motion))
-        if motion.target == state.position and not isinstance(motion, CircularMove):
-            motion = None
-            state.programmed = programmed
-        else:
-            if check_target is not None:
-                _check_move(state.position, motion, block.source, check_target)
-            if state.coordinates.limits:
-                check_limits(channel, state, block, motion)
-            if state.slope:
-                motion = motion._replace(slope=state.slope)
-            if state.spindle.speedless:
-                _require_speed(state, motion)
-            state.position, state.programmed = motion.target, programmed
+    if motion is not None:
+        motion = _moved(channel, state, block, motion, check_target)
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":
         _require_speed(state, None)
@@ -161,9 +178,73 @@ def _resolve(
     return CanonicalBlock(block.source, functions, motion, stop)
 
 
+def _moved(
+    channel: Channel, state: ModalState, block: NcBlock, motion: Motion, check_target: CheckTarget | None
+) -> Motion | None:
+    """A motion in machine coordinates, checked; the state is at its end then. None if it goes nowhere."""
+    if not isinstance(motion, (LinearMove, CircularMove)):
+        return motion
+    programmed = motion.target
+    motion = timed(channel, state, place(channel, state, block, motion))
+    if motion.target == state.position and not isinstance(motion, CircularMove):
+        state.programmed = programmed
+        return None
+    if check_target is not None:
+        _check_move(state.position, motion, block.source, check_target)
+    if state.coordinates.limits:
+        check_limits(channel, state, block, motion)
+    if state.slope:
+        motion = motion._replace(slope=state.slope)
+    if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
+        motion = motion._replace(full_override=True)
+    if state.spindle.speedless:
+        _require_speed(state, motion)
+    state.position, state.programmed = motion.target, programmed
+    return motion
+
+
+def _followed(
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    first: CanonicalBlock | None,
+    steps: Iterator[Step],
+    check_target: CheckTarget | None,
+) -> Iterator[CanonicalBlock]:
+    """A block and its further motions (cycles, G28); what stops the program comes behind the last one."""
+    stop = "" if first is None else first.stop
+    if first is not None and (first.functions or first.motion is not None):
+        yield _reported(channel, state, first._replace(stop=""))
+    for step in steps:
+        if step.machine:
+            state.frame, state.programmed = None, state.position
+        motion = None if step.motion is None else _moved(channel, state, block, step.motion, check_target)
+        if motion is not None or step.functions:
+            yield _reported(channel, state, CanonicalBlock(block.source, step.functions, motion, ""))
+    reported = state.reported
+    refresh(channel, state)
+    state.reported = reported
+    if stop:
+        yield _reported(channel, state, CanonicalBlock(block.source, (), None, stop))
+
+
+def _reported(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
+    return block if state.reported else _with_offsets(channel, state, block)
+
+
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
-    return any(isinstance(function, WaitForPath) and function.awaited for function in block.functions)
+    return isinstance(block.motion, HomeAxes) or reads_the_run(block)
+
+
+def reads_the_run(block: CanonicalBlock) -> bool:
+    """The line behind this block reads what only the run knows."""
+    for function in block.functions:
+        if isinstance(function, WaitForPath) and function.awaited:
+            return True
+        if isinstance(function, Timer) and function.action == "READ":
+            return True
+    return False
 
 
 def _require_speed(state: ModalState, motion: Motion | None) -> None:
@@ -178,7 +259,7 @@ def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_
     if isinstance(motion, CircularMove):
         for point in extreme_points(start, motion):
             check_target(point, source)
-    if not isinstance(motion, Dwell):
+    if isinstance(motion, (LinearMove, CircularMove)):
         check_target(motion.target, source)
 
 
@@ -194,29 +275,43 @@ def check(
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
     files: Mapping[str, str] = NO_FILES,
+    offsets: OffsetTables = NO_OFFSET_TABLES,
+    soft_limits: tuple[tuple[float, float], ...] = (),
+    limits: Limits = LIMITS,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
 
     The modal check runs the program from `start` (default 0) up to its first error, the first line with a syntax
-    error, or one that reads what only the run knows, since everything after that would be a guess. An error that
-    `check_target` raises comes out as it is, unless it is a ProgramError.
+    error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
+    after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
-    program, errors = parse_all(text, file, files=files)
+    program, errors = parse_all(text, file, files=files, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
+    homed = False
+
+    def check_known(target: tuple[float, ...], source: Source) -> None:
+        if check_target is not None and not homed:
+            check_target(target, source)
+
     try:
         blocks = interpret(
             program,
             begin,
             axes,
             spindles,
-            check_target=check_target,
+            check_target=check_known,
             centre_offset=centre_offset,
             centre_offset_ratio=centre_offset_ratio,
             rotary=rotary,
+            offsets=offsets,
+            soft_limits=soft_limits,
+            limits=limits,
             runs=True,
         )
         for block in blocks:
-            if awaits_path(block):
+            homed = homed or isinstance(block.motion, HomeAxes)
+            if reads_the_run(block):
                 break
     except ProgramError as error:
         if all((error.file, error.line) != (known.file, known.line) for known in errors):

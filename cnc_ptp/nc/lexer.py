@@ -58,7 +58,7 @@ _KINDS = ("call", "position", "word", "named", "bracket", "bare")
 _BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({NUMBER})(?![\d.])", re.ASCII)
 _BRACKET_CODE = re.compile(r"\b([GM])\s*=?\s*(\d{1,9})(?![\d.])", re.ASCII)
 _BRACKET_NAME = re.compile(r"\s*([A-Z_]{2,}+)()(?=\s|$)", re.ASCII)
-_UNREADABLE = re.compile(r"[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
+_UNREADABLE = re.compile(r"\"[^\"]*\"?|[A-Z]{2,}|[A-Z]\s*=?\s*[^\sA-Z(\[]*|[#$]\s*\w*|[\d.+-]+|.", re.ASCII | re.DOTALL)
 
 
 SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
@@ -392,7 +392,7 @@ _TARGET = re.compile(r"\s*(?:P\s*[\d\[P]|V\s*\.)", re.ASCII)
 _ASSIGNS = re.compile(r"\s*([-+*/]?=)(?!=)", re.ASCII)
 _COMBINED: Final = {"+=": Add, "-=": Subtract, "*=": Multiply, "/=": Divide}
 _COMPUTED_POSITION = re.compile(rf"\s*({_NAME})\s*\.\s*POS\s*=?", re.ASCII)
-_VALUED = re.compile(r"\s*([GM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
+_VALUED = re.compile(r"\s*([GHM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
 _COMPUTED_WORD = re.compile(r"\s*([A-Z])\s*=?", re.ASCII)
 _COMPUTED_NAME = re.compile(rf"\s*({_NAME})\s*=(?!=)", re.ASCII)
 _COMPUTED: Final = (
@@ -465,6 +465,8 @@ def _unreadable(line: str, source: Source, position: int) -> faults.ProgramError
 def _fault_of(shown: str, line: str, position: int) -> faults.Fault:
     if shown[0] in "#$":
         return faults.COMMAND_UNKNOWN
+    if shown[0] == '"':
+        return faults.MACROS
     if "[" in line[position:] and re.match(rf"{_NAME}\s*\[", line[position:], re.ASCII):
         return faults.BRACKET_OPEN
     if re.search(rf"(?<![.\d])\d{{{MAX_DIGITS + 1}}}", shown):

@@ -10,9 +10,7 @@ from cnc_ptp.errors import Value
 from cnc_ptp.nc import arcs, faults, feeds
 from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
-from cnc_ptp.nc.spindles import FUNCTION_WORDS, current_main
-
-MM_PER_MIN = 60.0
+from cnc_ptp.nc.spindles import current_main
 
 
 class Plane(NamedTuple):
@@ -46,18 +44,17 @@ def target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
         elif word == "F":
             if value < 0.0:
                 raise faults.FEED_NEGATIVE.at(block.source, block.source.column("F"), value=number(value))
-            if state.feed_mode == feeds.TIME:
-                state.block_time = value
-            else:
-                state.feed = value * unit / MM_PER_MIN
-        elif word not in FUNCTION_WORDS and word not in code.words:
+            feeds.note(state, value)
+        elif word not in channel.vocabulary.function_words and word not in code.words:
+            if any(word in other.words for other in block.codes):
+                continue
             raise _unused(channel, block, code, word)
     return target
 
 
 def _unused(channel: Channel, block: NcBlock, code: GCode, word: str) -> faults.ProgramError:
     column = block.source.column(word)
-    if word in "IJKR":
+    if word[0] not in channel.vocabulary.axis_letters:
         return faults.WORD_NOT_USED.at(block.source, column, word=word, g=code.name)
     return faults.AXIS_UNKNOWN.at(block.source, column, word=word, known=", ".join(channel.axes))
 

@@ -20,13 +20,17 @@ from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.sections import Program, Section
 from cnc_ptp.nc.flow.statements import Declarations
 from cnc_ptp.nc.flow.structures import CLOSING, DIVIDES, OPENED, Place, StructureReader
+from cnc_ptp.nc.iso.lines import program_name
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.lexer import normalise
+from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 MOST_ERRORS: Final = 1000
 """Errors of a file that are kept; the rest is not looked for."""
 
-RETURNS: Final = ("M17", "M29")
+RETURNS: Final = ("M17", "M29", "M99")
 _NUMBER = r"\s*(?:/\d*\s*)?(?:N\s*\d+\s*)?#\s*"
 _END_OF_VARIABLES = re.compile(_NUMBER + r"ENDVAR(?![A-Z])", re.ASCII | re.IGNORECASE)
 _END_OF_COMMENT = re.compile(_NUMBER + r"COMMENT\s+END(?![A-Z])", re.ASCII | re.IGNORECASE)
@@ -43,22 +47,28 @@ def parse_program(
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> Program:
     """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks).
 
     `files`: the texts of the programs that it may call, by name; `library`: such programs that have been read already.
     """
-    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library)
+    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library, vocabulary=vocabulary)
     if errors:
         raise errors[0]
     return program
 
 
 def parse_all(
-    text: str, file: str, *, mdi: bool = False, files: Mapping[str, str] = NO_FILES
+    text: str,
+    file: str,
+    *,
+    mdi: bool = False,
+    files: Mapping[str, str] = NO_FILES,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> tuple[Program, list[ProgramError]]:
     """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached."""
-    return parse_text(ProgramText(text), file, mdi=mdi, files=files)
+    return parse_text(ProgramText(text), file, mdi=mdi, files=files, vocabulary=vocabulary)
 
 
 def parse_text(
@@ -68,11 +78,13 @@ def parse_text(
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> tuple[Program, list[ProgramError]]:
     """As parse_all, from memory or from a file."""
-    called = {name.upper(): Program(name, ProgramText(content), read_line) for name, content in files.items()}
+    texts = files if vocabulary is TWINCAT else NO_FILES
+    called = {name.upper(): Program(name, ProgramText(text_), read_line, vocabulary) for name, text_ in texts.items()}
     known = {**(library or {}), **called}
-    program = Program(file, text, read_line)
+    program = Program(file, text, read_line, vocabulary)
     errors: list[ProgramError] = []
     with paused_collector():
         for each in (program, *called.values()):
@@ -92,6 +104,9 @@ class _Reader:
         self.structures = StructureReader("the program")
         self.ended = True
         """The present section has its M30 or M29."""
+        self.is_iso = program.vocabulary is ISO
+        self.percent = self.closed = False
+        """Of the vocabulary iso: the file has begun with %; a second % has closed it."""
         self.last = Source(program.file, 1, 0, "")
         self.calls: list[tuple[Call, Source]] = []
         self.declarations: Declarations | None = None
@@ -102,8 +117,8 @@ class _Reader:
         """All errors of the file, one per line."""
         number, offset = 1, 0
         program = self.program
-        while offset >= 0 and len(self.errors) < MOST_ERRORS:
-            line = read_line(program.file, program.text, number, offset)
+        while offset >= 0 and len(self.errors) < MOST_ERRORS and not self.closed:
+            line = read_line(program.file, program.text, number, offset, program.vocabulary)
             if self.opened is None:
                 self._line(line, offset)
             else:
@@ -116,7 +131,9 @@ class _Reader:
         program.keep(line)
         if line.error is not None:
             self.errors.append(line.error)
-        if line.header:
+        if line.header and self.is_iso:
+            self._program_number(line)
+        elif line.header:
             self._header(line)
         elif self.structures.awaits_case and line.control is None and line.does_something:
             word = line.source.text.split()[0]
@@ -152,7 +169,9 @@ class _Reader:
             return
         section = self.sections[-1]
         is_main = section.kind == "main program" and not self.called
-        if flow == "return" and is_main:
+        if flow == "return" and is_main and self.is_iso and section.name and not line.skip:
+            self._is_subroutine()
+        elif flow == "return" and is_main:
             word = next(name for name in line.source.names if name in RETURNS)
             self._mark(line, faults.RETURN_IN_MAIN.at(line.source, line.source.column(word), word=word))
         elif not line.skip:
@@ -176,6 +195,27 @@ class _Reader:
         except ProgramError as error:
             self.errors.append(error)
 
+    def _program_number(self, line: Line) -> None:
+        """Vocabulary iso: % at both ends, O1234 begins a program; those behind the main program are subroutines."""
+        try:
+            name = program_name(line.source)
+            if name:
+                has_main = any(section.kind == "main program" for section in self.sections)
+                kind = "subroutine" if has_main else "main program"
+                self._begin(kind, name, line.source, line.next_number, line.next_offset)
+            else:
+                self.closed = self.percent or bool(self.sections)
+                self.percent = True
+        except ProgramError as error:
+            self.errors.append(error)
+
+    def _is_subroutine(self) -> None:
+        """M99 shows that the program before the main one is a subroutine."""
+        section = self.sections.pop()._replace(kind="subroutine")
+        self.sections.append(section)
+        self.program.subroutines[section.name] = section
+        self.ended = True
+
     def _begin(self, kind: str, name: str, source: Source, number: int, offset: int) -> None:
         self._end_section()
         section = Section(kind, name, source, number, offset)
@@ -197,7 +237,7 @@ class _Reader:
             return
         section = self.sections[-1]
         is_main = section.kind == "main program" and not self.called
-        end = "M30 or M02" if is_main else "M29 or M17"
+        end = "M30 or M02" if is_main else "M99" if self.is_iso else "M29 or M17"
         self.errors.append(faults.END_MISSING.at(self.last, program=section.title, end=end))
 
     # structures

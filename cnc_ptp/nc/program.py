@@ -1,6 +1,6 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
@@ -8,6 +8,9 @@ from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, S
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
+
+MAX_M: Final = 999
 
 
 class GCode(NamedTuple):
@@ -19,7 +22,7 @@ class GCode(NamedTuple):
     makes functions of the block; with `takes_axes` they use the axis words, so that the block has no motion.
     `spindle`: the code makes a function of a spindle (G74, G167), besides its effect on the path. `prepare` changes
     the coordinates before the motion of its block; `valued`: it takes a value (G159=2). `later`: what it stands for is
-    not built yet, so it is refused when the program is read.
+    not built yet, so it is refused when the program is read. `minor`: digit behind the point (G54.1).
     """
 
     number: int
@@ -35,11 +38,23 @@ class GCode(NamedTuple):
     prepare: "Callable[[Channel, ModalState, NcBlock, GCode], None] | None" = None
     valued: bool = False
     later: str = ""
+    minor: int = 0
+
+    @property
+    def key(self) -> float:
+        """The number as it is written: 54.1 is `number` 54, `minor` 1."""
+        return float(f"{self.number}.{self.minor}")
+
+    @property
+    def is_plain(self) -> bool:
+        """A line with this code may be read by the fast method."""
+        return not (self.spindle or self.valued or self.later)
 
     @property
     def name(self) -> str:
-        """As printed in programs and errors: G01, G161."""
-        return code_name("G", self.number)
+        """As printed in programs and errors: G01, G161, G54.1."""
+        name = code_name("G", self.number)
+        return f"{name}.{self.minor}" if self.minor else name
 
 
 class MCode(NamedTuple):
@@ -57,6 +72,61 @@ class MCode(NamedTuple):
     def name(self) -> str:
         """As printed in programs and errors: M03, M130."""
         return code_name("M", self.number)
+
+
+class Vocabulary:
+    """The tables of one language: `twincat` is nc/vocabulary.py, `iso` nc/iso/vocabulary.py.
+
+    g_codes         rows by number (54.1)
+    m_codes         rows of M functions with a meaning of their own; those without go to the PLC
+    paths           rows of the modal path functions, by the number that ModalState.path holds
+    axis_letters    with which names of axes begin
+    value_words     letters with a number and a meaning of their own
+    function_words  those of them that are functions for spindles and PLC
+    words           letters of words that are no codes
+    plain_codes     G codes whose lines the fast method may read, by number
+    plain_names     their names
+    plain_words     `words` without those that need the careful one
+    first_offset    zero offset that is on at the start, 0: none
+    """
+
+    def __init__(
+        self,
+        name: str,
+        g_codes: "Sequence[GCode]",
+        m_codes: "Sequence[MCode]",
+        *,
+        axis_letters: frozenset[str],
+        value_words: frozenset[str],
+        function_words: frozenset[str],
+        free_m: "Callable[[Channel, ModalState, NcBlock, MCode], Function]",
+        careful_words: frozenset[str] = frozenset(),
+        further_paths: "Sequence[GCode]" = (),
+        first_offset: int = 0,
+    ) -> None:
+        self.name = name
+        self.g_codes = {code.key: code for code in g_codes}
+        self.m_codes = {code.number: code for code in m_codes}
+        self.paths = {
+            code.number: code for code in (*further_paths, *g_codes) if code.motion is not None and code.modal
+        }
+        self.axis_letters, self.value_words, self.function_words = axis_letters, value_words, function_words
+        self.plain_codes = {number: code for number, code in self.g_codes.items() if code.is_plain}
+        self.plain_names = {code.key: code.name for code in self.plain_codes.values()}
+        self.words = value_words | axis_letters
+        self.plain_words = self.words - careful_words
+        self.first_offset = first_offset
+        self._free_m = free_m
+
+    def m_code(self, number: int) -> "MCode | None":
+        """Row of an M function: its own, that of a free function, or None if there is no such function.
+
+        M40 to M45 are free functions too, as long as P-CHAN-00052 does not make them select gears.
+        """
+        known = self.m_codes.get(number)
+        if known is not None or not 0 <= number <= MAX_M:
+            return known
+        return MCode(number, f"M{number}", "", self._free_m)
 
 
 class SpindleWords(NamedTuple):
@@ -158,13 +228,41 @@ class HashCommand(NamedTuple):
     run: "Callable[[Channel, ModalState, NcBlock, HashCommand], tuple[Function, ...]]"
 
 
-NO_TABLES: Final[Mapping[int, tuple[float, ...]]] = {}
+class Step(NamedTuple):
+    """A further motion of a block, in programmed or in `machine` coordinates, with functions before it."""
+
+    motion: Motion | None
+    functions: tuple[Function, ...] = ()
+    machine: bool = False
+
+
+class Drilling(NamedTuple):
+    """Numbers of the drilling cycles of the vocabulary iso that stay from block to block.
+
+    to_r      G99: back to the retract plane
+    running   number of the cycle that is on (81), 0: none; in the plane `plane`
+    initial   position of the drill axis before it, mm
+    r, z      levels of the retract plane and of the bottom, mm; q peck depth, mm; p dwell, s; None: not programmed
+    """
+
+    to_r: bool = False
+    running: int = 0
+    plane: int = 17
+    initial: float = 0.0
+    r: float | None = None
+    z: float | None = None
+    q: float | None = None
+    p: float | None = None
+
+
+NO_DRILLING: Final = Drilling()
 
 
 class Channel(NamedTuple):
-    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio).
+    """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
-    `rotary`: axes in deg; `zero_offsets`: those of the machine by index (1: G54), one value for each axis.
+    `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
+    empty for none.
     """
 
     axes: tuple[str, ...]
@@ -172,8 +270,10 @@ class Channel(NamedTuple):
     table: SpindleTable
     centre_offset: float
     centre_offset_ratio: float
+    vocabulary: Vocabulary
     rotary: frozenset[str] = frozenset()
-    zero_offsets: Mapping[int, tuple[float, ...]] = NO_TABLES
+    offsets: OffsetTables = NO_OFFSET_TABLES
+    soft_limits: tuple[tuple[float, float], ...] = ()
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -223,7 +323,8 @@ class ModalState:
     `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to.
+    `coordinates` amount to. `reported`: the canonical stream has them. `path_tolerance`: that of G64, mm; None: exact
+    stop. `following`: further motions of a block while it is resolved.
     """
 
     position: tuple[float, ...] = ()
@@ -241,6 +342,10 @@ class ModalState:
     coordinates: Coordinates = field(default_factory=Coordinates)
     frame: Frame | None = None
     programmed: tuple[float, ...] = ()
+    reported: bool = field(default=False, compare=False)
+    drilling: Drilling = NO_DRILLING
+    path_tolerance: float | None = None
+    following: Iterator[Step] | None = None
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
@@ -248,8 +353,10 @@ class ModalState:
         return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates)
 
     def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed, radius and coordinates of its caller; position and spindles are kept."""
+        """After a cycle: codes, feed, radius and coordinates of its caller; position, spindles and tables are kept."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
         self.feed_mode, self.block_time = other.feed_mode, other.block_time
+        changes = self.coordinates.changes
         self.slope, self.coordinates = other.slope, other.coordinates
+        self.coordinates.changes = changes

@@ -9,8 +9,8 @@ FREE_M_IN_BRACKET = Fault(
 )
 POSITION_ALONE = Fault(21062, "a position of spindle {spindle} (POS) without M19")
 HOMING_NOT_ALONE = Fault(21063, "G74 must be the only function of spindle {spindle} in its block, not with {word}")
-HOMING_WITHOUT_SPINDLE = Fault(21064, "G74 without a spindle; it is written G74 {main}1 or {main}[G74]")
-HOMING_OF_AXES = Fault(21065, "G74 homes spindles only, axis {word} has no homing")
+HOMING_OF_NOTHING = Fault(21064, "G74 without an axis or spindle; it is written G74 X1, G74 {main}1 or {main}[G74]")
+HOMING_ORDER = Fault(21065, "the order of axis {word} in G74 must be an integer from 1 to {limit}, it is {value}")
 DYNAMICS_NOT_ALONE = Fault(
     21066, "DEFAULT_DYNAMIC_DATA must be the only function of spindle {spindle} in its block, not with {word}"
 )

@@ -3,8 +3,7 @@
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.lexer import Token, bracket_words
-from cnc_ptp.nc.program import SpindleWords
-from cnc_ptp.nc.vocabulary import MAX_M
+from cnc_ptp.nc.program import MAX_M, SpindleWords
 
 DEFAULT_DYNAMICS = ("DEFAULT_DYNAMIC_DATA", "DEFAULT_DYNAMIK_DATA", "DEFAUL_DYNAMIK_DATA")
 """The last spelling is that of TF5200 spindle p.83."""

@@ -12,7 +12,15 @@ from typing import Final
 
 from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults, gears, spindle_faults
-from cnc_ptp.nc.canonical import AuxiliaryFunction, Function, GearChange, SpindleCommand, SpindleFunction, number
+from cnc_ptp.nc.canonical import (
+    AuxiliaryFunction,
+    Function,
+    GearChange,
+    HomeAxes,
+    SpindleCommand,
+    SpindleFunction,
+    number,
+)
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Pair, Spindle, SpindleTable, SpindleWords
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 from cnc_ptp.spindle.ratio import OPPOSITE, scaled
@@ -20,7 +28,8 @@ from cnc_ptp.spindle.ratio import OPPOSITE, scaled
 DIRECTIONS = {3: "cw", 4: "ccw"}
 ROTATION = (3, 4)
 M_OF_DIRECTION = {direction: m for m, direction in DIRECTIONS.items()}
-FUNCTION_WORDS: Final[frozenset[str]] = frozenset("STDH")
+MOST_AXES: Final = 32
+"""Of a channel."""
 
 
 def spindle_table(spindles: Sequence[str] | SpindleTable) -> SpindleTable:
@@ -56,15 +65,23 @@ def name_of(channel: Channel, state: ModalState, key: str) -> str:
     return next(name for name, spindle in names(channel, state).items() if spindle.key == key)
 
 
-def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G74 moves no axis; `spindle_functions` says which spindles it homes."""
-    for word in block.words:
-        if word not in FUNCTION_WORDS:
-            fault = spindle_faults.HOMING_OF_AXES if word in channel.axis_index else faults.WORD_NOT_USED
-            raise fault.at(block.source, block.source.column(word), word=word, g=code.name)
+def homing(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> HomeAxes | None:
+    """G74: the value of an axis is its place in the order; `spindle_functions` says which spindles it homes."""
+    orders: dict[float, list[str]] = {}
+    for word, value in block.words.items():
+        if word in channel.axis_index:
+            if value != int(value) or not 1 <= value <= MOST_AXES:
+                words: dict[str, Value] = {"value": number(value), "limit": MOST_AXES}
+                raise spindle_faults.HOMING_ORDER.at(block.source, block.source.column(word), word=word, **words)
+            orders.setdefault(value, []).append(word)
+        elif word not in channel.vocabulary.function_words:
+            raise faults.WORD_NOT_USED.at(block.source, block.source.column(word), word=word, g=code.name)
+    if orders:
+        return HomeAxes(tuple([tuple(orders[order]) for order in sorted(orders)]))
     if "S" not in block.words and not block.spindles:
         main, column = channel.table.main_name, block.source.column(code.name)
-        raise spindle_faults.HOMING_WITHOUT_SPINDLE.at(block.source, column, main=main)
+        raise spindle_faults.HOMING_OF_NOTHING.at(block.source, column, main=main)
+    return None
 
 
 def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> list[Function]:
@@ -90,7 +107,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> li
 def _words(channel: Channel, state: ModalState, block: NcBlock) -> Iterator[tuple[SpindleWords, str]]:
     """The words of each spindle with the word that errors point at; DIN words together as those of the main spindle."""
     main_name = channel.table.main_name
-    own = [words for words in block.spindles if words.din and words.name == main_name]
+    own = [words for words in block.spindles if words.din and words.name in (main_name, "")]
     m_code = next((code for code in block.m if code.group == "spindle"), None)
     positioning = any(code.number == 19 for code in block.m)
     g_codes = [code.number for code in block.codes if code.spindle]

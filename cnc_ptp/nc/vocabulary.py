@@ -1,4 +1,4 @@
-"""The language as data: G codes with their modal groups, M codes, words. A new code needs a new row and its handler.
+"""The vocabulary `twincat`: G codes with their modal groups, M codes, words. A new code is a new row with its handler.
 
 Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 """
@@ -7,123 +7,117 @@ from typing import Final
 
 from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles
 from cnc_ptp.nc.coordinates import codes
-from cnc_ptp.nc.program import GCode, MCode, ModalState
+from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 
 
-def _plane(number: int) -> GCode:
+def plane(number: int) -> GCode:
+    """G17 to G19."""
+
     def select(state: ModalState) -> None:
         state.plane = number
 
     return GCode(number, "plane", select=select)
 
 
-def _dimension(number: int, absolute: bool) -> GCode:
+def dimension(number: int, absolute: bool) -> GCode:
+    """G90, G91."""
+
     def select(state: ModalState) -> None:
         state.absolute = absolute
 
     return GCode(number, "dimensions", select=select)
 
 
-def _centre(number: int, absolute: bool) -> GCode:
+def centre(number: int, absolute: bool, minor: int = 0) -> GCode:
+    """I, J, K as positions or as distances from the start."""
+
     def select(state: ModalState) -> None:
         state.centre_absolute = absolute
 
-    return GCode(number, "circle centre", select=select)
+    return GCode(number, "circle centre", select=select, minor=minor)
 
 
+FULL_OVERRIDE: Final = 166
+"""The override has no effect on the motion of the block."""
 _ARC_WORDS = frozenset("IJKR")
 
-G_CODES: dict[int, GCode] = {
-    code.number: code
-    for code in (
-        GCode(0, "path", motion=motions.rapid),
-        GCode(1, "path", motion=motions.straight),
-        GCode(2, "path", motion=motions.circular, words=_ARC_WORDS),
-        GCode(3, "path", motion=motions.circular, words=_ARC_WORDS),
-        GCode(4, "path", motion=motions.dwell, modal=False, own_words=True),
-        _plane(17),
-        _plane(18),
-        _plane(19),
-        GCode(feedforward.ON, feedforward.SELECTION, function=feedforward.block_function),
-        GCode(feedforward.WEIGHTS, "feedforward weights", function=feedforward.block_function, takes_axes=True),
-        GCode(feedforward.OFF, feedforward.SELECTION, function=feedforward.block_function),
-        _dimension(90, True),
-        _dimension(91, False),
-        _centre(161, True),
-        _centre(162, False),
-        GCode(9, "block end"),
-        GCode(20, "mirror", prepare=codes.mirror),
-        GCode(21, "mirror", prepare=codes.mirror),
-        GCode(22, "mirror", prepare=codes.mirror),
-        GCode(23, "mirror", prepare=codes.mirror),
-        GCode(33, "path", later="thread cutting"),
-        GCode(40, "tool radius"),
-        GCode(41, "tool radius", later="compensation of the tool radius"),
-        GCode(42, "tool radius", later="compensation of the tool radius"),
-        GCode(51, "diameter", later="programming of diameters"),
-        GCode(52, "diameter"),
-        *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
-        GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
-        GCode(60, "block transition"),
-        GCode(359, "block transition"),
-        GCode(360, "block transition"),
-        GCode(61, "block transition", later="contouring of corners"),
-        GCode(260, "block transition"),
-        GCode(261, "block transition", later="contouring of corners"),
-        GCode(63, "path", later="tapping"),
-        GCode(70, "units", prepare=codes.unit),
-        GCode(71, "units", prepare=codes.unit),
-        GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
-        GCode(93, "feed", select=feeds.time_of_block),
-        GCode(94, "feed", select=feeds.per_minute),
-        GCode(95, "feed", later="feed per revolution"),
-        GCode(96, "cutting speed", later="constant cutting speed"),
-        GCode(97, "cutting speed"),
-        GCode(196, "cutting speed", later="constant cutting speed"),
-        GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
-        GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
-        GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
-        GCode(165, "centre correction"),
-        GCode(167, "spindle override", spindle=True),
-    )
-}
+_G_CODES = (
+    GCode(0, "path", motion=motions.rapid),
+    GCode(1, "path", motion=motions.straight),
+    GCode(2, "path", motion=motions.circular, words=_ARC_WORDS),
+    GCode(3, "path", motion=motions.circular, words=_ARC_WORDS),
+    GCode(4, "path", motion=motions.dwell, modal=False, own_words=True),
+    plane(17),
+    plane(18),
+    plane(19),
+    GCode(feedforward.ON, feedforward.SELECTION, function=feedforward.block_function),
+    GCode(feedforward.WEIGHTS, "feedforward weights", function=feedforward.block_function, takes_axes=True),
+    GCode(feedforward.OFF, feedforward.SELECTION, function=feedforward.block_function),
+    dimension(90, True),
+    dimension(91, False),
+    centre(161, True),
+    centre(162, False),
+    GCode(9, "block end"),
+    GCode(20, "mirror", prepare=codes.mirror),
+    GCode(21, "mirror", prepare=codes.mirror),
+    GCode(22, "mirror", prepare=codes.mirror),
+    GCode(23, "mirror", prepare=codes.mirror),
+    GCode(33, "path", later="thread cutting"),
+    GCode(40, "tool radius"),
+    GCode(41, "tool radius", later="compensation of the tool radius"),
+    GCode(42, "tool radius", later="compensation of the tool radius"),
+    GCode(51, "diameter", later="programming of diameters"),
+    GCode(52, "diameter"),
+    *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
+    GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
+    GCode(160, "activity of offsets", function=codes.offset_activity, takes_axes=True, valued=True),
+    GCode(60, "block transition"),
+    GCode(359, "block transition"),
+    GCode(360, "block transition"),
+    GCode(61, "block transition", later="contouring of corners"),
+    GCode(260, "block transition"),
+    GCode(261, "block transition", later="contouring of corners"),
+    GCode(63, "path", later="tapping"),
+    GCode(70, "units", prepare=codes.unit),
+    GCode(71, "units", prepare=codes.unit),
+    GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
+    GCode(93, "feed", select=feeds.time_of_block),
+    GCode(94, "feed", select=feeds.per_minute),
+    GCode(95, "feed", later="feed per revolution"),
+    GCode(96, "cutting speed", later="constant cutting speed"),
+    GCode(97, "cutting speed"),
+    GCode(196, "cutting speed", later="constant cutting speed"),
+    GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
+    GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
+    GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
+    GCode(165, "centre correction"),
+    GCode(FULL_OVERRIDE, "path override"),
+    GCode(167, "spindle override", spindle=True),
+)
 
-M_CODES: dict[int, MCode] = {
-    code.number: code
-    for code in (
-        MCode(0, "program flow", "M00", None),
-        MCode(1, "program flow", "M01", None),
-        MCode(2, "program flow", "end", None),
-        MCode(3, "spindle", "", None),
-        MCode(4, "spindle", "", None),
-        MCode(5, "spindle", "", None),
-        MCode(17, "program flow", "return", None),
-        MCode(19, "positioning", "", None),
-        MCode(29, "program flow", "return", None),
-        MCode(30, "program flow", "end", None),
-    )
-}
-
-MAX_M = 999
-
-VALUE_WORDS = frozenset("FSTDHIJKR")
-"""Words with a number and a meaning of their own, besides axes."""
-
-FUNCTION_WORDS: Final[frozenset[str]] = spindles.FUNCTION_WORDS
-
-AXIS_LETTERS = frozenset("ABCQUVWXYZ")
-"""Letters with which an axis name can begin (X, X1, Y_ACHSE)."""
-
-MAX_SKIP_LEVEL = 10
+_M_CODES = (
+    MCode(0, "program flow", "M00", None),
+    MCode(1, "program flow", "M01", None),
+    MCode(2, "program flow", "end", None),
+    MCode(3, "spindle", "", None),
+    MCode(4, "spindle", "", None),
+    MCode(5, "spindle", "", None),
+    MCode(17, "program flow", "return", None),
+    MCode(19, "positioning", "", None),
+    MCode(29, "program flow", "return", None),
+    MCode(30, "program flow", "end", None),
+)
 
 
-def m_code(number: int) -> MCode | None:
-    """Row of an M function: its own, that of a free function, or None if there is no such function.
+MAX_SKIP_LEVEL: Final = 10
 
-    M40 to M45 are free functions too, as long as P-CHAN-00052 does not make them select gears.
-    """
-    if number in M_CODES:
-        return M_CODES[number]
-    if not 0 <= number <= MAX_M:
-        return None
-    return MCode(number, f"M{number}", "", functions.free_m)
+TWINCAT: Final = Vocabulary(
+    "twincat",
+    _G_CODES,
+    _M_CODES,
+    axis_letters=frozenset("ABCQUVWXYZ"),
+    value_words=frozenset("FSTDHIJKR"),
+    function_words=frozenset("STDH"),
+    free_m=functions.free_m,
+)
+"""Axis names of several letters begin with one of these, too (X1, Y_ACHSE)."""

@@ -11,7 +11,6 @@ from rclpy.node import Node
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
-from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import process
@@ -25,7 +24,7 @@ from cnc_ptp.nodes.recorder import RecorderNode
 from cnc_ptp.nodes.spindle import SpindleNode
 from cnc_ptp.nodes.supervisor import STOP_TIMEOUT, RunOptions, observers_of, only_run
 from cnc_ptp.nodes.unit.unit_node import UnitNode
-from cnc_ptp.parameters import MachineParameters
+from cnc_ptp.parameters import MachineParameters, machine_text
 from cnc_ptp.protocol.unit import PLC
 
 UNIT_NODES = {"axis": AxisNode, "spindle": SpindleNode, "channel": ChannelNode}
@@ -51,7 +50,7 @@ def _run(
         monitor.watch_units()
     recorder = None
     if options.record:  # before the units: it takes each block first
-        machine_yaml = read_file("machine file", options.machine)
+        machine_yaml = machine_text(options.machine)
         recorder = RecorderNode(machine, options.record, machine_yaml, handover=handover)
     clock = ClockNode(
         machine,
@@ -112,7 +111,7 @@ def unit_nodes(machine: MachineParameters, options: RunOptions, **of_nodes: Any)
     nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
-            entries = read_entries(machine, program=options.program, scenario=options.scenario)
+            entries = read_entries(machine, program=options.program, scenario=options.scenario, dialect=options.dialect)
             idle_ends = options.duration is None and not options.stay
             nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **of_nodes))
         else:

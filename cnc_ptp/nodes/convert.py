@@ -7,7 +7,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 
 from cnc_ptp import msg
-from cnc_ptp.protocol.blocks import CommandRecord, Event, EventValue, HandshakeRequest
+from cnc_ptp.protocol.blocks import ChannelOffsets, CommandRecord, Event, EventValue, HandshakeRequest
 
 
 def record_to_message(record: CommandRecord, stamp: Time) -> msg.CommandRecord:
@@ -40,6 +40,10 @@ def message_to_event(message: msg.Event) -> Event:
 
 def request_to_message(request: HandshakeRequest, stamp: Time) -> msg.HandshakeRequest:
     return _flat(request, msg.HandshakeRequest, stamp)
+
+
+def offsets_to_message(offsets: ChannelOffsets, stamp: Time) -> msg.ChannelOffsets:
+    return _flat(offsets, msg.ChannelOffsets, stamp)
 
 
 def _names(message_type: Any) -> list[str]:

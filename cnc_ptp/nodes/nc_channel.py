@@ -14,7 +14,7 @@ from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.machine.run_entries import load_arguments
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import convert, node_command_line
-from cnc_ptp.nodes.topics import EVENTS, handshake_topic
+from cnc_ptp.nodes.topics import EVENTS, handshake_topic, offsets_topic
 from cnc_ptp.nodes.unit.jobs import JobServer
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
@@ -24,16 +24,26 @@ from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleB
 class ChannelNode(UnitNode):
     """UnitNode of a channel.
 
-    Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T and D functions.
+    Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T and D functions; /<channel>/offsets
+    (ChannelOffsets) when they change.
     Action: /<channel>/run_program (RunProgram); cancel = reset.
     """
 
-    def __init__(self, machine: MachineParameters, name: str, *, program: str | None = None, **options: Any) -> None:
-        """`program`: a file that the PLC will load first; it is interpreted here, before the clock starts."""
+    def __init__(
+        self,
+        machine: MachineParameters,
+        name: str,
+        *,
+        program: str | None = None,
+        dialect: str | None = None,
+        **options: Any,
+    ) -> None:
+        """`program`: a file that the PLC will load first, in `dialect`; it is interpreted before the clock starts."""
         node_command_line.require_unit(machine, name, ["channel"])
         unit = build_unit(machine, name)
         if program is not None and isinstance(unit, ChannelUnit):
-            unit.prepare(program, *read_program(program))
+            unit.prepare(program, *read_program(program, machine.channels[name].folders), dialect)
+        self._folders = machine.channels[name].folders
         super().__init__(machine, unit, **options)
 
     def setup(self) -> None:
@@ -41,6 +51,7 @@ class ChannelNode(UnitNode):
         super().setup()
         name = self.unit.name
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
+        self._offsets_publisher = self.create_publisher(msg.ChannelOffsets, offsets_topic(name), EVENTS)
         self._program_job = JobServer(
             self,
             action.RunProgram,
@@ -60,10 +71,12 @@ class ChannelNode(UnitNode):
         if command.command == "load" and "text" not in command.arguments:
             path = command.arguments["program"]
             try:
-                text, files = read_program(path)
+                text, files = read_program(path, self._folders)
             except CncError as error:
                 return self.refuse(command, error.number, error.reason)
-            command = Command(self.unit.name, "load", load_arguments(path, text, files))
+            command = Command(
+                self.unit.name, "load", load_arguments(path, text, files, command.arguments.get("dialect"))
+            )
         return super().command(command)
 
     def complete_commands(self, block: PlcBlock) -> None:
@@ -72,7 +85,7 @@ class ChannelNode(UnitNode):
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
                     path = command.arguments["program"]
-                    command.arguments.update(load_arguments(path, *read_program(path)))
+                    command.arguments.update(load_arguments(path, *read_program(path, self._folders)))
 
     def run_ended(self) -> None:
         self._program_job.end()
@@ -80,6 +93,8 @@ class ChannelNode(UnitNode):
     def after_block(self, block: CycleBlock) -> None:
         if isinstance(block, ChannelBlock):
             self._program_job.after_block(block)
+            for offsets in block.offsets:
+                self._offsets_publisher.publish(convert.offsets_to_message(offsets, self.stamp(offsets.cycle)))
             for request in block.requests:
                 self._handshake_publisher.publish(convert.request_to_message(request, self.stamp(request.cycle)))
 
@@ -104,7 +119,8 @@ def program_result(block: CycleBlock, result: Any) -> bool | None:
 
 
 PROGRAM = click.Option(["--program"], help="NC program that will be loaded first: interpreted before the clock starts.")
-main = node_command_line.unit_main(ChannelNode, "NC channel", PROGRAM)
+DIALECT = click.Option(["--dialect"], type=click.Choice(("twincat", "iso")), help="Vocabulary of --program.")
+main = node_command_line.unit_main(ChannelNode, "NC channel", PROGRAM, DIALECT)
 
 if __name__ == "__main__":
     main()

@@ -22,6 +22,7 @@ NAME = click.argument("name")
 RECORDERS = click.option(
     "--recorders", default=0, show_default=True, help="1: a recorder must have found the blocks first."
 )
+DIALECT = click.option("--dialect", type=click.Choice(("twincat", "iso")), help="Vocabulary of --program.")
 STATE_RATE = click.option(
     "--state-rate", type=STATES_PER_SECOND, help="Live states per second, instead of P-MACH-00070."
 )

@@ -1,4 +1,4 @@
-"""Topics that a recording keeps unchanged: the PLC's inputs, joint states, handshakes."""
+"""Topics that a recording keeps unchanged: the PLC's inputs, joint states, handshakes, offsets."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from cnc_ptp.nodes.topics import (
     PLC_INPUT,
     PLC_TOPICS,
     handshake_topic,
+    offsets_topic,
     plc_quality,
     plc_topic,
 )
@@ -38,6 +39,7 @@ def observed_topics(machine: MachineParameters) -> Iterator[Observed]:
     """All such topics of a machine, whether anybody publishes on them or not."""
     for channel in machine.channels:
         yield Observed(handshake_topic(channel), msg.HandshakeRequest, EVENTS)
+        yield Observed(offsets_topic(channel), msg.ChannelOffsets, EVENTS)
     for unit, kind in unit_kinds(machine).items():
         for name, message_type in PLC_TOPICS.get(kind, {}).items():
             yield Observed(plc_topic(unit, name), message_type, plc_quality(message_type))

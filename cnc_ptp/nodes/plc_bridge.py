@@ -237,26 +237,30 @@ def without_text(entry: Entry) -> Entry:
     """A load travels without the text of its program: blocks go to every unit; the channel reads the file itself."""
     if entry.command.command != "load":
         return entry
-    arguments = {"program": entry.command.arguments["program"]}
+    given = entry.command.arguments
+    arguments: dict[str, Any] = {name: given[name] for name in ("program", "dialect") if name in given}
     return Entry(entry.at, Command(entry.command.target, "load", arguments))
 
 
 @click.command()
 @node_command_line.MACHINE
 @click.option("--program", type=click.Path(dir_okay=False), help="NC program that the first channel loads and starts.")
+@node_command_line.DIALECT
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
 @node_command_line.RECORDERS
 @node_command_line.STATE_RATE
 @node_command_line.FREE_RUN
-def command(machine: str, program: str | None, scenario: str | None, stay: bool, **options: Any) -> None:
+def command(
+    machine: str, program: str | None, dialect: str | None, scenario: str | None, stay: bool, **options: Any
+) -> None:
     """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
 
     def make() -> PlcBridgeNode:
         parameters = read_machine(machine)
         node = PlcBridgeNode(
             parameters,
-            scenario=read_entries(parameters, program=program, scenario=scenario),
+            scenario=read_entries(parameters, program=program, scenario=scenario, dialect=dialect),
             end_when_idle=not stay,
             **options,
         )

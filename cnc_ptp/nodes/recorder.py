@@ -19,7 +19,6 @@ from rclpy.subscription import Subscription
 
 from cnc_ptp import msg
 from cnc_ptp.errors import CncError
-from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nodes import convert, node_command_line, process
 from cnc_ptp.nodes.events import ROSOUT, EventPublisher
@@ -42,7 +41,7 @@ from cnc_ptp.nodes.topics import (
     block_topic,
     recorded_topic,
 )
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.protocol.blocks import CycleBlock, CycleTick, Event, Severity
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.block_codec import head_of, with_plain_header
@@ -266,7 +265,7 @@ def command(machine: str, output: str) -> None:
     """Records the graph of MACHINE to the MCAP file OUTPUT."""
 
     def make() -> RecorderNode:
-        return RecorderNode(read_machine(machine), output, read_file("machine file", machine))
+        return RecorderNode(read_machine(machine), output, machine_text(machine))
 
     sys.exit(process.run_node(make, name=RECORDER, settled=lambda node: node.settled))
 

@@ -64,6 +64,8 @@ class RunOptions:
     """Continue when everything is at a standstill, until a signal."""
     state_rate: float | None = None
     """Live states per second, None = as the machine file says."""
+    dialect: str | None = None
+    """Vocabulary of the program, None = as the machine file says."""
 
 
 class Supervisor:
@@ -239,6 +241,7 @@ def command_lines(
     units = ["--recorders", "1"] if options.record else []
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
+    program += ["--dialect", options.dialect] if options.program and options.dialect else []
     if options.record:
         yield RECORDER, ["recorder", options.machine, options.record]
     for name, kind in unit_kinds(machine).items():

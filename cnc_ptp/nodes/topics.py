@@ -63,6 +63,7 @@ SERVICES: dict[str, dict[str, Any]] = {
         "set_override_type": srv.SetOverrideType,
         "stop": srv.Execute,
         "halt": srv.Execute,
+        "home": srv.Execute,
         "emergency_stop": srv.EmergencyStop,
         "new_target": srv.NewTarget,
         "new_velocity_and_target": srv.NewVelocityAndTarget,
@@ -105,6 +106,9 @@ SERVICES: dict[str, dict[str, Any]] = {
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
         "measuring_event": srv.Execute,
+        "set_zero_offset": srv.SetZeroOffset,
+        "teach_zero_offset": srv.TeachZeroOffset,
+        "set_clamp_position": srv.SetClampPosition,
     },
     "plc": {
         "acknowledge": srv.Acknowledge,
@@ -164,6 +168,10 @@ def state_topic(unit: str) -> str:
 
 def handshake_topic(channel: str) -> str:
     return f"{channel}/handshake"
+
+
+def offsets_topic(channel: str) -> str:
+    return f"{channel}/offsets"
 
 
 def recorded_topic(topic: str) -> str:

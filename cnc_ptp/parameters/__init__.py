@@ -6,21 +6,24 @@ view/       parameter sets -> the parameters of the kernel: AxisParameters and o
 check/      parameters against each other: problems, and notices for the log
 
 errors.py and list_units.py are below all of them, loader.py above: `load_machine(text, file)` is pure,
-`read_machine(path)` reads a file. Both give MachineParameters or raise ParameterError with everything that is wrong.
+`machine_text(path)` reads a machine file and those that it names, `read_machine(path)` does both. They give
+MachineParameters or raise ParameterError with everything that is wrong.
 """
 
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
-from cnc_ptp.parameters.loader import load_machine, read_machine
+from cnc_ptp.parameters.loader import complete_text, load_machine, machine_text, read_machine
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters
 from cnc_ptp.parameters.view.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
 from cnc_ptp.parameters.view.descriptors import RosDescriptor, ros_descriptors
 from cnc_ptp.parameters.view.machine_view import MachineParameters
+from cnc_ptp.parameters.view.offsets_view import NO_OFFSET_TABLES, OffsetTables
 from cnc_ptp.parameters.view.spindle_view import CurveParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.view.synchronisation import Synchronisation
 
 __all__ = [
+    "NO_OFFSET_TABLES",
     "AxisParameters",
     "ChannelAxis",
     "ChannelParameters",
@@ -29,6 +32,7 @@ __all__ = [
     "Declaration",
     "GearParameters",
     "MachineParameters",
+    "OffsetTables",
     "ParameterError",
     "ParameterSet",
     "Place",
@@ -38,7 +42,9 @@ __all__ = [
     "Synchronisation",
     "ToolLimits",
     "catalogue",
+    "complete_text",
     "load_machine",
+    "machine_text",
     "read_machine",
     "ros_descriptors",
 ]

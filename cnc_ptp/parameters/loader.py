@@ -7,24 +7,51 @@ from cnc_ptp.parameters.check.machine_checks import check_machine
 from cnc_ptp.parameters.check.machine_notices import machine_notices
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.machine_sections import read_parameters
+from cnc_ptp.parameters.read.offset_files import named_files, split_files, with_files, with_offsets
+from cnc_ptp.parameters.view.channel_members import axis_entries
 from cnc_ptp.parameters.view.machine_view import MachineParameters, machine_view
 
 
 def read_machine(path: str | Path) -> MachineParameters:
-    """The machine of a file; raises ParameterError (25017 when it cannot be read)."""
+    """The machine of a file; raises ParameterError (25017 when it or a file that it names cannot be read)."""
+    return load_machine(machine_text(path), str(path))
+
+
+def machine_text(path: str | Path) -> str:
+    """The text of a machine file with those of the offset files that it names: all that makes the machine.
+
+    Raises ParameterError 25017 for one that cannot be read.
+    """
+    file = str(path)
+    return complete_text(read_text(Path(path), Place(file, 1, 1), "machine file"), file)
+
+
+def complete_text(text: str, file: str) -> str:
+    """As `machine_text`, of a machine file that was read already. Raises ParameterError 25017 for another file."""
+    files = {
+        named.name: read_text(Path(file).parent / named.name, named.place, f"{named.subject}: file {named.name}")
+        for named in named_files(text, file)
+    }
+    return with_files(text, files)
+
+
+def read_text(path: Path, place: Place, what: str) -> str:
     try:
-        text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        problem = Problem(errors.UNREADABLE, Place(str(path), 1, 1), f"machine file cannot be read, {reason}")
-        raise ParameterError([problem]) from error
-    return load_machine(text, str(path))
+        raise ParameterError([Problem(errors.UNREADABLE, place, f"{what} cannot be read, {reason}")]) from error
 
 
 def load_machine(text: str, file: str) -> MachineParameters:
-    """The machine that the text of a ROS parameters file describes; `file` is for messages. Raises ParameterError."""
+    """The machine that the text of `machine_text` describes; `file` is for messages. Raises ParameterError."""
+    text, files = split_files(text)
     machine, sets, problems = read_parameters(text, file)
+    for node, parameters in sets.items():
+        if parameters.kind == "channel":
+            axes = [entry.name for entry in axis_entries(parameters, sets)]
+            sets[node] = with_offsets(parameters, axes, files, problems)
     problems += check_machine(sets)
     if problems:
         raise ParameterError(problems)
-    return machine_view(machine, sets, tuple(machine_notices(machine, sets)))
+    return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)

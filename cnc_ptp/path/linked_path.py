@@ -39,7 +39,8 @@ Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
-    return not motion.exact and is_rapid(motion) == is_rapid(following)
+    alike = motion.full_override == following.full_override and is_rapid(motion) == is_rapid(following)
+    return alike and not motion.exact
 
 
 def is_rapid(motion: Path) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove, Motion
+from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.interpolator import PathInterpolator
@@ -42,6 +42,10 @@ class PathMotion:
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
         self._builder = PathBuilder(sorted(self._path_axes), cycle_time)
+        self._override = 1.0
+        self._held = False
+        self._full_override = False
+        """The active motion is one of G166."""
         self._element: Line | Arc | None = None
         self._evaluate: Evaluation | None = None
         """States of the axes on the active element."""
@@ -100,7 +104,7 @@ class PathMotion:
         if position != self.states[index][0]:
             self.states = (*self.states[:index], (position, 0.0, 0.0, 0.0), *self.states[index + 1 :])
 
-    def start(self, motion: Motion, source: MotionSource | None = None) -> None:
+    def start(self, motion: Path | Dwell, source: MotionSource | None = None) -> None:
         """Starts a motion, directly after another one at its exact end inside a cycle.
 
         With a `source` the path goes on with the motions that follow, as far as nothing needs a stop between them.
@@ -110,6 +114,7 @@ class PathMotion:
             self._interpolator.dwell(motion.seconds)
             return
         element = self._make_element(self.position, motion)
+        self._set_full_override(motion.full_override)
         if source is not None and self._link(element, motion, source):
             return
         rapid = is_rapid(motion)
@@ -180,11 +185,22 @@ class PathMotion:
         """A cycle passes in which no motion is active."""
         self._interpolator.step(1, self._cycle_time)
 
-    def set_override(self, override: float) -> None:
-        """Override of the path, 1 is 100 %, 0 is feed hold; acts from the last cycle given out."""
-        self._interpolator.set_override(override)
+    def set_override(self, override: float, *, held: bool) -> None:
+        """Override of the path, 1 is 100 %; acts from the last cycle given out.
+
+        `held` (feed hold, feed release) comes with 0 and stops a motion of G166, too.
+        """
+        self._held = held
+        self._override = override
+        acting = 1.0 if self._full_override and not held else override
+        self._interpolator.set_override(acting)
         if self._linked is not None:
-            self._linked.look_ahead.set_override(override)
+            self._linked.look_ahead.set_override(acting)
+
+    def _set_full_override(self, full: bool) -> None:
+        if full != self._full_override:
+            self._full_override = full
+            self.set_override(self._override, held=self._held)
 
     def stop(self) -> None:
         """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
@@ -203,6 +219,7 @@ class PathMotion:
         else:
             self.states = standing(element.target if element and self._interpolator.done else self.position)
         self._element = None
+        self._set_full_override(False)
         self.velocity = self.distance_to_go = 0.0
 
     def abandon(self) -> None:

@@ -35,6 +35,7 @@ class StatusBit(IntEnum):
     EXT_SETPOINT = 1 << 14
     FRICTION_COMPENSATION = 1 << 16
     FEED_WITHHELD = 1 << 17
+    NOT_REFERENCED = 1 << 18
     ERROR = 1 << 31
 
 

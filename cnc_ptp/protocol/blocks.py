@@ -110,6 +110,31 @@ class HandshakeRequest:
     direction: str = ""
 
 
+@dataclass(slots=True)
+class ChannelOffsets:
+    """What lies between programmed and machine positions (ChannelOffsets.msg)."""
+
+    cycle: int
+    line: int
+    axes: list[str]
+    zero_index: int
+    zero_name: str
+    zero_offset: list[float]
+    reference_offset: list[float]
+    preset: list[float]
+    clamp_index: int
+    clamp_offset: list[float]
+    tool_offset: list[float]
+    scale: list[float]
+    mirrored: list[bool]
+    rotated: bool
+    rotation_angle: float
+    systems: list[str]
+    machine_coordinates: bool
+    matrix: list[float]
+    shift: list[float]
+
+
 class CycleTick(NamedTuple):
     """The cycles first_cycle .. first_cycle + count - 1 are to be computed (CycleTick.msg)."""
 
@@ -153,6 +178,8 @@ class ChannelBlock:
     done: bool = True
     blocks_done: int = 0
     blocks_total: int = 0
+    programmed_position: list[float] = field(default_factory=list)
+    offsets: list[ChannelOffsets] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
     requests: list[HandshakeRequest] = field(default_factory=list)
 

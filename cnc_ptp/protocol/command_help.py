@@ -27,6 +27,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "stop": "stops on the ramp; new targets wait until the axis is at a standstill",
         "halt": "stops on the ramp; a new target acts immediately",
         "jog": "moves at a velocity until the next one; 0 ends the jog",
+        "home": "homing (G74): reference cam, zero pulse",
         "emergency_stop": "stops on a ramp of its own, never weaker than that of the start",
         "new_target": "new target on the fly",
         "new_velocity_and_target": "new target immediately, new velocity from a position on",
@@ -79,6 +80,9 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "mdi": "executes NC text (manual data input)",
         "acknowledge": "acknowledges a handshake request",
         "measuring_event": "the probe has switched (MNE_SNS)",
+        "set_zero_offset": "a value of a zero offset; it counts when the offset is selected next",
+        "teach_zero_offset": "the present position becomes a zero offset",
+        "set_clamp_position": "clamp position of the next program",
     },
     "plc": {
         "acknowledge": "acknowledges a handshake request of any channel",
@@ -89,7 +93,11 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
 }
 
 ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
+    "index": ArgumentText("", "of the zero offset: 1 is G54, up to 96"),
+    "axis": ArgumentText("", "its name in programs"),
+    "value": ArgumentText("mm, °", "offset of the axis"),
     "enabled": ArgumentText("", "on or off"),
+    "dialect": ArgumentText("", "vocabulary of the program: twincat or iso", "that of P-CHAN-90010"),
     "files": ArgumentText("", "texts of the programs that it calls, by name", "they are read"),
     "forward": ArgumentText("", "positive direction released"),
     "backward": ArgumentText("", "negative direction released"),
@@ -152,6 +160,9 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
         "mm/s², °/s²", "of the compensation alone", "P-AXIS-00002"
     ),
     ("axis", "external_enable", "target"): ArgumentText("mm, °", "where the setpoints end", "not monitored"),
+    ("channel", "set_clamp_position", "index"): ArgumentText("", "0 to 149, one of the machine file"),
+    ("channel", "teach_zero_offset", "axis"): ArgumentText("", "its name in programs", "all axes of the channel"),
+    ("channel", "teach_zero_offset", "value"): ArgumentText("mm, °", "what programs will call the position", "0"),
     ("axis", "decouple", "target"): ArgumentText("mm, °", "where the axis goes", "none: the motion is endless"),
     ("axis", "decouple", "velocity"): ArgumentText("mm/s, °/s", "of the axis from now on", "unchanged"),
     ("axis", "set_feedforward", "enabled"): ArgumentText("", "on or off", "unchanged"),

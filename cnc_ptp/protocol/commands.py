@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, nearest_name
 
 BAD_ARGUMENT = 22001
 UNKNOWN_COMMAND = 22002
@@ -42,6 +42,7 @@ ROWS = Argument("rows")
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
+DIALECT = Argument("text", required=False, choices=("twincat", "iso"))
 SOURCE: Arguments = {"source": TEXT}
 FOR: Arguments = {"source": Argument("source", required=False)}
 """Source of a spindle command: the name of a channel, or plc for the PLC's own commands."""
@@ -72,6 +73,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "stop": {},
         "halt": {},
         "jog": {"velocity": NUMBER},
+        "home": {},
+        "set_homing_override": {"percent": NUMBER},
         "emergency_stop": dict.fromkeys(("deceleration", "jerk"), LENIENT_NUMBER),
         "new_target": {"target": NUMBER},
         "new_velocity_and_target": {"velocity": NUMBER, "target": NUMBER, "activation_position": NUMBER},
@@ -149,7 +152,12 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "upstream_lost": SOURCE,
     },
     "channel": {
-        "load": {"program": TEXT, "text": OPTIONAL_TEXT, "files": Argument("files", required=False)},
+        "load": {
+            "program": TEXT,
+            "text": OPTIONAL_TEXT,
+            "files": Argument("files", required=False),
+            "dialect": DIALECT,
+        },
         "start": {},
         "feed_hold": {"enabled": SWITCH},
         "set_override": {"percent": NUMBER},
@@ -159,6 +167,9 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "mdi": {"text": TEXT},
         "acknowledge": {"id": INTEGER},
         "measuring_event": {},
+        "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},
+        "teach_zero_offset": {"index": INTEGER, "axis": OPTIONAL_TEXT, "value": OPTIONAL_NUMBER},
+        "set_clamp_position": {"index": INTEGER},
         "upstream_lost": SOURCE,
     },
     "plc": {
@@ -172,8 +183,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 }
 COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
 """Commands that make a slave of an axis."""
-INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer"})
-"""Commands that only watchdogs and harnesses give; a scenario may not."""
+INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer", "set_homing_override"})
+"""Commands that only watchdogs, harnesses and other units give; a scenario may not."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""
 OF_CHANNELS = frozenset({"own", "homes", "owner"})
@@ -212,11 +223,11 @@ def check_command(
     """
     specification = COMMANDS[kind].get(command)
     if specification is None:
-        known = ", ".join(sorted(set(COMMANDS[kind]) - INTERNAL))
+        known = sorted(set(COMMANDS[kind]) - INTERNAL)
         raise CncError(
             UNKNOWN_COMMAND,
-            f"unknown command '{command}'",
-            f"nothing was changed. Known: {known}",
+            f"unknown command '{command}'{nearest_name(command, known)}",
+            f"nothing was changed. Known: {', '.join(known)}",
             where=f"{kind} {unit}",
             command=command,
         )

@@ -163,13 +163,16 @@ class Recording:
     def block(self, name: str, block: CycleBlock, *, handshakes: bool = True) -> None:
         """`/<name>/block` and, per cycle, `/<name>/state`.
 
-        `handshakes`: `/<name>/handshake` for each request of a channel; in the graph they have a topic.
+        `handshakes`: `/<name>/handshake` for each request of a channel and `/<name>/offsets`; in the graph they have
+        topics.
         """
         data, layout = codec_of(type(block)).encode_with_layout(block, self.stamps)
         self._block(name, type(block), data, layout)
         if handshakes and isinstance(block, ChannelBlock):
             for request in block.requests:
                 self._single(topic_of(name, "handshake"), "cnc_ptp/msg/HandshakeRequest", request)
+            for offsets in block.offsets:
+                self._single(topic_of(name, "offsets"), "cnc_ptp/msg/ChannelOffsets", offsets)
 
     def encoded_block(self, name: str, block_class: type, data: bytes) -> None:
         """`/<name>/block` as it came over DDS and, per cycle, `/<name>/state`."""

@@ -15,6 +15,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
     ChannelBlock,
+    ChannelOffsets,
     Command,
     CycleBlock,
     HandshakeRequest,
@@ -38,7 +39,9 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
         None if block.commands or block.refused else (block.count, block.master, block.master_wanted, block.source)
     ),
     ChannelBlock: lambda block: (
-        None if block.commands or block.requests else (block.count, *block.axes, len(block.set_position))
+        None
+        if block.commands or block.requests or block.offsets
+        else (block.count, *block.axes, len(block.set_position), len(block.programmed_position))
     ),
 }
 """By class: what blocks with the same form have in common; None for a block without one."""
@@ -46,11 +49,27 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
 _NESTED: dict[str, Callable[[Any], Any]] = {
     "commands": lambda sent: Command(sent.target, sent.command, json.loads(sent.arguments_json), sent.id),
     "refused": lambda text: Refusal.decode(text),
+    "offsets": lambda sent: channel_offsets(sent),
     "requests": lambda sent: HandshakeRequest(
         **{name: getattr(sent, name) for name in HandshakeRequest.__dataclass_fields__}
     ),
 }
 """Elements of sequences that are more than numbers: as a message has them -> as a block has them."""
+
+
+BY_AXIS = "programmed_position"
+"""The column that holds one value for each axis, of the last cycle."""
+
+
+CHANNEL_LISTS = tuple(field.name for field in load_schema("cnc_ptp/msg/ChannelOffsets").fields if field.length)
+
+
+def channel_offsets(sent: Any) -> ChannelOffsets:
+    """Sequences become lists, as the channel has made them."""
+    values: dict[str, Any] = {name: getattr(sent, name) for name in ChannelOffsets.__dataclass_fields__}
+    for name in CHANNEL_LISTS:
+        values[name] = list(values[name])
+    return ChannelOffsets(**values)
 
 
 class BlockCodec:
@@ -151,7 +170,7 @@ class BlockCodec:
         """The first column that does not hold `count` values, or not as many setpoints as the first one."""
         setpoints = len(block.set_position) if self._class is ChannelBlock else block.count
         for field in self.schema.fields:
-            if field.length is not None and field.type in PRIMITIVES:
+            if field.length is not None and field.type in PRIMITIVES and field.name != BY_AXIS:
                 expected = setpoints if field.name.startswith("set_") else block.count
                 if len(getattr(block, field.name)) != expected:
                     return field.name

@@ -321,7 +321,8 @@ def test_without_a_program() -> None:
     assert bench.refused("channel", "warm_up") == (
         "P-ERR-22002 channel channel: unknown command 'warm_up'; nothing was changed. Known: acknowledge, "
         "feed_hold, load, "
-        "mdi, measuring_event, optional_stop, reset, set_override, single_block, start"
+        "mdi, measuring_event, optional_stop, reset, set_clamp_position, set_override, "
+        "set_zero_offset, single_block, start, teach_zero_offset"
     )
     assert bench.refused("channel", "acknowledge", id=1.5) == (
         "P-ERR-22001 channel channel: acknowledge refused: id = 1.5 is not an integer; nothing was changed"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from machine_support import MachineBench, machine
+from machine_support import MILL, MachineBench, machine
 
 from cnc_ptp.channel import program_check
 from cnc_ptp.nc.parser import parse_program
@@ -52,13 +54,12 @@ def test_a_long_computation_takes_its_cycles_and_no_more_at_once() -> None:
     assert len(waiting) >= 200_000 / 5000 / 10
 
 
-@pytest.mark.interpreted
-def test_a_long_program_is_interpreted_again_while_it_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_program_is_interpreted_again_while_it_runs() -> None:
     """With the same cycles as one of which every block is kept."""
     text = "\n".join([*(f"G00 X{n % 7} Y{n % 5}" for n in range(40)), "M30"])
     kept = MachineBench(text).run()
-    monkeypatch.setattr(program_check, "MOST_BLOCKS", 10)
-    again = MachineBench(text).run()
+    channel = replace(MILL.channels["channel"], known_blocks=10)
+    again = MachineBench(text, machine=replace(MILL, channels={"channel": channel})).run()
     for unit in ("channel", "x", "y"):
         assert again.blocks[unit] == kept.blocks[unit]
 

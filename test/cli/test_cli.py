@@ -198,7 +198,7 @@ def test_check_knows_the_limits_of_a_machine_only(tmp_path):
             "P-ERR-26001 recording nowhere.mcap: cannot be opened: No such file or directory; nothing was read, check the "
             "path",
         ),
-        (["params", "kvv"], "P-ERR-25018 no parameter is called 'kvv', did you mean P-AXIS-00099 getriebe[i].kv?"),
+        (["params", "kvv"], "P-ERR-25018 no parameter is called 'kvv'; did you mean P-AXIS-00099 getriebe[i].kv?"),
     ],
 )
 def test_unusable_input_is_status_2(arguments, error):
@@ -214,7 +214,7 @@ def test_a_typo_in_the_machine_file_starts_nothing(command, tmp_path):
     result = call(command, path)
     assert result.exit_code == 2
     assert (
-        "axis /x has no parameter 'getriebe.0.slepp_max', did you mean getriebe[i].slep_max (P-AXIS-00168)?"
+        "axis /x has no parameter 'getriebe.0.slepp_max'; did you mean getriebe[i].slep_max (P-AXIS-00168)?"
         in result.stderr
     )
     assert result.stderr.strip().endswith("the node does not start")

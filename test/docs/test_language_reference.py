@@ -14,7 +14,8 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.statement_reader import KEYWORDS
 from cnc_ptp.nc.flow.structures import CLOSING
 from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
-from cnc_ptp.nc.vocabulary import G_CODES, M_CODES, VALUE_WORDS
+from cnc_ptp.nc.iso.vocabulary import ISO
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 DOCS = HERE.parents[1] / "docs"
 TEXTS = explanations()
@@ -27,7 +28,7 @@ def test_grammar_is_up_to_date():
 @pytest.mark.parametrize(
     ("text", "scope"),
     [("G01", "storage.type.g.nc"), ("#CS ON", "keyword.other.command.nc"), ("$ELSEIF P1", "keyword.control.nc"),
-     ("SIN[30]", "support.function.nc"), ("V.P.A", "variable.other.nc"), ("N10:", "entity.name.tag.block.nc"),
+     ("SIN[30]", "support.function.nc"), ("V.P.A", "variable.other.nc"), ("O1234", "entity.name.function.program.nc"), ("G54.1", "storage.type.g.nc"), ("N10:", "entity.name.tag.block.nc"),
      ("; note", "comment.line.semicolon.nc"), ('"text"', "string.quoted.double.nc"), ("12.5", "constant.numeric.nc"),
      ("% NAME", "entity.name.function.nc"), ("LL POCKET", "entity.name.function.call.nc"), ("M30", "storage.type.m.nc")],
 )  # fmt: skip
@@ -41,13 +42,50 @@ def test_document_is_up_to_date():
 
 
 def test_every_word_has_a_text_and_no_text_is_left_over():
-    assert set(TEXTS["G function"]) == set(G_CODES)
-    assert set(TEXTS["M function"]) == set(M_CODES)
-    assert set(VALUE_WORDS) <= set(TEXTS["word"])
+    assert set(TEXTS["G function"]) == set(TWINCAT.g_codes)
+    assert set(TEXTS["M function"]) == set(TWINCAT.m_codes)
+    assert set(TWINCAT.value_words) <= set(TEXTS["word"])
     ends = {"ENDVAR", "COMMENT END"}
     assert set(TEXTS["command"]) == (set(COMMANDS) | set(STATEMENTS)) - ends
     divided = " ".join(row.syntax for row in TEXTS["control statement"].values())
     assert all(keyword in divided for keyword in KEYWORDS)
+
+
+def test_the_document_of_iso_is_up_to_date():
+    assert (DOCS / "iso_language.md").read_text(encoding="utf-8") == reference_markdown("iso")
+
+
+def test_every_word_of_iso_has_a_text_and_no_text_is_left_over():
+    texts = explanations("iso")
+    assert {float(number) for number in texts["G function"]} == set(ISO.g_codes)
+    assert set(texts["M function"]) == set(ISO.m_codes)
+    assert set(ISO.value_words) <= set(texts["word"])
+
+
+@pytest.mark.parametrize(
+    "entry", [entry for entry in entries("iso") if entry.explanation.example], ids=lambda entry: entry.name
+)
+def test_every_example_of_iso_is_a_program(entry):
+    example = entry.explanation.example.replace(" G86", "\nG86")
+    run(f"F500\nG0\n{example}\nM30\nO100\nM99", dialect="iso")
+
+
+@pytest.mark.parametrize("code", [code for code in ISO.g_codes.values() if code.later], ids=lambda code: code.name)
+def test_what_comes_later_in_iso_is_refused(code):
+    with pytest.raises(ProgramError, match=rf"{code.name} is not available yet"):
+        run(code.name, dialect="iso")
+    assert find(code.name, "iso")[0].later
+
+
+def test_words_of_iso_are_explained(capsys):
+    explain(["g54.1", "G98"], "iso")
+    assert capsys.readouterr().out == (
+        "G54.1 (G function)\n  syntax:   G54.1 Pn\n  meaning:  Zero offset 6 + n, n from 1 to 90.\n"
+        "  group:    zero offset, modal\n  example:  G54.1 P2 G0 X0.\n\n"
+        "G98 (G function)\n  syntax:   G98\n"
+        "  meaning:  Cycles return to the level before the cycle, if it is above R; so at the start.\n"
+        "  group:    return level, modal\n"
+    )
 
 
 BEFORE = {"$FOR": "$ENDFOR", "$IF": "$ENDIF", "$WHILE": "$ENDWHILE", "$SWITCH": "$ENDSWITCH"}
@@ -72,7 +110,7 @@ def test_every_example_is_a_program(entry):
     run(f"{before}{text}\nM30", files=FILES)
 
 
-@pytest.mark.parametrize("number", [number for number, code in G_CODES.items() if code.later])
+@pytest.mark.parametrize("number", [code.number for code in TWINCAT.g_codes.values() if code.later])
 def test_what_comes_later_is_refused_and_explained(number, capsys):
     with pytest.raises(ProgramError, match=f"G{number} is not available yet"):
         run(f"G{number}")
@@ -107,4 +145,4 @@ def test_an_explanation(capsys):
 def test_an_unknown_word():
     with pytest.raises(CncError) as refused:
         find("SINUS")
-    assert str(refused.value) == "P-ERR-26123 'SINUS' is no word of the NC language; did you mean SIN, SIGN, ASIN?"
+    assert str(refused.value) == "P-ERR-26123 'SINUS' is no word of the NC language; did you mean SIN or SIGN or ASIN?"

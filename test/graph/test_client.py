@@ -250,6 +250,23 @@ def test_handshake_by_hand(client, program):
     client.done("plc", "auto_acknowledge", enabled=True)
 
 
+def test_zero_offsets_by_services(client):
+    """What is taught and set counts for the next program, and a late subscriber sees what counts."""
+    client.wait_blocks("channel", 3)
+    position = client.blocks["channel"][-1].programmed_position[0]
+    client.done("channel", "teach_zero_offset", index=2, axis="X", value=1.0)
+    client.done("channel", "set_zero_offset", index=2, axis="Y", value=-2.5)
+    text = "channel channel: set_zero_offset refused: 'Q' is no axis of the channel (X, Y); nothing was changed"
+    client.refused("channel", "set_zero_offset", 22031, text, index=2, axis="Q", value=1.0)
+    client.done("channel", "mdi", text="G55")
+    shown = []
+    client.wait_last("channel", lambda block: block.programmed_position[0] == 1.0, "the offset")
+    client.create_subscription(msg.ChannelOffsets, "/channel/offsets", shown.append, EVENTS)
+    client.spin_until(lambda: shown and shown[-1].zero_index == 2, "the offsets")
+    assert list(shown[-1].zero_offset) == [position - 1.0, -2.5]
+    client.done("channel", "mdi", text="G53")
+
+
 def test_move_action(client):
     client.override("x", 0.0)
     goal, feedback = client.action(action.MoveAxis, "/x/move", target=40.0, velocity=100.0)

@@ -46,6 +46,9 @@ REFUSED = {
     ("spindle", "decouple"): "the spindle is not coupled",
     ("channel", "load"): "no text came with program ''",
     ("channel", "start"): "no program is loaded",
+    ("channel", "set_zero_offset"): "argument 'value' is missing",
+    ("channel", "teach_zero_offset"): "index = 0 is not within 1 ... 96; G53 selects no offset (P-ZERO-00001)",
+    ("channel", "set_clamp_position"): "index = 4294967295 is not within 0 ... 149",
     ("channel", "measuring_event"): "no function of the running block waits for one",
 }
 """Reasons, in a unit at a standstill."""
@@ -55,8 +58,8 @@ WHOLE_TEXT = {
 }
 MEANT = {
     "axis": {
-        "power", "reset", "set_override", "stop", "halt", "emergency_stop", "compensation_stop", "external_disable",
-        "set_feedforward", "set_friction_compensation", "set_feed_release",
+        "power", "reset", "set_override", "stop", "halt", "home", "emergency_stop", "compensation_stop",
+        "external_disable", "set_feedforward", "set_friction_compensation", "set_feed_release",
     },
     "spindle": {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",

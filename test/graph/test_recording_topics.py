@@ -167,3 +167,18 @@ def test_interrupted_replay_says_how_far_it_came(recording):
     publishing.terminate()
     output = publishing.communicate(timeout=20.0)[0]
     assert re.fullmatch(r"published \d+ of \d+ messages on \d+ topics, up to \d+\.\d s of \d+\.\d s\n", output)
+
+
+def test_offsets_are_recorded_alike_offline_and_in_the_graph(tmp_path):
+    """A topic of the channel, in the recording from the cycle on in which they count."""
+    program = tmp_path / "offsets.nc"
+    program.write_text("V.G.NP[1].V.X = 5\nG00 X1\nG54 X1\n#ROTATION ON [ANGLE=30]\nG92 Y1\nX2\nM30\n")
+    shown = []
+    for name, options in (("simulate", []), ("run", ["--composed", "--free-run"]), ("run", ["--free-run"])):
+        path = tmp_path / f"{name}{len(options)}.mcap"
+        run(name, MILL, "--program", program, "--record", path, *options)
+        found = recorded_messages(path, "/channel/offsets", msg.ChannelOffsets)
+        shown.append([(each.cycle, each.line, each.zero_index, each.rotated, list(each.matrix)) for each in found])
+        assert [each.zero_index for each in found] == [0, 1, 1, 0]
+        assert read_recording(path).topics["/channel/offsets"].qos == qos.profiles_text(qos.REMEMBERED)
+    assert shown[0] == shown[1] == shown[2]

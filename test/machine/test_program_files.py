@@ -11,6 +11,7 @@ from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
 from cnc_ptp.machine.program_files import called_names, called_programs, read_program
+from cnc_ptp.recording.reader import read_recording
 
 
 def test_names_of_called_programs() -> None:
@@ -76,3 +77,65 @@ def test_a_fault_of_a_called_program_is_told_before_anything_moves(
         told = capsys.readouterr().err
         assert "P-ERR-20797 up.nc line 1 column 5 'G00 Q5': axis Q is not in the machine" in told
         assert told.endswith(f"G00 Q5\n    ^\ncalled in {tmp_path / 'main.nc'} line 2\n")
+
+
+def test_folders_of_the_machine_file_come_after_that_of_the_program(tmp_path: Path) -> None:
+    for folder in ("programs", "cycles", "shared"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / f"{folder}.nc").write_text("M29")
+        (tmp_path / folder / "all.nc").write_text(f"({folder})\nM29")
+    main_program = tmp_path / "programs" / "main.nc"
+    main_program.write_text("L all.nc\nL cycles.nc\nL SHARED.NC\nM30")
+    _, files = read_program(str(main_program), [str(tmp_path / "cycles"), str(tmp_path / "shared")])
+    assert files == {"all.nc": "(programs)\nM29", "cycles.nc": "M29", "shared.nc": "M29"}
+
+
+def test_nothing_outside_the_folders_is_read(tmp_path: Path) -> None:
+    """Neither by a link, nor by a path, whatever its name is."""
+    inside, cycles, outside = tmp_path / "inside", tmp_path / "cycles", tmp_path / "outside"
+    for folder in (inside, cycles, outside):
+        folder.mkdir()
+    (outside / "secret.nc").write_text("X1\nM29")
+    (cycles / "drill.nc").write_text("X2\nM29")
+    (inside / "link.nc").symlink_to(outside / "secret.nc")
+    (inside / "LINK2.NC").symlink_to(outside / "secret.nc")
+    (inside / "folder.nc").symlink_to(outside)
+    (inside / "gone.nc").symlink_to(outside / "nothing.nc")
+    (inside / "own.nc").symlink_to(cycles / "drill.nc")
+    paths = f"{outside}/secret.nc", "../outside/secret.nc", "..\\outside\\secret.nc", "folder.nc/secret.nc", "..", "."
+    text = "\n".join(f"L {name}" for name in (*paths, "link.nc", "link2.nc", "folder.nc", "gone.nc", "own.nc"))
+    assert called_programs(text, [str(inside), str(cycles)]) == {"own.nc": "X2\nM29"}
+    assert called_programs("L own.nc", [str(inside)]) == {}
+    (tmp_path / "linked").symlink_to(inside)
+    (inside / "plain.nc").write_text("X3\nM29")
+    assert called_programs("L plain.nc", [str(tmp_path / "linked")]) == {"plain.nc": "X3\nM29"}
+
+
+def test_a_machine_with_offset_files_and_folders_is_recorded_and_replayed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The replay needs none of the files; a changed one does not change it."""
+    machine, recording = tmp_path / "mill.yaml", tmp_path / "run.mcap"
+    text = (ROOT / "config" / "mill.yaml").read_text()
+    settings = "/channel:\n  ros__parameters:\n    nullp_data: vices.yaml\n    interpreter.folders: [cycles]\n"
+    machine.write_text(text.replace("/channel:\n  ros__parameters:\n", settings))
+    (tmp_path / "vices.yaml").write_text("G54: {name: vice, X: 12.5}\n")
+    (tmp_path / "cycles").mkdir()
+    (tmp_path / "cycles" / "up.nc").write_text("G00 X1\nM29")
+    (tmp_path / "main.nc").write_text("G54\nL up.nc\nM30")
+    assert (
+        called([*["simulate"], str(machine), "--program", str(tmp_path / "main.nc"), "--record", str(recording)]) == 0
+    )
+    assert called(["check", str(tmp_path / "main.nc"), "--machine", str(machine), "--canonical"]) == 0
+    assert "rapid (13.5, 0, 0)" in capsys.readouterr().out
+    (tmp_path / "vices.yaml").write_text("G54: {X: 99}\n")
+    (tmp_path / "cycles" / "up.nc").unlink()
+    assert called(["replay", "--verify", str(recording)]) == 0
+    recorded = read_recording(recording)
+    assert recorded.machine_yaml.endswith("--- # file of the machine: vices.yaml\nG54: {name: vice, X: 12.5}\n\n")
+
+
+def called(command: list[str]) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main.main(command)
+    return int(str(ended.value.code))

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from nc_support import HERE, machine
+from nc_support import HERE, machine, vocabulary_of
 
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
@@ -55,7 +55,7 @@ def test_a_file_gives_what_its_text_gives(path: Path, ending: str, tmp_path: Pat
     file.write_bytes(b"\xef\xbb\xbf" + text.replace("\n", ending).encode())
     with file.open("rb") as opened:
         files = called_programs(text, [str(HERE / "library")])
-        program, errors = parse_text(ProgramFile(opened), path.name, files=files)
+        program, errors = parse_text(ProgramFile(opened), path.name, files=files, vocabulary=vocabulary_of(text))
         assert errors == []
         assert stream(program, text) == path.with_suffix(".txt").read_text().splitlines()
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from nc_support import run
 
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.parameters import OffsetTables
 
 lengths = st.integers(-9999, 9999).map(lambda n: n / 100.0)
 angles = st.integers(-360, 360).map(float)
@@ -184,7 +185,9 @@ def test_rotary_axes_are_in_degrees_and_not_scaled():
 
 def test_offsets_of_the_machine_count_until_the_program_changes_them():
     text = "G54 G00 X0\nV.G.NP[1].V.X = V.G.NP[1].V.X + 5\nX0 Z1\nG54 X0"
-    moves = [block.motion.target for block in run(text, zero_offsets={1: (10.0, 0.0, 3.0)}) if block.motion]
+    moves = [
+        block.motion.target for block in run(text, offsets=OffsetTables(zero={1: (10.0, 0.0, 3.0)})) if block.motion
+    ]
     assert moves == [(10.0, 0.0, 0.0), (10.0, 0.0, 4.0), (15.0, 0.0, 4.0)]
 
 

@@ -13,6 +13,7 @@ from cnc_ptp.nc.interpreter import CENTRE_OFFSET, CENTRE_OFFSET_RATIO, check, in
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.nc.spindles import spindle_table
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
 
@@ -20,7 +21,7 @@ AXES = ("X", "Y", "Z")
 def running(text: str) -> list[object]:
     """Targets and pauses of a program whose actual positions are the programmed ones plus 0.5 at each pause."""
     program = parse_program(text, "a.nc", mdi=True, files={"up.nc": "G91 Y[@P1]\nM29"})
-    channel = Channel(AXES, {"X": 0, "Y": 1, "Z": 2}, spindle_table(()), CENTRE_OFFSET, CENTRE_OFFSET_RATIO)
+    channel = Channel(AXES, {"X": 0, "Y": 1, "Z": 2}, spindle_table(()), CENTRE_OFFSET, CENTRE_OFFSET_RATIO, TWINCAT)
     state = ModalState()
     values = Values(channel, state)
     found: list[object] = []

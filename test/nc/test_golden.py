@@ -1,7 +1,7 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from nc_support import HERE, machine
+from nc_support import HERE, machine, vocabulary_of
 
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
@@ -12,6 +12,8 @@ from cnc_ptp.nc.faults import Fault, ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
+from cnc_ptp.nc.iso import iso_faults
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
@@ -25,18 +27,20 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (faults, spindle_faults, expression_faults, flow_faults, coordinate_faults)
+PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
 def files_of(text: str) -> dict[str, str]:
-    """Programs that a text calls: of the test's own library, or of those that ship."""
+    """Programs that a text calls: of the test's own library, or of those that ship; none in the vocabulary iso."""
+    if vocabulary_of(text) is ISO:
+        return {}
     return called_programs(text, [str(HERE / "library")])
 
 
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
-    program = parse_program(text, file, files=files_of(text))
+    program = parse_program(text, file, files=files_of(text), vocabulary=vocabulary_of(text))
     return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
 
 
@@ -50,7 +54,7 @@ def test_canonical_stream_is_the_golden_one(path):
 def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    assert check(text, path.name, axes, spindles, files=files_of(text)) == []
+    assert check(text, path.name, axes, spindles, files=files_of(text), vocabulary=vocabulary_of(text)) == []
 
 
 def test_example_bracket_gives_its_golden_stream():
@@ -71,7 +75,8 @@ def test_bad_program_raises_the_text_of_its_first_line(path):
 def test_check_finds_the_same_error(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    found = [str(error) for error in check(text, path.name, axes, spindles, files=files_of(text))]
+    errors = check(text, path.name, axes, spindles, files=files_of(text), vocabulary=vocabulary_of(text))
+    found = [str(error) for error in errors]
     assert text.split("\n")[0].removeprefix("; ") in found
 
 

@@ -11,7 +11,7 @@ from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import ModalState
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
 
@@ -75,7 +75,7 @@ def test_path_function_and_feed_are_modal():
 
 def test_initial_state_is_the_documented_one():
     state = ModalState()
-    assert (G_CODES[state.path].name, f"G{state.plane}") == ("G00", "G17")
+    assert (TWINCAT.g_codes[state.path].name, f"G{state.plane}") == ("G00", "G17")
     assert state.absolute and not state.centre_absolute  # G90, G162
 
 

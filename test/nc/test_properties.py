@@ -13,6 +13,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.vocabulary import TWINCAT
 
 AXES = ("X", "Y", "Z")
 values = st.integers(-999_999, 999_999).map(lambda value: value / 1000.0)
@@ -70,7 +71,7 @@ def test_fast_and_careful_parser_agree(pairs, seed):
         for letter, value in pairs
     )
     source = Source("a.nc", 1, 0, text.rstrip())
-    fast = plain_block(source.file, source.line, source.text)
+    fast = plain_block(source.file, source.line, source.text, TWINCAT)
     if fast is not None:
         line = Line(1, source, 2, -1)
         careful_line(line)

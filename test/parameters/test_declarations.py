@@ -12,6 +12,9 @@ IDS = sorted(catalogue().by_id)
 PREFIXES = {
     "axis": "P-AXIS-",
     "channel": "P-CHAN-",
+    "startup": "P-STUP-",
+    "zero": "P-ZERO-",
+    "clamp": "P-CLMP-",
     "compensation": "P-COMP-",
     "tool": "P-TOOL-",
     "simulation": "P-SIM-",

@@ -104,7 +104,7 @@ CASES = {
     ),
     "section without unit": (
         AXES_ONLY + "/xx: {}\n",
-        "P-ERR-25004 m.yaml:2:1: section /xx has no unit in /machine (units: /x, /y), did you mean /x?" + END,
+        "P-ERR-25004 m.yaml:2:1: section /xx has no unit in /machine (units: /x, /y); did you mean /x?" + END,
     ),
     "section without unit, nothing near": (
         "/machine: {}\n/q: {}\n",
@@ -112,7 +112,7 @@ CASES = {
     ),
     "unknown name": (
         axis('{getriebe: {"0": {kw: 5}}}'),
-        "P-ERR-25005 m.yaml:2:45: axis /x has no parameter 'getriebe.0.kw', did you mean getriebe[i].kv (P-AXIS-00099)?"
+        "P-ERR-25005 m.yaml:2:45: axis /x has no parameter 'getriebe.0.kw'; did you mean getriebe[i].kv (P-AXIS-00099)?"
         + END,
     ),
     "unknown name, nothing near": (
@@ -457,10 +457,10 @@ def test_all_problems_come_at_once_in_the_order_of_the_file() -> None:
     with pytest.raises(ParameterError) as caught:
         load_machine(text, "m.yaml")
     assert str(caught.value).splitlines() == [
-        "P-ERR-25004 m.yaml:1:1: section /chan has no unit in /machine (units: /ch, /x, /y, /s), did you mean /ch?"
+        "P-ERR-25004 m.yaml:1:1: section /chan has no unit in /machine (units: /ch, /x, /y, /s); did you mean /ch?"
         + END,
         "P-ERR-25008 m.yaml:8:39: axis list, P-AXIS-00099 getriebe[0].kv of /x: value 0 is not above 0 (0.01/s)" + END,
-        "P-ERR-25005 m.yaml:8:51: axis /x has no parameter 'kopf.nr', did you mean kopf.achs_nr (P-AXIS-00016)?" + END,
+        "P-ERR-25005 m.yaml:8:51: axis /x has no parameter 'kopf.nr'; did you mean kopf.achs_nr (P-AXIS-00016)?" + END,
     ]
     assert caught.value.number == 25004
     assert [problem.error_id for problem in caught.value.problems] == [25004, 25008, 25005]

@@ -99,8 +99,8 @@ def test_drive_types_are_as_the_control_document_has_them() -> None:
 @pytest.mark.parametrize(
     ("name", "hint"),
     [
-        ("P-AXIS-0099", ", did you mean P-AXIS-00099 getriebe[i].kv?"),
-        ("getribe.0.kv", ", did you mean P-AXIS-00099 getriebe[i].kv?"),
+        ("P-AXIS-000999", "; did you mean P-AXIS-00099 getriebe[i].kv?"),
+        ("getribe.0.kv", "; did you mean P-AXIS-00099 getriebe[i].kv?"),
         ("!", ""),
     ],
 )

@@ -17,6 +17,7 @@ from cnc_ptp.parameters import (
 )
 from cnc_ptp.parameters.list_units import to_kernel
 from cnc_ptp.parameters.view.encoder import resolution
+from cnc_ptp.parameters.view.homing_view import HomingParameters
 
 NONE = Synchronisation.NO_SYNCH
 
@@ -104,6 +105,23 @@ def test_machine_of_defaults() -> None:
         powered_at_start=True,
         referenced_at_start=True,
         start_position=0.0,
+        homing=HomingParameters(
+            kind="CNC_CONTROLLED",
+            required=False,
+            reference_position=0.0,
+            direction=-1.0,
+            without_cam=False,
+            without_reversing=False,
+            without_zero_pulse=False,
+            fast_off_cam=False,
+            fast=83.333,
+            slow=16.666,
+            range=40_000.0,
+            cam_position=0.0,
+            cam_length=0.0,
+            to_zero_pulse=0.001,
+            pulse_distance=10.0,
+        ),
         control=machine.axes["x"].control,
     )
 

@@ -87,7 +87,7 @@ FAULTS = [
     ("- {at: 0, to: [x], do: stop}", f"unit '['x']' does not exist in the machine. {KNOWN}"),
     (
         "- {at: 0, to: x, do: [stop]}",
-        "axis x: unknown command '['stop']'; nothing was changed. Known: " + AXIS_COMMANDS,
+        "axis x: unknown command '['stop']'; did you mean stop?; nothing was changed. Known: " + AXIS_COMMANDS,
     ),
     ("- {at: 0, to: x, do: upstream_lost, source: plc}", "'upstream_lost' is given by watchdogs only"),
     ("- {at: 0, to: plc, do: abort, reason: x}", "'abort' is given by watchdogs only"),

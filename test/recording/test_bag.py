@@ -21,7 +21,7 @@ from cnc_ptp.recording.reader import iter_messages, read_recording
 from cnc_ptp.recording.writer import Recording
 from cnc_ptp.wire.schemas import schema_text, type_hash
 
-REMEMBERED = {"/x/block", "/s/block", "/events", "/commands", "/channel/handshake"}
+REMEMBERED = {"/x/block", "/s/block", "/events", "/commands", "/channel/handshake", "/channel/offsets"}
 
 
 @pytest.fixture

@@ -18,10 +18,11 @@ NUMBERS = {
 FIELDS = {field.name: field.type for type_name in STATE_TYPES for field in load_schema(type_name).fields}
 RATIOS = {"factor", "factor_num", "factor_den", "master_scaling", "slave_scaling"}
 OF_THE_MASTER = {"master_position", "master_offset"}
+OF_AN_AXIS_BY_NAME = {"value"}
 
 
 def test_every_number_of_a_command_has_a_unit():
-    assert {name for name in NUMBERS if not unit_of(name, "mm", "Nm")} == RATIOS | OF_THE_MASTER
+    assert {name for name in NUMBERS if not unit_of(name, "mm", "Nm")} == RATIOS | OF_THE_MASTER | OF_AN_AXIS_BY_NAME
 
 
 def test_every_measured_field_of_a_state_has_a_unit():

@@ -7,7 +7,8 @@ from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
-from cnc_ptp.nc.program import Pair, Spindle, SpindleTable
+from cnc_ptp.nc.program import Pair, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
@@ -16,7 +17,8 @@ HERE = Path(__file__).parents[1] / "nc"
 
 def run(text: str, axes: tuple[str, ...] = AXES, **options: Any) -> list[CanonicalBlock]:
     """All canonical blocks of a program text from position 0; the text needs no M30."""
-    program = parse_program(text, "test.nc", mdi=True, files=options.pop("files", {}))
+    vocabulary = VOCABULARIES[options.pop("dialect", "twincat")]
+    program = parse_program(text, "test.nc", mdi=True, files=options.pop("files", {}), vocabulary=vocabulary)
     start = options.pop("start", (0.0,) * len(axes))
     spindles = options.pop("spindles", SPINDLES)
     return list(interpret(program, start, axes, spindles, **options))
@@ -54,6 +56,11 @@ TABLES = {
     "wrongly_linked": three_spindles()._replace(default_link=(Pair("S", "S2"),)),
 }
 """What a program may name in its comment in place of spindles."""
+
+
+def vocabulary_of(text: str) -> Vocabulary:
+    """From a comment `; dialect iso` in one of the first three lines."""
+    return VOCABULARIES["iso" if "; dialect iso" in text.split("\n")[:3] else "twincat"]
 
 
 def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...] | SpindleTable]:

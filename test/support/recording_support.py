@@ -13,6 +13,7 @@ from cnc_ptp.plots.report_figures import rows_figure
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
     ChannelBlock,
+    ChannelOffsets,
     Command,
     CommandRecord,
     CycleBlock,
@@ -76,11 +77,13 @@ class Blocks:
             state=self.integers(count, 8),
             error_id=self.integers(count, 32),
             done=False,
+            programmed_position=[1.5, -0.0, 7.25][: len(axes)],
         )
 
     def channel_with_commands(self, first: int, count: int = 10) -> ChannelBlock:
         block = self.channel(first, count)
         block.commands = [Command("s", "start", {"speed_rpm": 1000.0}, 7), Command("s", "stop", {}, 8)]
+        block.offsets = [offsets(first + 4)]
         block.requests = [HandshakeRequest(first + 3, 5, "channel", "M", "s", 3, 0.0, 12, True)]
         return block
 
@@ -92,6 +95,16 @@ class Blocks:
             for axis in axes:
                 yield axis, self.axis(first)
             yield "s", self.spindle(first)
+
+
+def offsets(cycle: int) -> ChannelOffsets:
+    """Of the axes X, Y, Z."""
+    names, own = ["X", "Y", "Z"], ([1.5, 0.0, -3.0], [0.0, 5e-324, 0.0], [0.1, 0.2, 0.3])
+    other, scale, mirrored = [7.0, 8.0, 9.0], [1.0, 2.0, 1.0], [False, True, False]
+    matrix = [float(place) for place in range(9)]
+    return ChannelOffsets(
+        cycle, 7, names, 1, "Öl", *own, 4, other, other, scale, mirrored, True, 30.0, ["#ACS"], False, matrix, other
+    )
 
 
 def record(path: Path, blocks: list[tuple[str, CycleBlock]], **options: float) -> None:

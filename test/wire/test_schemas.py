@@ -17,6 +17,7 @@ def test_text_holds_every_used_type_once():
     assert parts[0].startswith("# One block of the NC channel")
     assert [part.splitlines()[0] for part in parts[1:]] == [
         "MSG: std_msgs/Header",
+        "MSG: cnc_ptp/ChannelOffsets",
         "MSG: cnc_ptp/CommandRequest",
         "MSG: cnc_ptp/HandshakeRequest",
         "MSG: builtin_interfaces/Time",

@@ -13,7 +13,7 @@ from cnc_ptp.commissioning.faults import NOT_RECORDED, UNKNOWN_AXIS
 from cnc_ptp.commissioning.trace import AxisTrace
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
-from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, load_machine
+from cnc_ptp.parameters import AxisParameters, MachineParameters, ParameterSet, complete_text, load_machine
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.view.control_view import MONITORING_TYPES
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
@@ -112,7 +112,7 @@ def open_axis(axis: str, machine: str | None, recording: str | None) -> AxisData
     """
     recorded = read_recording(recording) if recording is not None else None
     if machine is not None:
-        text, file = read_file("machine file", machine), machine
+        text, file = complete_text(read_file("machine file", machine), machine), machine
         if recorded is not None and recorded.machine_yaml not in ("", text):
             reason = f"was made with another machine file than {machine}; nothing was made, leave --machine out"
             raise CncError(NO_MACHINE, f"recording {recording} {reason}")

@@ -24,7 +24,7 @@ from cnc_ptp.commissioning.roundness import bidirectional_deviation, evaluate_ci
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.run_entries import check_program
-from cnc_ptp.parameters import AxisParameters, MachineParameters, load_machine
+from cnc_ptp.parameters import AxisParameters, MachineParameters, complete_text, load_machine
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command
 
@@ -65,7 +65,7 @@ def circle(
     check_numbers(radius=radius, feed=feed, centre=centre, magnification=magnification)
     for output in outputs:
         check_picture(output, machine_file=machine)
-    text = read_file("machine file", machine)
+    text = complete_text(read_file("machine file", machine), machine)
     parameters = load_machine(text, machine)
     found = find_plane(plane)
     place = find_place(parameters, found, centre)
@@ -226,7 +226,7 @@ def run_variant(
 ) -> VariantResult | None:
     """The result of one run, None when it failed (reported on standard error)."""
     job = [
-        Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text})),
+        Entry(0.0, Command(place.channel, "load", {"program": FILE, "text": program.text, "dialect": "twincat"})),
         Entry(0.0, Command(place.channel, "start", {})),
     ]
     trial = run_trial(

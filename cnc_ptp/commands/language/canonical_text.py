@@ -10,6 +10,7 @@ from cnc_ptp.nc.canonical import (
     ExplicitSynchronisation,
     Function,
     GearChange,
+    HomeAxes,
     LinearMove,
     Message,
     Motion,
@@ -18,6 +19,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFeedforward,
     SpindleFunction,
     SpindleLink,
+    Timer,
     WaitForPath,
     number,
 )
@@ -31,13 +33,15 @@ def format_block(block: CanonicalBlock) -> str:
         parts.append(_motion(block.motion))
     if block.stop:
         parts.append(block.stop)
+    if block.offsets is not None and len(parts) == 1:
+        parts.append(f"offsets {_numbers(block.offsets.shift)}")
     return " | ".join(parts)
 
 
 def _function(function: Function) -> str:
     match function:
         case AuxiliaryFunction(letter, code, ""):
-            return f"{letter}{code}"
+            return f"{letter}{code}" + (f"={number(function.value)}" if function.value else "")
         case AuxiliaryFunction(letter, code, spindle):
             return f"{spindle}[{letter}{code}]"
         case SpindleCommand(spindle, command):
@@ -51,6 +55,8 @@ def _function(function: Function) -> str:
             return "wait for MVS_SLP"
         case WaitForPath():
             return "wait for the path"
+        case Timer(action, timer):
+            return f"timer {timer} {action}"
         case Message(text):
             return f"message {text!r}"
         case OrderedError(code, severe, text):
@@ -86,7 +92,10 @@ def _control(function: ControlFunction) -> str:
 def _motion(motion: Motion) -> str:
     if isinstance(motion, Dwell):
         return f"dwell {number(motion.seconds)} s"
+    if isinstance(motion, HomeAxes):
+        return "home " + ", then ".join(" ".join(group) for group in motion.groups)
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
+    slope += " G166" if motion.full_override else ""
     if isinstance(motion, LinearMove):
         return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"

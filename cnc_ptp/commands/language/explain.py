@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from cnc_ptp.commands.language.words import Entry, find
 
 
-def explain(words: Sequence[str]) -> int:
+def explain(words: Sequence[str], dialect: str = "twincat") -> int:
     """Prints syntax, meaning, group and an example of each word. Raises CncError 26123."""
-    found = [entry for word in words for entry in find(word)]
+    found = [entry for word in words for entry in find(word, dialect)]
     print("\n\n".join("\n".join(lines(entry)) for entry in found))
     return 0
 

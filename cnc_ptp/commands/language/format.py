@@ -13,6 +13,7 @@ from cnc_ptp.errors import WRONG_INPUT
 from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.nc.lexer import plain_words
 from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 INDENT: Final = "  "
 OPENING: Final = ("$IF", "$SWITCH", "$FOR", "$WHILE", "$DO", "$REPEAT", "#VAR")
@@ -23,13 +24,13 @@ _KEYWORD = re.compile(r"(?:/\d*\s*)?(?:N\s*\d+:?\s*)?(?:\[\w+\]\s*)?([$#]\s*[A-Z
 _SHORT_IF = re.compile(r"\$IF\b.*\$GOTO\b")
 
 
-def format_program(program: str, in_place: bool, check_only: bool) -> int:
+def format_program(program: str, in_place: bool, check_only: bool, dialect: str = "twincat") -> int:
     """Prints the program, or writes it back; with `check_only` only says whether it would change (status 1).
 
     A program with syntax errors is left alone: they are printed, status 2.
     """
     text, files = read_program(program)
-    errors = parse_all(text, program, files=files)[1]
+    errors = parse_all(text, program, files=files, vocabulary=VOCABULARIES[dialect])[1]
     if errors:
         for error in errors:
             print_error(error)

@@ -10,7 +10,7 @@ from typing import Any
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.flow.statement_reader import KEYWORDS
 from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 
 def alternatives(words: list[str]) -> str:
@@ -21,7 +21,8 @@ def alternatives(words: list[str]) -> str:
 
 def grammar() -> dict[str, Any]:
     """The TextMate grammar; VS Code, Sublime Text and others read it."""
-    codes = alternatives([str(number) for number in G_CODES] + [str(number) for number in range(80, 90)])
+    rows = [code for vocabulary in VOCABULARIES.values() for code in vocabulary.g_codes.values()]
+    codes = alternatives(sorted({f"{code.key:g}" for code in rows} | {str(number) for number in range(80, 90)}))
     commands = alternatives([*COMMANDS, *STATEMENTS])
     rules = [
         ("comment.line.semicolon.nc", ";.*$"),
@@ -33,8 +34,9 @@ def grammar() -> dict[str, Any]:
         ("variable.other.nc", r"(?i)\bV\s*\.\s*[A-Z_]+(?:\s*\.\s*[-+]?[A-Z_@][A-Z0-9_]*)*|@[A-Z]\w*|\bP\d+"),
         ("support.function.nc", rf"(?i)\b(?:{alternatives([*NUMERIC, *TEXTUAL, 'EXIST', *CONSTANTS])})\b"),
         ("keyword.operator.word.nc", r"(?i)\b(?:AND|OR|XOR|MOD)\b"),
+        ("entity.name.function.program.nc", r"(?i)^\s*O\s*\d+"),
         ("entity.name.tag.block.nc", r"(?i)\bN\s*\d+:?"),
-        ("storage.type.g.nc", rf"(?i)\bG\s*0*(?:{codes})(?!\d)"),
+        ("storage.type.g.nc", rf"(?i)\bG\s*0*(?:{codes})(?![\d.])"),
         ("storage.type.m.nc", r"(?i)\bM\s*\d+"),
         ("variable.parameter.nc", r"(?i)[A-FH-LO-Z](?=\s*=?\s*[-+.\d\[])"),
         ("constant.numeric.nc", r"(?:\d+\.?\d*|\.\d+)|'(?:H[0-9A-Fa-f]+|B[01]+)'"),
@@ -47,9 +49,9 @@ def grammar() -> dict[str, Any]:
     patterns += [{"name": name, "match": pattern} for name, pattern in rules]
     return {
         "$schema": "https://raw.githubusercontent.com/martinring/tmlanguage/master/tmlanguage.json",
-        "name": "NC program (TwinCAT CNC, DIN 66025)",
+        "name": "NC program (TwinCAT CNC, DIN 66025, Fanuc, LinuxCNC)",
         "scopeName": "source.nc",
-        "fileTypes": ["nc", "cyc"],
+        "fileTypes": ["nc", "cyc", "ngc", "tap"],
         "patterns": patterns,
         "repository": {"comment": comment},
     }

@@ -1,4 +1,4 @@
-"""`python -m cnc_ptp.commands.language.reference`: docs/nc_language.md, made from the tables of the language."""
+"""`python -m cnc_ptp.commands.language.reference [iso]`: docs/nc_language.md, docs/iso_language.md, from the tables."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from cnc_ptp.nc.flow.execution import Limits
 
 INTRODUCTION = """# NC language
 Made from the tables of the language by `make docs`; `cnc_ptp explain G54` prints one row. Names and rules are those of
-TwinCAT CNC (DIN 66025 with the vendor's extensions). [program.md](program.md) says how programs and machine files go
-together.
+TwinCAT CNC (DIN 66025 with the vendor's extensions). The second vocabulary is [iso_language.md](iso_language.md).
+[program.md](program.md) says how programs and machine files go together.
 
 A program is interpreted before it starts. What only the run knows (V.A.ACT_POS) makes the path stop before its line;
 what follows is checked when it is reached.
@@ -38,6 +38,24 @@ RULES = {
     "limits": f"P0 to P{LARGEST_PARAMETER}; {MOST_VALUES:,} values; {DEEPEST} levels of brackets; "
     f"{Limits().call_depth} calls within each other; {Limits().repeats:,} repeated lines",
 }
+ISO_INTRODUCTION = """# Vocabulary iso
+Made from the tables of the language by `make docs`; `cnc_ptp explain --dialect iso G64` prints one row. What CAM
+post-processors write for Fanuc and LinuxCNC. Where the two differ, [nc_readings.md](nc_readings.md#vocabulary-iso) says
+what counts here. [program.md](program.md#the-vocabulary-iso) says how it is chosen.
+
+## Rules
+| what | rule |
+|---|---|
+"""
+ISO_RULES = {
+    "letters": "upper and lower case are equal; a word is a letter and a number, with or without blanks between them",
+    "order in a line": "`/`, N, words",
+    "numbers": "`10`, `10.`, `.5`, `+1.5`, `007`; up to 9 digits before the point",
+    "program": "`%` at both ends may be missing; what is behind the second one is not read",
+    "subroutines": "`O1234` … `M99` before or behind the main program, which ends with M30 or M2",
+    "refused": "macro variables `#1`, expressions `[ ]`, O words (`o<name> call`): the error names them",
+    "start": "G0 G17 G21 G54 G61 G90 G91.1 G94 G98",
+}
 SECTIONS = {
     "G function": "G functions",
     "M function": "M functions",
@@ -50,16 +68,19 @@ SECTIONS = {
 }
 
 
-def reference_markdown() -> str:
-    """docs/nc_language.md."""
-    rules = [f"| {what} | {escaped(rule)} |" for what, rule in RULES.items()]
-    return "\n".join([INTRODUCTION.rstrip(), *rules, "", *section_lines()])
+def reference_markdown(dialect: str = "twincat") -> str:
+    """docs/nc_language.md or docs/iso_language.md."""
+    introduction, chosen = (INTRODUCTION, RULES) if dialect == "twincat" else (ISO_INTRODUCTION, ISO_RULES)
+    rules = [f"| {what} | {escaped(rule)} |" for what, rule in chosen.items()]
+    return "\n".join([introduction.rstrip(), *rules, "", *section_lines(dialect)])
 
 
-def section_lines() -> Iterator[str]:
-    all_entries = entries()
+def section_lines(dialect: str) -> Iterator[str]:
+    all_entries = entries(dialect)
     for kind, title in SECTIONS.items():
         chosen = [entry for entry in all_entries if entry.kind == kind]
+        if not chosen:
+            continue
         grouped = kind == "G function"
         yield f"## {title}"
         yield "| code | syntax | group | meaning | example |" if grouped else "| name | syntax | meaning | example |"
@@ -82,4 +103,4 @@ def escaped(cell: str) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(reference_markdown())
+    sys.stdout.write(reference_markdown(*sys.argv[1:]))

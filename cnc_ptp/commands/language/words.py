@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cnc_ptp import yaml_text
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.nc.canonical import code_name
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.expressions.readable import READABLE, forms
-from cnc_ptp.nc.vocabulary import G_CODES
+from cnc_ptp.nc.program import GCode
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 UNKNOWN_WORD = 26123
 
@@ -36,17 +36,24 @@ class Entry(NamedTuple):
     later: str = ""
 
 
-def explanations() -> dict[str, dict[Any, Explanation]]:
-    """The texts of explanations.yaml by kind and word."""
-    sections = yaml_text.load(Path(__file__).with_name("explanations.yaml").read_text(encoding="utf-8"))
+TEXTS = {"twincat": "explanations.yaml", "iso": "iso_explanations.yaml"}
+
+
+def explanations(dialect: str = "twincat") -> dict[str, dict[Any, Explanation]]:
+    """The texts of a vocabulary by kind and word."""
+    sections = yaml_text.load(Path(__file__).with_name(TEXTS[dialect]).read_text(encoding="utf-8"))
     return {kind: {word: Explanation(*row) for word, row in rows.items()} for kind, rows in sections.items()}
 
 
-def entries() -> list[Entry]:
-    """All words in the order of the reference."""
-    texts = explanations()
-    found = [g_entry(number, texts["G function"][number]) for number in sorted(G_CODES)]
+def entries(dialect: str = "twincat") -> list[Entry]:
+    """All words of a vocabulary in the order of the reference."""
+    texts, vocabulary = explanations(dialect), VOCABULARIES[dialect]
+    codes = texts["G function"]
+    blockwise = BLOCKWISE[dialect]
+    found = [g_entry(vocabulary.g_codes[float(number)], codes[number], blockwise) for number in sorted(codes)]
     found += [Entry(code_name("M", number), "M function", text) for number, text in texts["M function"].items()]
+    if dialect == "iso":
+        return found + [Entry(name, "word", text) for name, text in texts["word"].items()]
     for kind in ("word", "control statement"):
         found += [Entry(name, kind, text) for name, text in texts[kind].items()]
     found += [Entry(f"#{name}", "command", text) for name, text in texts["command"].items()]
@@ -66,14 +73,13 @@ def readable_entry(name: str) -> Entry:
     return Entry(name, "readable state", Explanation(forms(name), meaning))
 
 
-def g_entry(number: int, text: Explanation) -> Entry:
-    code = G_CODES[number]
-    modal = code.modal and not (code.function is not None or code.spindle or number in BLOCKWISE)
+def g_entry(code: GCode, text: Explanation, blockwise: tuple[int, ...]) -> Entry:
+    modal = code.modal and not (code.function is not None or code.spindle or code.number in blockwise)
     return Entry(code.name, "G function", text, code.group, modal, code.later)
 
 
-BLOCKWISE = (9, 60, 61)
-"""Codes without a handler that count for their block alone."""
+BLOCKWISE = {"twincat": (9, 60, 61, 166), "iso": (9, 30, 53)}
+"""Codes without a function or a motion that count for their block alone."""
 
 
 def function_text(text: str) -> Explanation:
@@ -81,22 +87,21 @@ def function_text(text: str) -> Explanation:
     return Explanation(syntax, meaning)
 
 
-def find(word: str) -> list[Entry]:
+def find(word: str, dialect: str = "twincat") -> list[Entry]:
     """The entries of a word as somebody may type it: g1, G01, $if, #cs, sin. Raises CncError 26123."""
     wanted = normal(word)
-    known = {normal(entry.name): entry for entry in entries()}
+    known = {normal(entry.name): entry for entry in entries(dialect)}
     if wanted in known:
         return [known[wanted]]
     found = [entry for name, entry in known.items() if name.lstrip("#$") == wanted.lstrip("#$")]
     if found:
         return found
-    close = get_close_matches(wanted, list(known), n=3, cutoff=0.5)
-    nearest = f"; did you mean {', '.join(known[name].name for name in close)}?" if close else ""
-    raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{nearest}")
+    close = did_you_mean([known[name].name for name in nearest(wanted, known, most=3, cutoff=0.5)])
+    raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{close}")
 
 
 def normal(word: str) -> str:
     """Upper case, codes without leading zeros."""
     text = " ".join(word.upper().split())
-    code = re.fullmatch(r"([GM])0*(\d+)(=.*)?", text)
+    code = re.fullmatch(r"([GM])0*(\d+(?:\.\d)?)(=.*)?", text)
     return f"{code[1]}{code[2]}" if code else text

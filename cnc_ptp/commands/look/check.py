@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import sys
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,45 +15,65 @@ from cnc_ptp.commands.console import print_error
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import read_program
+from cnc_ptp.machine.run_entries import program_folders
 from cnc_ptp.nc.canonical import BUSY
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, interpret
 from cnc_ptp.nc.interpreter import check as check_text
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.notes import Note
 
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
+_CONTOURING = re.compile(r"G\s*0*64(?![\d.])", re.ASCII | re.IGNORECASE)
+_COMMENT = re.compile(r"\([^)]*\)|;.*")
 
 
-def check(program: str, machine: str | None, canonical: bool = False) -> int:
+def check(program: str, machine: str | None, canonical: bool = False, dialect: str | None = None) -> int:
     """Prints all syntax errors and the first modal one, and the warnings of the machine file.
 
-    Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too.
+    Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too. `dialect`:
+    vocabulary of the program; None: that of the machine file, or twincat.
     """
-    text, files = read_program(program)
-    if machine is None:
-        errors = check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, files=files)
+    parameters = None if machine is None else read_machine(machine)
+    text, files = read_program(program, () if parameters is None else program_folders(parameters))
+    vocabulary = VOCABULARIES[dialect or "twincat"]
+    if parameters is None:
+        axes, spindles = AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE
+        errors = check_text(text, program, axes, spindles, files=files, vocabulary=vocabulary)
     else:
-        parameters = read_machine(machine)
         print_notices(parameters)
-        errors = ProgramCheck.of_first_channel(parameters, program).errors(text, program, files)
+        checked = ProgramCheck.of_first_channel(parameters, program)
+        vocabulary = checked.vocabulary if dialect is None else vocabulary
+        errors = checked.errors(text, program, files, vocabulary)
     if canonical:
-        print_stream(parse_all(text, program, files=files)[0], machine)
+        print_stream(parse_all(text, program, files=files, vocabulary=vocabulary)[0], parameters)
     for error in errors:
         print_error(error)
     if not errors and not canonical:
         print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
+    for hint in hints(text) if vocabulary is ISO else []:
+        print(f"{Path(program).name} {hint}", file=sys.stderr)
     return WRONG_INPUT if errors else 0
 
 
-def print_stream(program: Program, machine: str | None) -> None:
+def hints(text: str) -> Iterator[str]:
+    """What a program asks for and does not get: the tolerance of G64, once."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if _CONTOURING.search(_COMMENT.sub("", line)):
+            yield f"line {number}: G64: each motion still ends with exact stop, which is within any tolerance"
+            return
+
+
+def print_stream(program: Program, machine: MachineParameters | None) -> None:
     """The canonical blocks up to the first error, or to a line that reads what only the run knows."""
     if machine is None:
         blocks = interpret(program, (0.0,) * 3, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, runs=True)
     else:
-        checked = ProgramCheck.of_first_channel(read_machine(machine), program.file)
+        checked = ProgramCheck.of_first_channel(machine, program.file)
         blocks = checked.running(program, checked.start, checked.state({}, {}, {}))
     with suppress(CncError):
         for block in blocks:

@@ -28,6 +28,7 @@ def run(
     stay: bool = False,
     strict: bool = False,
     state_rate: float | None = None,
+    dialect: str | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
 
@@ -36,8 +37,8 @@ def run(
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    read_entries(parameters, program=program, scenario=scenario)
-    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate)
+    read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
+    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate, dialect)
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:

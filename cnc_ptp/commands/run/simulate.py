@@ -18,10 +18,9 @@ from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
-from cnc_ptp.machine.program_files import read_file
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
-from cnc_ptp.parameters import MachineParameters, read_machine
+from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import error_of
 from cnc_ptp.protocol.blocks import (
     AxisBlock,
@@ -74,11 +73,12 @@ def simulate(
     duration: float | None,
     record: str | None,
     strict: bool = False,
+    dialect: str | None = None,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    job = read_entries(parameters, program=program, scenario=scenario)
+    job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()
@@ -87,7 +87,7 @@ def simulate(
     recording = None
     if record is not None:
         cycle_time_ns = parameters.cycle_time_us * 1000
-        recording = Recording(record, read_file("machine file", machine), 0, cycle_time_ns)
+        recording = Recording(record, machine_text(machine), 0, cycle_time_ns)
     try:
         with RunProgress() as progress, recording or nullcontext(), EndRequest() as end:
             for outputs in offline.run(cycles=cycles):

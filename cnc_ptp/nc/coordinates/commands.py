@@ -1,4 +1,4 @@
-"""Commands of coordinates: #ROTATION, #SCALE, #CS, #ACS, #PSET, #PRESET."""
+"""Commands of coordinates: #ROTATION, #SCALE, #CS, #ACS, #MCS, #PSET, #PRESET."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ DEEPEST: Final = 10
 LAST_SYSTEM: Final = 5
 ROTATION: Final = "#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5] or #ROTATION OFF"
 SCALE: Final = "#SCALE X2 Y2, #SCALE ON, #SCALE ON X2 Y2 or #SCALE OFF"
+MACHINE: Final = "#MCS ON or #MCS OFF"
 PSET: Final = "#PSET X10 Y20"
 PRESET: Final = "#PRESET or #PRESET X Y"
 
@@ -114,6 +115,8 @@ class SystemCommand(CoordinateCommand):
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
+        if coordinates.outside is not None:
+            raise faults.IN_MACHINE.at(line.source, self.column, command=self.command)
         if self.action.startswith("OFF"):
             self._off(state, line)
             return
@@ -170,6 +173,23 @@ class SystemCommand(CoordinateCommand):
             if self.command == "#CS":
                 coordinates.own = coordinates.systems[place].before
             coordinates.systems = (*coordinates.systems[:place], *coordinates.systems[place + 1 :])
+
+
+class MachineCoordinates(CoordinateCommand):
+    """#MCS ON: positions are those of the machine; #MCS OFF brings back what was before."""
+
+    def __init__(self, column: int, *, on: bool) -> None:
+        super().__init__(column)
+        self.on = on
+
+    def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
+        coordinates = state.coordinates
+        if self.on == (coordinates.outside is not None):
+            raise (faults.MACHINE_ON if self.on else faults.MACHINE_OFF).at(line.source, self.column)
+        if self.on:
+            coordinates.leave()
+        else:
+            coordinates.come_back()
 
 
 class Preset(CoordinateCommand):
@@ -243,6 +263,17 @@ def read_system(line: Line, text: str, end: int, column: int) -> None:
         raise words.missing("values")
     line.statement = SystemCommand(column, command, action, identity, values)
     line.synchronises = words.reader.synchronises
+
+
+def read_machine_coordinates(line: Line, text: str, end: int, column: int) -> None:
+    words = Words(line, text, end, "#MCS", MACHINE)
+    switch = words.takes("ON", "OFF")
+    if not switch:
+        raise words.stray() if not words.at_end else words.missing("ON or OFF")
+    if switch == "ON" and words.reader.line[words.reader.skip_blanks() :].replace(" ", "").startswith("[EXTOOL]"):
+        raise faults.MACHINE_TOOL.at(line.source, words.reader.at + 1)
+    words.require_end()
+    line.statement = MachineCoordinates(column, on=switch == "ON")
 
 
 def read_preset(line: Line, text: str, end: int, column: int) -> None:

@@ -2,7 +2,7 @@
 
 from cnc_ptp.nc.faults import Fault
 
-OFFSET_INDEX = Fault(21600, "zero offset {index} does not exist: G159=0 to G159={limit}")
+OFFSET_INDEX = Fault(21600, "zero offset {index} does not exist: {word}=0 to {word}={limit}")
 AXES_MISSING = Fault(21602, "{word} without an axis")
 ROTATION_PLANE = Fault(21603, "{word} needs the axes {needed} of plane {plane}; axes of this channel: {known}")
 MAIN_AXIS_MISSING = Fault(21604, "{word} moves axis {axis}, which this channel does not have")
@@ -16,6 +16,11 @@ SYSTEM_UNKNOWN = Fault(21611, "{command} {number} was not defined with {command}
 SYSTEM_VALUES = Fault(21612, "{command} takes up to six values: shift of X, Y, Z in mm, rotation about X, Y, Z in deg")
 SYSTEM_DEPTH = Fault(21613, "{command} ON at level {depth}, the limit is {limit}")
 SYSTEM_NONE = Fault(21614, "{command} OFF, but none is on")
+ACTIVITY = Fault(21617, "G160 with {axis}{value}: 0 lets the zero offset count for axis {axis}, 1 does not")
+IN_MACHINE = Fault(21618, "{command} is not possible between #MCS ON and #MCS OFF")
+MACHINE_ON = Fault(21619, "#MCS ON, but it is on already")
+MACHINE_OFF = Fault(21620, "#MCS OFF without #MCS ON")
+MACHINE_TOOL = Fault(21621, "#MCS ON [EX TOOL] is not available yet")
 MIRROR_PRESET = Fault(20612, "{command} is not possible while {what}")
 LIMIT_POSITIVE = Fault(120002, "axis {axis}: {position} {unit} lies beyond the software limit {limit} {unit} of G99")
 LIMIT_NEGATIVE = Fault(120003, "axis {axis}: {position} {unit} lies beyond the software limit {limit} {unit} of G98")

@@ -5,6 +5,7 @@ A programmed point goes through, in this order: rotation of the contour in its p
 clamp position and tool. Offsets that were on before a coordinate system place it; those programmed in it are its own.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
@@ -35,6 +36,22 @@ class Own(NamedTuple):
 NO_OFFSETS: Final = Own()
 
 
+class OffsetChanges(NamedTuple):
+    """What programs and commands have changed of the offset tables of the machine; by index of the zero offset.
+
+    values     of all axes
+    inactive   places of the axes for which it does not count (G160)
+    default    index at program start (V.G.NP_DEFAULT), -1: that of the machine
+    """
+
+    values: Mapping[int, Offsets] = {}
+    inactive: Mapping[int, frozenset[int]] = {}
+    default: int = -1
+
+
+NO_CHANGES: Final = OffsetChanges()
+
+
 class System(NamedTuple):
     """A coordinate system that is on: its shift (mm) and rotation, and the offsets that were on before it."""
 
@@ -49,7 +66,7 @@ class Coordinates:
     """The state; `frame` is what it amounts to, None if programmed positions are machine positions.
 
     unit        mm of one programmed length: 1 (G71) or 25.4 (G70)
-    tables      zero offsets by index, with what the program has changed
+    changes     of the offset tables
     turn        angle (deg) and centre of #ROTATION, in the plane that was active
     plane       places of the axes of that plane
     scale       factors by axis; they act while `scaled`
@@ -57,11 +74,14 @@ class Coordinates:
     systems     coordinate systems that are on, the first one is the outermost
     defined     values of #CS DEF and #ACS DEF by command and number
     clamp, tool offsets of clamp position and tool
+    clamp_index number of the clamp position
     limits      software limits of G98 and G99 by place of the axis: negative, positive
+    outside     what was there before #MCS ON, None without it
+    suspended   offset that G92.2 has switched off (vocabulary iso)
     """
 
     unit: float = 1.0
-    tables: dict[int, Offsets] | None = None
+    changes: OffsetChanges = NO_CHANGES
     own: Own = NO_OFFSETS
     turn: tuple[float, float, float] | None = None
     plane: tuple[int, int] = (0, 1)
@@ -73,11 +93,29 @@ class Coordinates:
     last_defined: dict[str, int] | None = None
     clamp: Offsets = ()
     tool: Offsets = ()
+    clamp_index: int = 0
     limits: dict[int, tuple[float, float]] | None = None
+    outside: "Coordinates | None" = None
+    suspended: Offsets = ()
 
     def copy(self) -> "Coordinates":
         """Independent: what the fields hold is replaced as a whole, never changed."""
         return replace(self)
+
+    def leave(self) -> None:
+        """#MCS ON: the coordinates of the machine."""
+        self.outside = replace(self)
+        self._place(BARE)
+
+    def come_back(self) -> None:
+        """#MCS OFF: those from before #MCS ON; what was programmed between is gone."""
+        if self.outside is not None:
+            self._place(self.outside)
+            self.outside = None
+
+    def _place(self, other: "Coordinates") -> None:
+        self.own, self.systems, self.clamp, self.tool = other.own, other.systems, other.clamp, other.tool
+        self.turn, self.plane, self.scaled, self.mirror = other.turn, other.plane, other.scaled, other.mirror
 
     def frame(self, count: int, main: tuple[int, int, int]) -> Frame | None:
         """The map for `count` axes with the main axes at these places."""
@@ -125,6 +163,9 @@ class Coordinates:
 
     def _sum(self, shift: list[float], offsets: Offsets) -> list[float]:
         return [a + b for a, b in zip(shift, offsets, strict=True)] if offsets else shift
+
+
+BARE: Final = Coordinates()
 
 
 def system_of(command: str, values: tuple[float, ...], before: Own) -> System:

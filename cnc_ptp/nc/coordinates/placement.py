@@ -38,6 +38,7 @@ def refresh(channel: Channel, state: ModalState) -> None:
     """After a change of the coordinates: the path stays where it is, its programmed position is another one."""
     state.frame = state.coordinates.frame(len(channel.axes), channel.main)
     state.programmed = state.position if state.frame is None else state.frame.to_programmed(state.position)
+    state.reported = False
 
 
 def plane_axes(channel: Channel, state: ModalState, source: Source, word: str) -> tuple[int, int]:

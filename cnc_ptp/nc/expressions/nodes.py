@@ -34,10 +34,6 @@ class Node:
         """As a condition: true from 1/2 on, as the vendor has it."""
         return abs(self.value(values)) >= TRUTH
 
-    def text(self, values: Values) -> str:
-        """As a message has it."""
-        return plain(self.scalar(values))
-
     def integer(self, values: Values, what: str) -> int:
         """Raises ProgramError 21423 for a number with decimals."""
         found = self.value(values)

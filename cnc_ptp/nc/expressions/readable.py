@@ -6,11 +6,14 @@ Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables.
 from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
-from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
+from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, default_offset, offset_values
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.values import Scalar, Values
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
+
+LAST_TIMER: Final = 127
+"""#TIMER has the timers 0 to 127."""
 
 Units = Sequence[Scalar]
 """The axis, spindle or index of a name, in its order."""
@@ -76,16 +79,16 @@ def table_index(values: Values, unit: Scalar, column: int) -> int:
 def zero_offset(values: Values, units: Units, column: int) -> Scalar:
     """V.G.NP[j].V.X."""
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
-    return length(values, axis, offset_values(values.channel, values.state, index)[axis])
+    return length(values, axis, offset_values(values.channel, values.state.coordinates.changes, index)[axis])
 
 
 def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
     """It acts when the offset is selected next, as the vendor has it."""
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
-    table = list(offset_values(values.channel, values.state, index))
+    table = list(offset_values(values.channel, values.state.coordinates.changes, index))
     table[axis] = in_mm(values, axis, value, column)
-    coordinates = values.state.coordinates
-    coordinates.tables = {**(coordinates.tables or {}), index: tuple(table)}
+    changes = values.state.coordinates.changes
+    values.state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(table)})
 
 
 def in_mm(values: Values, axis: int, value: Scalar, column: int) -> float:
@@ -113,9 +116,36 @@ def set_active_offset(values: Values, units: Units, value: Scalar, column: int) 
 
 
 def software_limit(values: Values, unit: Scalar, column: int, place: int) -> float:
-    axis = axis_of(values, unit, column)
-    limit = (values.state.coordinates.limits or {}).get(axis, (-LARGEST_POSITION, LARGEST_POSITION))[place]
-    return length(values, axis, max(-LARGEST_POSITION, min(LARGEST_POSITION, limit)))
+    """That of G98 (place 0) or G99, within that of the axis list."""
+    axis, configured = axis_of(values, unit, column), configured_limit(values, unit, column, place)
+    programmed = (values.state.coordinates.limits or {}).get(axis)
+    if programmed is None:
+        return configured
+    own = length(values, axis, programmed[place])
+    return min(configured, own) if place else max(configured, own)
+
+
+def configured_limit(values: Values, unit: Scalar, column: int, place: int) -> float:
+    """P-AXIS-00177 (place 0), P-AXIS-00178; the largest position without one."""
+    axis, limits = axis_of(values, unit, column), values.channel.soft_limits
+    position = limits[axis][place] if limits else (-LARGEST_POSITION, LARGEST_POSITION)[place]
+    return length(values, axis, max(-LARGEST_POSITION, min(LARGEST_POSITION, position)))
+
+
+def clamp_offset(values: Values, units: Units, column: int) -> Scalar:
+    axis, clamp = axis_of(values, units[0], column), values.state.coordinates.clamp
+    return length(values, axis, clamp[axis]) if clamp else 0.0
+
+
+def default_index(values: Values, units: Units, column: int) -> Scalar:
+    return float(default_offset(values.channel, values.state.coordinates.changes))
+
+
+def set_default_index(values: Values, units: Units, value: Scalar, column: int) -> None:
+    """For the programs that are started later."""
+    index = table_index(values, value, column)
+    coordinates = values.state.coordinates
+    coordinates.changes = coordinates.changes._replace(default=index)
 
 
 def systems(values: Values, command: str) -> float:
@@ -165,17 +195,36 @@ def spindle_position(values: Values, units: Units, column: int) -> Scalar:
     return values.state.spindle.positions.get(spindle_of(values, units[0], column), 0.0)
 
 
+def timer(values: Values, units: Units, column: int) -> Scalar:
+    """0 for one that was never read."""
+    unit = units[0]
+    if isinstance(unit, str) or unit != int(unit) or not 0 <= unit <= LAST_TIMER:
+        shown = unit if isinstance(unit, str) else f"{unit:g}"
+        known = f"0 to {LAST_TIMER}"
+        raise values.fault(faults.UNIT_UNKNOWN, column, kind="timer", unit=shown, known=known)
+    return values.timers.get(int(unit), 0.0)
+
+
 def argument_given(values: Values, units: Units, column: int) -> Scalar:
     number = units[0]
     return 1.0 if isinstance(number, float) and f"P{number:.0f}" in values.arguments else 0.0
+
+
+def limit(text: str, read: Callable[[Values, Scalar, int, int], float], place: int) -> Reading:
+    """The row of a software limit: negative (place 0) or positive."""
+    return Reading(text, lambda values, units, column: read(values, units[0], column, place))
 
 
 READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     "V.A.ABS": ((("*",), Reading("end point of the previous block, with all offsets", absolute)),),
     "V.A.PROG": ((("*",), Reading("end point of the previous block as it was programmed", programmed)),),
     "V.A.BZP": ((("*",), Reading("offset of G92", reference_offset)),),
-    "V.A.-SWE": ((("*",), Reading("software limit of G98", lambda values, u, c: software_limit(values, u[0], c, 0))),),
-    "V.A.+SWE": ((("*",), Reading("software limit of G99", lambda values, u, c: software_limit(values, u[0], c, 1))),),
+    "V.A.PZV": ((("*",), Reading("offset of the clamp position", clamp_offset)),),
+    "V.A.-SWE": ((("*",), limit("software limit, also of G98", software_limit, 0)),),
+    "V.A.+SWE": ((("*",), limit("software limit, also of G99", software_limit, 1)),),
+    "V.A.-SWE_MDS": ((("*",), limit("software limit P-AXIS-00177", configured_limit, 0)),),
+    "V.A.+SWE_MDS": ((("*",), limit("software limit P-AXIS-00178", configured_limit, 1)),),
+    "V.G.NP_DEFAULT": (((), Reading("index of the zero offset at program start", default_index, set_default_index)),),
     "V.G.NP": ((("*", "V", "*"), Reading("zero offset of an index and an axis", zero_offset, set_zero_offset)),),
     "V.G.NP_AKT": (
         (("V", "*"), Reading("active zero offset of an axis", active_offset, set_active_offset)),
@@ -208,6 +257,7 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
         ),
     ),
     "V.G.@P": ((("*", "VALID"), Reading("TRUE if the call gave @P of this number", argument_given)),),
+    "V.G.TIMER": ((("*",), Reading("what #TIMER READ has found, ms", timer)),),
     "V.SPDL_PROG.SPEED": ((("*",), Reading("programmed speed, rpm", spindle_speed)),),
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),
     "V.SPDL_PROG.POSITION": ((("*",), Reading("programmed position, deg", spindle_position)),),

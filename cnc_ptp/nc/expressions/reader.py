@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.functions import ANY, CONSTANTS, NUMERIC, TEXTUAL
@@ -41,7 +42,7 @@ from cnc_ptp.nc.expressions.nodes import (
     Xor,
 )
 from cnc_ptp.nc.expressions.readable import READABLE, Reading, all_names, forms
-from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, SCOPES, in_words, nearest_name
+from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, SCOPES, in_words
 from cnc_ptp.nc.faults import Fault, ProgramError
 
 Assignable = Parameter | ComputedParameter | SelfDefined | Readable

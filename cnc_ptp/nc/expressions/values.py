@@ -1,9 +1,9 @@
 """Values that expressions read and assignments change: P parameters and self-defined variables."""
 
-from difflib import get_close_matches
 from math import floor
 from typing import Final
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.faults import Fault, ProgramError
@@ -37,12 +37,6 @@ def in_words(count: int, singular: str) -> str:
     """1 index, 2 indices."""
     plural = {"index": "indices"}.get(singular, f"{singular}s")
     return f"{count} {singular if count == 1 else plural}"
-
-
-def nearest_name(name: str, known: list[str]) -> str:
-    """The end of an error's text: the name that may have been meant."""
-    close = get_close_matches(name, known, n=1, cutoff=0.6)
-    return f"; did you mean {close[0]}?" if close else ""
 
 
 def shown(value: Scalar) -> str:
@@ -92,6 +86,10 @@ class Values:
         """1 in the main program, one more for each call."""
         self.actual: tuple[float, ...] = ()
         """Positions of the axes at the last synchronisation."""
+        self.position: tuple[float, ...] = ()
+        """Their set positions then, which a homing has changed."""
+        self.timers: dict[int, float] = {}
+        """V.G.TIMER, ms."""
         self.parameters: dict[int, float] = {}
         self.program: dict[str, Variable] = {}
         self.shared: dict[str, Variable] = {}
@@ -108,6 +106,7 @@ class Values:
         """Independent, with the copy of the modal state, so that a refused MDI text changes nothing."""
         other = Values(self.channel, state)
         other.parameters = dict(self.parameters)
+        other.timers = dict(self.timers)
         other.arguments = dict(self.arguments)
         other.program, other.shared = copies(self.program), copies(self.shared)
         other.local, other.cycle = copies(self.local), copies(self.cycle)

@@ -34,6 +34,7 @@ class Pending(NamedTuple):
     call: Call
     line: Line
     depth: int
+    repeats: int = 1
 
 
 class Frame:
@@ -98,6 +99,8 @@ class Execution(Flow):
                 if self._pauses(self._pending[-1].call.synchronises, -2):
                     return PAUSE
                 due = self._pending.pop()
+                if due.repeats > 1:
+                    self._pending.append(due._replace(repeats=due.repeats - 1))
                 self._enter(due.call, due.line)
                 continue
             if self.ended:
@@ -130,7 +133,7 @@ class Execution(Flow):
                 self.ended = block.flow == "end"
                 return block
             if line.call is not None:
-                self._pending.append(Pending(line.call, line, len(self.frames)))
+                self._pending.append(Pending(line.call, line, len(self.frames), line.call.count))
 
     def _pauses(self, needed: bool, place: int) -> bool:
         """Whether the path must stand before what follows; once for each time that it is executed."""
@@ -154,7 +157,7 @@ class Execution(Flow):
             self._returns = False
             self.leave(line)
         if line.call is not None:
-            self._pending.append(Pending(line.call, line, self._depth))
+            self._pending.append(Pending(line.call, line, self._depth, line.call.count))
         modal, modal_line = self._modal, self._modal_line
         if modal is not None and modal_line is not None and self._depth == self._modal_depth:
             due = line.call is None if modal.modal == MODAL_BLOCK else self.moved

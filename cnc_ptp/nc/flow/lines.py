@@ -58,14 +58,22 @@ class Call:
     """A call of a subroutine at the end of its line: `name`, of this file (`local`) or of another one.
 
     `arguments`: @ parameters by name; `cycle`: the called program leaves the modal state as it was; `modal`: "" once,
-    "MODAL_MOVE" after each motion, "MODAL_BLOCK" after each block.
+    "MODAL_MOVE" after each motion, "MODAL_BLOCK" after each block; `count`: how often.
     """
 
     def __init__(
-        self, name: str, column: int, arguments: dict[str, Node], *, local: bool, cycle: bool, modal: str
+        self,
+        name: str,
+        column: int,
+        arguments: dict[str, Node],
+        *,
+        local: bool,
+        cycle: bool,
+        modal: str,
+        count: int = 1,
     ) -> None:
         self.name, self.column, self.arguments = name, column, arguments
-        self.local, self.cycle, self.modal = local, cycle, modal
+        self.local, self.cycle, self.modal, self.count = local, cycle, modal, count
         self.synchronises = False
         """Its arguments read what only the run knows."""
 

@@ -5,19 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
-from cnc_ptp.nc.expressions.values import nearest_name
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.structures import Place, Structure
+from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 
 KEPT: Final = 100_000
 """Lines that are kept as they were read; those behind them are read again each time."""
 KEPT_LATER: Final = 10_000
 """Of them, lines of loops and subroutines."""
+
+
+ReadLine = Callable[[str, ProgramText, int, int, Vocabulary], Line]
 
 
 class Section(NamedTuple):
@@ -38,6 +42,7 @@ class Section(NamedTuple):
 class Program:
     """A parsed file.
 
+    vocabulary      the language in which its lines are read
     main            main program
     subroutines     by upper-case name
     structure_of    by number of the line that opens, divides, closes or leaves a structure
@@ -45,8 +50,8 @@ class Program:
     library         the other files that it may call, by upper-case name
     """
 
-    def __init__(self, file: str, text: ProgramText, read_line: Callable[[str, ProgramText, int, int], Line]) -> None:
-        self.file, self.text = file, text
+    def __init__(self, file: str, text: ProgramText, read_line: ReadLine, vocabulary: Vocabulary) -> None:
+        self.file, self.text, self.vocabulary = file, text, vocabulary
         self.main = Section("main program", "", Source(file, 1, 0, ""), 1, 0)
         self.subroutines: dict[str, Section] = {}
         self.structure_of: dict[int, Structure] = {}
@@ -81,7 +86,7 @@ class Program:
             return special
         found = self._later.get(number)
         if found is None:
-            found = self._read_line(self.file, self.text, number, offset)
+            found = self._read_line(self.file, self.text, number, offset, self.vocabulary)
             if len(self._later) >= KEPT_LATER:
                 self._later.clear()
             self._later[number] = found

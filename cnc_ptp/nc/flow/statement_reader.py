@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable
 from typing import Final
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.expressions.nodes import Node
 from cnc_ptp.nc.expressions.reader import ExpressionReader
-from cnc_ptp.nc.expressions.values import nearest_name
 from cnc_ptp.nc.flow import flow_faults as faults
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.statements import (

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.expressions.nodes import Node
-from cnc_ptp.nc.expressions.values import nearest_name
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults as faults
 

@@ -10,6 +10,7 @@ from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import SOFT_LIMITS, is_modulo
 from cnc_ptp.parameters.view.encoder import uses_feed_constant
+from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 
 
 def emergency_ramp(parameters: ParameterSet) -> Iterator[Problem]:
@@ -60,3 +61,25 @@ def soft_limits_of_a_conveyor(parameters: ParameterSet) -> Iterator[Problem]:
                 f"0x{mode:x} makes it an endless modulo axis; leave out one of the two"
             )
             yield problem(parameters, errors.CONTRADICTION, number, (), text)
+
+
+def homing_without_cam(parameters: ParameterSet) -> Iterator[Problem]:
+    if parameters.number(ids.KENNGR_REF_OHNE_NOCKEN) and not parameters.number(ids.KENNGR_REF_OHNE_REV):
+        yield problem(
+            parameters,
+            errors.CONTRADICTION,
+            ids.KENNGR_REF_OHNE_NOCKEN,
+            (),
+            "value 1 needs P-AXIS-00157 kenngr.ref_ohne_rev = 1",
+        )
+
+
+def homing_of_an_axis(parameters: ParameterSet) -> Iterator[Problem]:
+    """Homing needs a signal; an axis that G74 leaves out needs an absolute encoder."""
+    if parameters.number(ids.KENNGR_HOMING_WITHOUT_ZERO_PULSE) and parameters.number(ids.KENNGR_REF_OHNE_NOCKEN):
+        text = "value 1 leaves homing without a signal, P-AXIS-00156 kenngr.ref_ohne_nocken is 1"
+        yield problem(parameters, errors.CONTRADICTION, ids.KENNGR_HOMING_WITHOUT_ZERO_PULSE, (), text)
+    absolute = parameters.number(ids.SIMULATION_REFERENCED_AT_START)
+    if parameters.text(ids.HOMING_HOMING_TYPE) == IGNORE_ABSOLUTE and not absolute:
+        text = f"{IGNORE_ABSOLUTE} needs an axis that is referenced at start, P-SIM-00005 is 0"
+        yield problem(parameters, errors.CONTRADICTION, ids.HOMING_HOMING_TYPE, (), text)

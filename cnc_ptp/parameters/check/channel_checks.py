@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.check.channel_spindle_checks import SPINDLE_LIST_CHECKS
+from cnc_ptp.parameters.check.offset_checks import OFFSET_CHECKS
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import Problem
 from cnc_ptp.parameters.read.messages import problem
@@ -136,4 +137,5 @@ CHANNEL_CHECKS = (
     spindle_count,
     main_spindle,
     *SPINDLE_LIST_CHECKS,
+    *OFFSET_CHECKS,
 )

@@ -10,6 +10,8 @@ from cnc_ptp.parameters.check.axis_checks import (
     axis_type_fits,
     emergency_ramp,
     encoder_resolution,
+    homing_of_an_axis,
+    homing_without_cam,
     soft_limits_of_a_conveyor,
 )
 from cnc_ptp.parameters.check.channel_checks import CHANNEL_CHECKS
@@ -71,6 +73,8 @@ NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] 
         emergency_ramp,
         encoder_resolution,
         axis_type_fits,
+        homing_without_cam,
+        homing_of_an_axis,
         soft_limits_of_a_conveyor,
         control_checks,
     ),
@@ -79,6 +83,7 @@ NODE_CHECKS: dict[str, tuple[Callable[[ParameterSet], Iterator[Problem]], ...]] 
         emergency_ramp,
         encoder_resolution,
         axis_type_fits,
+        homing_without_cam,
         control_checks,
         spindle_problems,
     ),

@@ -37,7 +37,7 @@ STEPS = 1000
 
 def spindle_problems(parameters: ParameterSet) -> Iterator[Problem]:
     """All problems of one spindle."""
-    checks = plc_spindle, homing_without_cam, open_loop_drive, feedback_of_the_mode, open_loop_resolution, gear_at_start
+    checks = plc_spindle, open_loop_drive, feedback_of_the_mode, open_loop_resolution, gear_at_start
     for check in checks:
         yield from check(parameters)
     for gear in gear_records(parameters):
@@ -51,17 +51,6 @@ def plc_spindle(parameters: ParameterSet) -> Iterator[Problem]:
     if int(parameters.number(ids.KENNGR_ACHS_MODE)) & EXTERNALLY_CONTROLLED and drive not in WITHOUT_FORMAT:
         text = f"value {drive} must be 4 (simulation) or 16 (virtual axis), the PLC controls the spindle (P-AXIS-00015)"
         yield problem(parameters, errors.CONTRADICTION, ids.KENNGR_ANTR_TYP, (), text)
-
-
-def homing_without_cam(parameters: ParameterSet) -> Iterator[Problem]:
-    if parameters.number(ids.KENNGR_REF_OHNE_NOCKEN) and not parameters.number(ids.KENNGR_REF_OHNE_REV):
-        yield problem(
-            parameters,
-            errors.CONTRADICTION,
-            ids.KENNGR_REF_OHNE_NOCKEN,
-            (),
-            "value 1 needs P-AXIS-00157 kenngr.ref_ohne_rev = 1",
-        )
 
 
 def open_loop_drive(parameters: ParameterSet) -> Iterator[Problem]:

@@ -27,7 +27,8 @@ DATA_TYPES: dict[str, tuple[str, int | None, int | None]] = {
 }
 """Data type of the lists -> (type of the value, natural minimum, natural maximum)."""
 
-LISTS = ("axis", "channel", "compensation", "tool", "simulation", "machine")
+LISTS = ("axis", "channel", "startup", "zero", "clamp", "compensation", "tool", "simulation", "machine")
+OF_CHANNELS = ("channel", "startup", "zero", "clamp", "tool")
 NODE_KINDS = ("machine", "channel", "axis", "spindle")
 AXIS_LETTERS = {"T": "linear axes", "R": "rotary axes", "S": "spindles"}
 
@@ -105,10 +106,10 @@ class Declaration:
         return f"{self.list_name} list, {self.id} {self.list_style_name(indexes)} of /{node}"
 
     def belongs_to(self, node_kind: str) -> bool:
-        """Whether such nodes have it: axes and spindles those with axis types, channels the channel and tool lists."""
+        """Whether such nodes have it: axes and spindles those with axis types, channels their own lists."""
         if self.axes:
             return node_kind in ("axis", "spindle")
-        return node_kind == ("channel" if self.list_name in ("channel", "tool") else "machine")
+        return node_kind == ("channel" if self.list_name in OF_CHANNELS else "machine")
 
     def effective_for(self, axis_type: str) -> bool:
         """Whether it has an effect on an axis of type T, R or S, or on a node without axis type."""

@@ -20,6 +20,7 @@ KENNGR_CAX_GEAR_STAGE = "P-AXIS-00052"  # kenngr.cax_gear_stage
 KENNGR_FAST_FROM_CAM = "P-AXIS-00064"  # kenngr.fast_from_cam
 GETRIEBE_GETR_SCHALT_POS = "P-AXIS-00078"  # getriebe[i].getr_schalt_pos
 KENNGR_GETRIEBE_STUFE = "P-AXIS-00079"  # kenngr.getriebe_stufe
+KENNGR_HOMING_WITHOUT_ZERO_PULSE = "P-AXIS-00084"  # kenngr.homing_without_zero_pulse
 GETRIEBE_INCR_PER_REV = "P-AXIS-00092"  # getriebe[i].incr_per_rev
 GETRIEBE_KV = "P-AXIS-00099"  # getriebe[i].kv
 GETRIEBE_LOSE = "P-AXIS-00103"  # getriebe[i].lose
@@ -35,7 +36,9 @@ BESCHL_KENNLINIE_N_GRENZ = "P-AXIS-00130"  # getriebe[i].beschl_kennlinie.n_gren
 GETRIEBE_POS_REFPKT = "P-AXIS-00152"  # getriebe[i].pos_refpkt
 KENNGR_REF_OHNE_NOCKEN = "P-AXIS-00156"  # kenngr.ref_ohne_nocken
 KENNGR_REF_OHNE_REV = "P-AXIS-00157"  # kenngr.ref_ohne_rev
+KENNGR_REF_RICHT = "P-AXIS-00158"  # kenngr.ref_richt
 GETRIEBE_REVERSE = "P-AXIS-00159"  # getriebe[i].reverse
+SIMU_RPF_WEG_BIS_NIP = "P-AXIS-00161"  # antr.simu.rpf_weg_bis_nip
 VORSTEUER_SHIFT_TIME = "P-AXIS-00165"  # vorsteuer.shift_time
 GETRIEBE_SLEP_DYN = "P-AXIS-00167"  # getriebe[i].slep_dyn
 GETRIEBE_SLEP_MAX = "P-AXIS-00168"  # getriebe[i].slep_max
@@ -78,6 +81,7 @@ ANTR_VELOCITY_POSITION_CONTROL_ON = "P-AXIS-00265"  # antr.velocity_position_con
 ANTR_VELOCITY_POSITION_CONTROL_OFF = "P-AXIS-00266"  # antr.velocity_position_control_off
 GETRIEBE_SLOPE_TYPE = "P-AXIS-00270"  # getriebe[i].slope_type
 KOPF_LOG_ACHS_NAME = "P-AXIS-00297"  # kopf.log_achs_name
+HOMING_HOMING_TYPE = "P-AXIS-00299"  # kenngr.homing.homing_type
 ANTR_OPERATION_MODE = "P-AXIS-00320"  # antr.operation_mode
 ANTR_TORQUE_SCALE_NUM = "P-AXIS-00325"  # antr.torque_scale_num
 ANTR_TORQUE_SCALE_DENOM = "P-AXIS-00326"  # antr.torque_scale_denom
@@ -89,6 +93,7 @@ VORSTEUER_VELOCITY_DELAY_TIME = "P-AXIS-00389"  # vorsteuer.velocity_delay_time
 VORSTEUER_ACCELERATION_DELAY_TIME = "P-AXIS-00390"  # vorsteuer.acceleration_delay_time
 GETRIEBE_LOAD = "P-AXIS-00391"  # getriebe[i].load
 ANTR_ACC_REFERENCE_VALUE = "P-AXIS-00392"  # antr.acc_reference_value
+KENNGR_HOMING_MAX_MOVEMENT_DIST = "P-AXIS-00412"  # kenngr.homing_max_movement_dist
 KENNGR_NO_STOP_BY_CHANNEL_RESET = "P-AXIS-00455"  # kenngr.no_stop_by_channel_reset
 GETRIEBE_GEAR_FACT_NUM = "P-AXIS-00511"  # getriebe[i].gear_fact_num
 GETRIEBE_GEAR_FACT_DENOM = "P-AXIS-00512"  # getriebe[i].gear_fact_denom
@@ -132,6 +137,7 @@ MONITORING_SPEED_TIME_MS = "P-MACH-00050"  # monitoring.speed_time_ms
 GEAR_CHANGE_TIME_MS = "P-MACH-00051"  # gear.change_time_ms
 MONITORING_SETTLING_TIME_MS = "P-MACH-00052"  # monitoring.settling_time_ms
 HANDSHAKE_TIMEOUT_MS = "P-MACH-00060"  # handshake_timeout_ms
+HOMING_REQUIRED = "P-MACH-00061"  # homing_required
 STATE_RATE_HZ = "P-MACH-00070"  # state_rate_hz
 
 # channel list
@@ -167,6 +173,26 @@ SPINDEL_RANGE_WAY = "P-CHAN-00074"  # spindel[i].range_way
 SPINDEL_S_SYNCH = "P-CHAN-00081"  # spindel[i].s_synch
 SPDL_ANZAHL = "P-CHAN-00082"  # spdl_anzahl
 USE_DRIVE_CURR_LIMIT = "P-CHAN-00097"  # use_drive_curr_limit
+INTERPRETER_CALL_DEPTH = "P-CHAN-90001"  # interpreter.call_depth
+INTERPRETER_REPEATS = "P-CHAN-90002"  # interpreter.repeats
+INTERPRETER_KNOWN_BLOCKS = "P-CHAN-90003"  # interpreter.known_blocks
+INTERPRETER_FOLDERS = "P-CHAN-90004"  # interpreter.folders
+INTERPRETER_DIALECT = "P-CHAN-90010"  # interpreter.dialect
+
+# startup list
+NULLP_DATA = "P-STUP-00011"  # nullp_data
+PZV_DATA = "P-STUP-00012"  # pzv_data
+
+# zero list
+G53_VERFUEGBAR = "P-ZERO-00001"  # g53_verfuegbar
+DEFAULT_INDEX = "P-ZERO-00002"  # default_index
+ACHSE_VERSCH = "P-ZERO-00003"  # np_grp[i].achse[j].versch
+ACHSE_INAKTIV = "P-ZERO-00004"  # np_grp[i].achse[j].inaktiv
+NP_GRP_BEZEICHNUNG = "P-ZERO-00005"  # np_grp[i].bezeichnung
+
+# clamp list
+ACHSE_VERSATZ = "P-CLMP-00001"  # pzv_grp[i].achse[j].versatz
+PZV_GRP_BEZEICHNUNG = "P-CLMP-00002"  # pzv_grp[i].bezeichnung
 
 # compensation list
 FRICT_COMP_MODE = "P-COMP-00041"  # frict_comp.mode
@@ -205,5 +231,8 @@ SIMULATION_BACKLASH = "P-SIM-00016"  # simulation.backlash
 SIMULATION_ENCODER_AT = "P-SIM-00017"  # simulation.encoder_at
 SIMULATION_BUS_DELAY_CYCLES = "P-SIM-00018"  # simulation.bus_delay_cycles
 SIMULATION_DRIVE_KV = "P-SIM-00019"  # simulation.drive_kv
+SIMULATION_CAM_POSITION = "P-SIM-00020"  # simulation.cam_position
+SIMULATION_CAM_LENGTH = "P-SIM-00021"  # simulation.cam_length
+SIMULATION_ZERO_PULSE_DISTANCE = "P-SIM-00022"  # simulation.zero_pulse_distance
 SIMULATION_TELEGRAM = "P-SIM-00050"  # simulation.telegram
 SIMULATION_ZERO_PULSE = "P-SIM-00051"  # simulation.zero_pulse

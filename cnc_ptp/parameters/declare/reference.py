@@ -1,12 +1,11 @@
 """The parameter reference: single entries for the terminal, and docs/parameters.md:
 `python -m cnc_ptp.parameters.declare.reference > docs/parameters.md`."""
 
-import difflib
 import re
 import sys
 from collections.abc import Callable, Iterator
 
-from cnc_ptp.errors import CncError
+from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare.declarations import AXIS_LETTERS, LISTS, Declaration, catalogue, dotted
 from cnc_ptp.parameters.declare.ranges import default_text, range_text
@@ -14,6 +13,9 @@ from cnc_ptp.parameters.declare.ranges import default_text, range_text
 HEADLINES = {
     "axis": "Axis list (axes and spindles)",
     "channel": "Channel list (NC channels)",
+    "startup": "Start-up list (NC channels)",
+    "zero": "Zero offset list (NC channels)",
+    "clamp": "Clamp position list (NC channels)",
     "compensation": "Compensation list (axes and spindles)",
     "tool": "Tool list (NC channels)",
     "simulation": "Simulation list (axes and spindles; our own)",
@@ -130,12 +132,11 @@ def near(wanted: str) -> str:
     for declaration in catalogue().by_id.values():
         for name in (declaration.id, declaration.name, declaration.name.split(".")[-1], *declaration.misprints):
             candidates.setdefault(name.lower(), declaration)
-    typed = wanted.lower()[:100]
+    typed = wanted.lower()
     names = [name for name in candidates if not name.startswith("p-")]  # ids resemble each other
-    close = difflib.get_close_matches(typed, candidates, n=1, cutoff=0.5)
-    close += difflib.get_close_matches(typed, names, n=3, cutoff=0.8)
+    close = nearest(typed, candidates, cutoff=0.5) + nearest(typed, names, most=3, cutoff=0.8)
     texts = dict.fromkeys(f"{candidates[name].id} {candidates[name].name}" for name in close)
-    return f", did you mean {' or '.join(texts)}?" if texts else ""
+    return did_you_mean(list(texts))
 
 
 def entry_text(declaration: Declaration) -> str:

@@ -1,9 +1,9 @@
 """The sections of a whole machine: the units that /machine lists, and the parameters of each."""
 
-import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from cnc_ptp.errors import did_you_mean, nearest
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
@@ -69,12 +69,8 @@ def sections_without_unit(sections: Sequence[Section], units: Mapping[str, str])
         if section.node != "machine" and section.node not in units:
             known = ", ".join(f"/{name}" for name in units) or "none"
             text = f"section /{section.node} has no unit in /machine (units: {known})"
-            yield Problem(errors.NO_UNIT, section.place, text + suggestion(section.node, units))
-
-
-def suggestion(name: str, names: Mapping[str, str]) -> str:
-    close = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.5)
-    return f", did you mean /{close[0]}?" if close else ""
+            close = [f"/{name}" for name in nearest(section.node, units, cutoff=0.5)]
+            yield Problem(errors.NO_UNIT, section.place, text + did_you_mean(close))
 
 
 def number_units(sets: dict[str, ParameterSet]) -> None:

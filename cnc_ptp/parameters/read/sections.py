@@ -1,7 +1,6 @@
 """A section of a machine file -> ParameterSet: each name is declared for the node, each value fits its declaration."""
 
-import difflib
-
+from cnc_ptp.errors import did_you_mean, nearest
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import (
@@ -77,14 +76,10 @@ def unknown_name(ros_name: str, node: str, kind: str) -> str:
     if owners:
         declaration = lists.by_key[owners[0]][key]
         return f"{text}, {declaration.id} belongs to {' and '.join(owners)} nodes"
-    return f"{text}{nearest(lists, key, kind)}"
+    return f"{text}{nearest_parameter(lists, key, kind)}"
 
 
-def nearest(lists: Catalogue, key: str, kind: str) -> str:
+def nearest_parameter(lists: Catalogue, key: str, kind: str) -> str:
     known = lists.by_key[kind]
     names = {name: entry for entry in known.values() for name in (entry.key, *entry.misprints)}
-    close = difflib.get_close_matches(key[:100], names, n=1, cutoff=0.6)
-    if not close:
-        return ""
-    declaration = names[close[0]]
-    return f", did you mean {declaration.name} ({declaration.id})?"
+    return did_you_mean([f"{names[name].name} ({names[name].id})" for name in nearest(key, names)])

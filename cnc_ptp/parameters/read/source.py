@@ -7,7 +7,7 @@ any input, however deep or odd, gives at most a Problem. Anchors and aliases are
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import yaml
 
@@ -51,6 +51,13 @@ class Refused(Exception):
 def read_sections(text: str, file: str) -> tuple[list[Section], list[Problem]]:
     """The sections of a ROS parameters file and the problems of its form; names and values are not checked here."""
     reader = Reader(file)
+    read_events(reader, text)
+    return reader.sections, reader.problems
+
+
+def read_events(reader: "Reader", text: str) -> None:
+    """Reads a whole text, or up to what cannot be read."""
+    file = reader.file
     try:
         reader.read_file(yaml.parse(text, Loader=yaml_text.PARSER))
     except Refused as refusal:
@@ -62,11 +69,13 @@ def read_sections(text: str, file: str) -> tuple[list[Section], list[Problem]]:
     except (yaml.YAMLError, ValueError) as error:
         reason = str(getattr(error, "reason", error)).splitlines()[0]
         reader.problems.append(Problem(errors.SYNTAX, Place(file, 1, 1), f"YAML cannot be read, {reason}"))
-    return reader.sections, reader.problems
 
 
 class Reader:
     """Walks through the events of one file."""
+
+    what: ClassVar[str] = "a machine file"
+    content: ClassVar[str] = "node names"
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -82,12 +91,12 @@ class Reader:
             elif isinstance(event, yaml.MappingStartEvent):
                 self.read_nodes(events)
             elif not (isinstance(event, yaml.ScalarEvent) and event.value in NULLS):
-                raise self.refusal(event, "a machine file is a mapping of node names")
+                raise self.refusal(event, f"{self.what} is a mapping of {self.content}")
 
     def refuse_second_document(self, events: Iterator[Any]) -> None:
         event = next(events)
         if isinstance(event, yaml.DocumentStartEvent):
-            raise self.refusal(event, "a machine file has one YAML document only")
+            raise self.refusal(event, f"{self.what} has one YAML document only")
 
     def read_nodes(self, events: Iterator[Any]) -> None:
         for key, event in self.pairs(events):

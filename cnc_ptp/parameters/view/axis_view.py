@@ -10,6 +10,7 @@ from cnc_ptp.parameters.view.control_view import ControlParameters, control_view
 from cnc_ptp.parameters.view.encoder import encoder_increment
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.gears import active_gear, emergency_deceleration
+from cnc_ptp.parameters.view.homing_view import HomingParameters, homing_view
 from cnc_ptp.parameters.view.telegram import DriveType
 
 MODULO, MODULO_LINEAR = 0x4, 0x400
@@ -69,7 +70,9 @@ class AxisParameters:
     velocity_filter_time: Annotated[float, ids.COUPLING_VELOCITY_FILTER_TIME]
     powered_at_start: Annotated[bool, ids.SIMULATION_POWERED_AT_START]
     referenced_at_start: Annotated[bool, ids.SIMULATION_REFERENCED_AT_START]
-    start_position: Annotated[float, ids.SIMULATION_START_POSITION]
+    start_position: float
+    """As the axis counts it: 0 for one that is not referenced."""
+    homing: HomingParameters
     control: ControlParameters
 
 
@@ -77,23 +80,33 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
     """`cycle_time` in s."""
     gear = active_gear(parameters)
     modulo = is_modulo(parameters)
+    ends = (ids.GETRIEBE_MODULOU, ids.GETRIEBE_MODULOO) if modulo else SOFT_LIMITS
+    low, high = parameters.kernel(ends[0], gear), parameters.kernel(ends[1], gear)
     return AxisParameters(
         name=parameters.node,
         rotary=parameters.axis_type == "R",
         modulo=modulo,
-        modulo_low=parameters.kernel(ids.GETRIEBE_MODULOU, gear) if modulo else 0.0,
-        modulo_high=parameters.kernel(ids.GETRIEBE_MODULOO, gear) if modulo else 0.0,
+        modulo_low=low if modulo else 0.0,
+        modulo_high=high if modulo else 0.0,
         virtual=parameters.number(ids.KENNGR_ANTR_TYP) == DriveType.VIRTUAL,
         reference_velocity=parameters.kernel(ids.PTP_REFERENCE_VELOCITY) or parameters.kernel(ids.DYNAMIK_VB_MAX, gear),
         emergency_deceleration=emergency_deceleration(parameters, gear),
         jerk=jerk(parameters, gear),
-        soft_limit_negative=-math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_NEG),
-        soft_limit_positive=math.inf if modulo else parameters.kernel(ids.KENNGR_SWE_POS),
+        soft_limit_negative=-math.inf if modulo else low,
+        soft_limit_positive=math.inf if modulo else high,
         encoder_increment=encoder_increment(parameters, gear),
         max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
+        start_position=start_position(parameters),
+        homing=homing_view(parameters, gear, high - low),
         control=control_view(parameters, gear, cycle_time),
         **given_fields(AxisParameters, parameters, gear),
     )
+
+
+def start_position(parameters: ParameterSet) -> float:
+    """P-SIM-00003; an encoder that is not absolute counts from 0 (P-SIM-00005)."""
+    referenced = parameters.number(ids.SIMULATION_REFERENCED_AT_START)
+    return parameters.kernel(ids.SIMULATION_START_POSITION) if referenced else 0.0
 
 
 def jerk(parameters: ParameterSet, gear: int) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Annotated, NamedTuple
 
 from cnc_ptp.parameters.declare import ids
@@ -15,6 +16,7 @@ from cnc_ptp.parameters.view.channel_members import (
     spindle_entries,
 )
 from cnc_ptp.parameters.view.fields import given_fields
+from cnc_ptp.parameters.view.offsets_view import NO_OFFSET_TABLES, OffsetTables, offset_tables
 from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
 
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
@@ -91,14 +93,24 @@ class ChannelParameters:
     """D numbers of all tools in the file."""
     slope: str = "TRAPEZ"
     """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
+    offsets: OffsetTables = NO_OFFSET_TABLES
+    call_depth: Annotated[int, ids.INTERPRETER_CALL_DEPTH] = 20
+    repeats: Annotated[int, ids.INTERPRETER_REPEATS] = 1_000_000
+    known_blocks: Annotated[int, ids.INTERPRETER_KNOWN_BLOCKS] = 100_000
+    folders: tuple[str, ...] = ()
+    """In which called programs are looked for besides that of the main program (P-CHAN-90004)."""
+    dialect: str = "twincat"
+    """Vocabulary of its programs: twincat or iso (P-CHAN-90010)."""
 
 
-def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> ChannelParameters:
+def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
+    """`folder` of the machine file."""
     spindles = spindle_entries(channel, sets)
+    axes = axis_entries(channel, sets)
     main = main_spindle_number(channel, spindles)
     return ChannelParameters(
         name=channel.node,
-        axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axis_entries(channel, sets)),
+        axes=tuple(ChannelAxis(entry.name, str(entry.node)) for entry in axes),
         spindles=tuple(channel_spindle(channel, entry) for entry in spindles),
         main_spindle=next((entry.name for entry in spindles if entry.number == main), ""),
         m_functions=m_functions(channel),
@@ -106,7 +118,10 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet]) -> Cha
         coupled=coupled_spindles(channel, spindles),
         tools=tool_limits(channel, spindles),
         tool_records=frozenset(channel.used_indexes("wz")),
+        dialect=channel.text(ids.INTERPRETER_DIALECT),
         slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
+        offsets=offset_tables(channel, len(axes)),
+        folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),
     )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Annotated
 
 from cnc_ptp.parameters.declare import ids
@@ -38,12 +39,12 @@ class MachineParameters:
 
 
 def machine_view(
-    machine: ParameterSet, sets: Mapping[str, ParameterSet], warnings: tuple[Notice, ...]
+    machine: ParameterSet, sets: Mapping[str, ParameterSet], warnings: tuple[Notice, ...], folder: Path = Path()
 ) -> MachineParameters:
-    """The machine of the parameters of /machine and of its units by node name."""
+    """The machine of the parameters of /machine and of its units by node name; `folder` of its file."""
     of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
     cycle_time = machine.kernel(ids.CYCLE_TIME_US)
-    channels = {unit.node: channel_view(unit, sets) for unit in of_kind["channel"]}
+    channels = {unit.node: channel_view(unit, sets, folder) for unit in of_kind["channel"]}
     axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
     return MachineParameters(
         channels=channels,

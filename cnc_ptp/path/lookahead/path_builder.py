@@ -44,7 +44,7 @@ class PathBuilder:
         self._last, self._entry = motion, inf
 
     def link(self, motion: LinkedMotion, contour: Contour | None) -> list[PathPart]:
-        """The parts that are known once `motion` follows the last one; a kink that cannot be passed is an exact stop."""
+        """The parts that are known once `motion` follows; a kink that cannot be passed is an exact stop."""
         last = self._last
         assert last is not None
         if contour is not None:

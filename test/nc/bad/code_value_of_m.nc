@@ -1,3 +1,3 @@
-; P-ERR-21052 code_value_of_m.nc line 2 column 1 'M8=5': M08 takes no value
-M8=5
+; P-ERR-21052 code_value_of_m.nc line 2 column 1 'M3=5': M03 takes no value
+M3=5
 M30

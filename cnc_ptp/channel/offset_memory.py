@@ -1,0 +1,161 @@
+"""The offsets of a channel beyond a program: tables as they were changed, the clamp position, what its topic shows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+
+from cnc_ptp.errors import CncError, Value
+from cnc_ptp.nc.canonical import OffsetReport
+from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
+from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
+from cnc_ptp.nc.coordinates.frame import IDENTITY, Frame, matrix
+from cnc_ptp.nc.coordinates.report import offset_report
+from cnc_ptp.nc.program import Channel
+from cnc_ptp.parameters.list_units import LARGEST_POSITION
+from cnc_ptp.protocol.blocks import ChannelOffsets
+
+NO_SUCH_OFFSET = 22030
+NO_SUCH_AXIS = 22031
+OFFSET_RANGE = 22032
+NO_SUCH_CLAMP_POSITION = 22033
+LAST_CLAMP_POSITION = 149
+
+
+class OffsetMemory:
+    """Zero offsets as commands and programs have changed them, and the clamp position of the next program."""
+
+    def __init__(self, unit: str, channel: Channel) -> None:
+        self._unit, self._channel = unit, channel
+        self.changes = NO_CHANGES
+        self.clamp_index = 0
+        self._shown: OffsetReport | None = None
+        self._news: list[ChannelOffsets] = []
+        self._frame: Frame | None = None
+        self._stale = True
+        """What is shown may not be what an MDI text would start with."""
+
+    # commands
+
+    def set(self, command: str, index: int, values: Mapping[int, float]) -> None:
+        """Changes the values of a zero offset for some axes, by their places. Raises CncError 22030, 22032."""
+        self.require_index(command, index)
+        table = list(offset_values(self._channel, self.changes, index))
+        for place, value in values.items():
+            if not -LARGEST_POSITION <= value <= LARGEST_POSITION:
+                axis = self._channel.axes[place]
+                unit = "deg" if axis in self._channel.rotary else "mm"
+                limits = f"-{LARGEST_POSITION} ... {LARGEST_POSITION} {unit}"
+                reason = f"axis {axis}: {value:g} {unit} is not within {limits}"
+                raise self._refusal(command, OFFSET_RANGE, reason, value=value, limit=LARGEST_POSITION)
+            table[place] = value
+        self.changes = self.changes._replace(values={**self.changes.values, index: tuple(table)})
+
+    def teach(
+        self, command: str, index: int, axis: str, value: float, position: Sequence[float], state: Coordinates
+    ) -> None:
+        """The present position becomes `value` in a zero offset: of one axis, or of all if it is empty.
+
+        Clamp position and tool lie below the zero offset. Raises CncError 22030, 22031, 22032.
+        """
+        places = [self.place(command, axis)] if axis else range(len(self._channel.axes))
+        self.set(command, index, {place: position[place] - below(state, place) - value for place in places})
+
+    def choose_clamp_position(self, command: str, index: int) -> None:
+        """Raises CncError 22033."""
+        if not 0 <= index <= LAST_CLAMP_POSITION:
+            reason = f"index = {index} is not within 0 ... {LAST_CLAMP_POSITION}"
+            raise self._refusal(command, NO_SUCH_CLAMP_POSITION, reason, index=index)
+        known = self._channel.offsets.clamp
+        if index and index not in known:
+            listed = ", ".join(map(str, known)) or "none"
+            reason = f"the machine file has no clamp position {index} (P-CLMP-00001: {listed})"
+            raise self._refusal(command, NO_SUCH_CLAMP_POSITION, reason, index=index)
+        self.clamp_index = index
+
+    def require_index(self, command: str, index: int) -> None:
+        first = 0 if self._channel.offsets.g53 else 1
+        if not first <= index <= LAST_OFFSET:
+            why = "" if index else "; G53 selects no offset (P-ZERO-00001)"
+            reason = f"index = {index} is not within {first} ... {LAST_OFFSET}{why}"
+            raise self._refusal(command, NO_SUCH_OFFSET, reason, index=index)
+
+    def place(self, command: str, axis: str) -> int:
+        """Place of an axis by its name in programs. Raises CncError 22031."""
+        place = self._channel.axis_index.get(axis)
+        if place is None:
+            known = ", ".join(self._channel.axes)
+            close = get_close_matches(axis.upper(), self._channel.axes, n=1, cutoff=0.5)
+            nearest = f", did you mean {close[0]}?" if close else ""
+            raise self._refusal(command, NO_SUCH_AXIS, f"'{axis}' is no axis of the channel ({known}){nearest}")
+        return place
+
+    def give(self, coordinates: Coordinates) -> None:
+        """To the state in which MDI texts start: it counts as soon as an offset is selected next."""
+        coordinates.changes, coordinates.clamp_index = self.changes, self.clamp_index
+        coordinates.clamp = self._channel.offsets.clamp.get(self.clamp_index, ())
+        self._stale = True
+
+    def _refusal(self, command: str, number: int, reason: str, **values: Value) -> CncError:
+        where = f"channel {self._unit}: {command} refused"
+        return CncError(number, reason, "nothing was changed", where=where, **values)
+
+    # what is shown
+
+    def begin(self, cycle: int, coordinates: Coordinates) -> None:
+        """A program starts with these."""
+        self.reach(cycle, 0, offset_report(self._channel, coordinates))
+
+    def rest(self, cycle: int, coordinates: Coordinates) -> None:
+        """No program runs: those with which an MDI text would start."""
+        if self._stale:
+            self.begin(cycle, coordinates)
+            self._stale = False
+
+    def reach(self, cycle: int, line: int, report: OffsetReport) -> None:
+        """The path has reached a block that changes them."""
+        self._stale = True
+        if report == self._shown:
+            return
+        self._shown = report
+        linear, none = matrix([report.matrix[row : row + 3] for row in (0, 3, 6)]), not any(report.shift)
+        same = none and linear == IDENTITY
+        self._frame = None if same else Frame(linear, report.shift, self._channel.main)
+        self._news.append(self._message(cycle, line, report))
+
+    def news(self) -> list[ChannelOffsets]:
+        """What has changed since it was asked last."""
+        news, self._news = self._news, []
+        return news
+
+    def programmed(self, position: Sequence[float]) -> list[float]:
+        """A machine position as programs name it now."""
+        return list(position if self._frame is None else self._frame.to_programmed(position))
+
+    def _message(self, cycle: int, line: int, report: OffsetReport) -> ChannelOffsets:
+        return ChannelOffsets(
+            cycle=cycle,
+            line=line,
+            axes=list(self._channel.axes),
+            zero_index=report.zero_index,
+            zero_name=self._channel.offsets.names.get(report.zero_index, ""),
+            zero_offset=list(report.zero),
+            reference_offset=list(report.added),
+            preset=list(report.preset),
+            clamp_index=report.clamp_index,
+            clamp_offset=list(report.clamp),
+            tool_offset=list(report.tool),
+            scale=list(report.scale),
+            mirrored=list(report.mirrored),
+            rotated=report.angle is not None,
+            rotation_angle=report.angle or 0.0,
+            systems=list(report.systems),
+            machine_coordinates=report.machine,
+            matrix=list(report.matrix),
+            shift=list(report.shift),
+        )
+
+
+def below(state: Coordinates, place: int) -> float:
+    """What clamp position and tool add to an axis."""
+    return sum(offsets[place] for offsets in (state.clamp, state.tool) if offsets)

@@ -1,0 +1,1 @@
+"""The vocabulary `iso`: what CAM post-processors write for Fanuc and LinuxCNC."""

@@ -1,0 +1,41 @@
+; dialect iso
+(Exported for LinuxCNC)
+(Post Processor: linuxcnc)
+(begin preamble)
+G17 G54 G40 G49 G80 G90
+G21
+(begin operation: TC: 5mm Endmill)
+(machine units: mm/min)
+M6 T5
+G43 H0
+M3 S12000
+(finish operation: TC: 5mm Endmill)
+(begin operation: Profile)
+G0 Z5.000
+G0 X-2.500 Y0.000
+G0 Z3.000
+G1 X-2.500 Y0.000 Z-1.500 F120.000
+G1 X-2.500 Y40.000 Z-1.500 F360.000
+G2 X0.000 Y42.500 Z-1.500 I2.500 J0.000 F360.000
+G1 X60.000 Y42.500 Z-1.500 F360.000
+G2 X62.500 Y40.000 Z-1.500 I0.000 J-2.500 F360.000
+G1 X62.500 Y0.000 Z-1.500 F360.000
+G2 X60.000 Y-2.500 Z-1.500 I-2.500 J0.000 F360.000
+G1 X0.000 Y-2.500 Z-1.500 F360.000
+G2 X-2.500 Y0.000 Z-1.500 I0.000 J2.500 F360.000
+G0 Z5.000
+(finish operation: Profile)
+(begin operation: Drilling)
+G0 Z5.000
+G90
+G98
+G81 X10.000 Y20.000 Z-6.000 F100.000 R3.000
+G81 X30.000 Y20.000 Z-6.000 F100.000 R3.000
+G83 X50.000 Y20.000 Z-6.000 F100.000 Q4.000 R3.000
+G80
+G0 Z5.000
+(finish operation: Drilling)
+(begin postamble)
+M05
+G17 G54 G90 G80 G40
+M2

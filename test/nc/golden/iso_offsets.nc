@@ -1,0 +1,28 @@
+; dialect iso
+; G10, G52, G53, G54 to G59.3, G92 with its three companions, G28 through an intermediate point.
+G21 G90 G54
+G10 L2 P1 X10 Y20
+G0 X0 Y0
+G52 X1 Y1
+X0 Y0
+G52 X0 Y0
+X0 Y0
+G92 X100
+G0 X101
+G92.2
+X0
+G92.3
+X100
+G92.1
+X0
+G10 L20 P2 X5 Y5
+G55 X6
+G10 L20 P0 X0
+X1
+G59.3 X3
+G53 X7 Y7
+G53 G1 X8 F600
+G28 X4 Z3
+G91 G28 Y0
+G90
+M30

@@ -1,0 +1,24 @@
+; between #MCS ON and #MCS OFF positions are those of the machine
+V.G.NP[1].V.X = 100
+G54 G00 X10 Y5
+G21
+#ROTATION ON [ANGLE=90]
+X1 Y2
+#MCS ON
+X10 Y5
+V.G.NP[1].V.X = 50
+G92 X3
+X10
+#MCS OFF
+X1 Y2
+G54
+X1 Y2
+#ROTATION OFF
+#CS ON [7, 8, 9, 0, 0, 90]
+G20
+X1 Y2 Z0
+#MCS ON
+Z1
+#MCS OFF
+Z1
+M30
