@@ -13,7 +13,7 @@ functions have finished.
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from cnc_ptp.nc.contour import Contour
+from cnc_ptp.nc.contour import EXACT_STOP, Transition
 
 
 class Source(NamedTuple):
@@ -53,8 +53,8 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
-    `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect. `exact`:
-    the path stops at the end; `contour`: the corner there may be rounded like that.
+    `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
+    `transition` to the next motion.
     """
 
     target: tuple[float, ...]
@@ -62,8 +62,7 @@ class LinearMove(NamedTuple):
     feed: float
     slope: str = ""
     full_override: bool = False
-    exact: bool = False
-    contour: Contour | None = None
+    transition: Transition = EXACT_STOP
 
 
 class CircularMove(NamedTuple):
@@ -71,7 +70,7 @@ class CircularMove(NamedTuple):
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
-    `slope`, `full_override`, `exact` and `contour` as in LinearMove.
+    `slope`, `full_override` and `transition` as in LinearMove.
     """
 
     target: tuple[float, ...]
@@ -82,8 +81,7 @@ class CircularMove(NamedTuple):
     feed: float
     slope: str = ""
     full_override: bool = False
-    exact: bool = False
-    contour: Contour | None = None
+    transition: Transition = EXACT_STOP
 
 
 class Dwell(NamedTuple):

@@ -1,4 +1,4 @@
-"""Contouring of corners as a program asks for it: G61, G261, #CONTOUR MODE."""
+"""What a program asks of the end of a block: exact stop, contouring (G61, G261, #CONTOUR MODE), smoothing (#HSC)."""
 
 from __future__ import annotations
 
@@ -28,3 +28,35 @@ class Contour(NamedTuple):
     post_dist: float = 1.0
     remain_part: float = 0.0
     max_angle: float = 0.0
+
+
+DEFAULT_CONTOUR: Final = Contour()
+
+
+class Smoothing(NamedTuple):
+    """Words of #HSC ON [BSPLINE …]: largest deviation of the path (mm) and of each other axis (mm or deg; 0: none)."""
+
+    path_dev: float
+    track_dev: float = 0.0
+
+
+class Transition(NamedTuple):
+    """How the path goes from a block into the next one.
+
+    exact       it stops at the end of the block, unless this belongs to a smoothed curve
+    contour     the corner there may be rounded like that; None: not
+    smoothing   the block belongs to a curve that is smoothed; None: not
+    """
+
+    exact: bool
+    contour: Contour | None = None
+    smoothing: Smoothing | None = None
+
+    @property
+    def stops(self) -> bool:
+        """The path stops at the end of the block, whatever follows."""
+        return self.exact and self.smoothing is None
+
+
+EXACT_STOP: Final = Transition(exact=True)
+THROUGH: Final = Transition(exact=False)

@@ -128,6 +128,11 @@ COMP_TWICE = Fault(21099, "COMP of axis {axis} twice in one block")
 SLOPE_UNKNOWN = Fault(21110, "slope {slope} is not known; known are: {known}")
 SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available are: STEP, TRAPEZ")
 
+# Transitions between blocks
+OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be above 0")
+OPTION_TOO_LARGE = Fault(21112, "{word}={value} must be at most {limit}")
+OPTION_OF_OTHER_MODE = Fault(21113, "{word} has no meaning in mode {mode} of #CONTOUR MODE")
+
 # Spindles
 SPINDLE_UNKNOWN = Fault(20180, "spindle {word} does not belong to this channel; its spindles are: {known}")
 SPEED_ABOVE_GEAR = Fault(22010, "spindle {spindle}: {speed} rpm is above the maximum {limit} rpm{gear} (P-AXIS-00212)")

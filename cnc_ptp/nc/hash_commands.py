@@ -7,7 +7,7 @@ vendor's programming manual.
 import re
 from collections.abc import Callable
 
-from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links
+from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links, transitions
 from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
@@ -236,6 +236,8 @@ STATEMENTS: dict[str, Callable[[Line, str, int, int], None]] = {
     "MCS": commands.read_machine_coordinates,
     "PSET": commands.read_preset,
     "PRESET": commands.read_preset,
+    "CONTOUR MODE": transitions.read_contour_mode,
+    "HSC": transitions.read_smoothing,
     "COMMENT BEGIN": _comment,
     "COMMENT END": _end_of_comment,
 }

@@ -15,6 +15,7 @@ from cnc_ptp.nc.canonical import (
     Timer,
     WaitForPath,
 )
+from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.coordinates.codes import initial_coordinates, select_offset
 from cnc_ptp.nc.coordinates.limits import check_limits
@@ -169,6 +170,7 @@ def _resolve(
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None:
         motion = _moved(channel, state, block, motion, check_target)
+    state.once = None
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":
         _require_speed(state, None)
@@ -195,6 +197,9 @@ def _moved(
         check_limits(channel, state, block, motion)
     if state.slope:
         motion = motion._replace(slope=state.slope)
+    transition = state.once or state.transition
+    if transition is not EXACT_STOP:
+        motion = motion._replace(transition=transition)
     if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
         motion = motion._replace(full_override=True)
     if state.spindle.speedless:

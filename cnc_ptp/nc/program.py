@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
+from cnc_ptp.nc.contour import DEFAULT_CONTOUR, EXACT_STOP, Contour, Transition
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
@@ -323,8 +324,9 @@ class ModalState:
     `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to. `reported`: the canonical stream has them. `path_tolerance`: that of G64, mm; None: exact
-    stop. `following`: further motions of a block while it is resolved.
+    `coordinates` amount to. `reported`: the canonical stream has them. `transition`: between blocks; `once`: at the
+    end of the active one instead; `contour`: what G261 means. `following`: further motions of a block
+    while it is resolved.
     """
 
     position: tuple[float, ...] = ()
@@ -344,7 +346,9 @@ class ModalState:
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING
-    path_tolerance: float | None = None
+    transition: Transition = EXACT_STOP
+    once: Transition | None = None
+    contour: Contour = DEFAULT_CONTOUR
     following: Iterator[Step] | None = None
 
     def copy(self) -> "ModalState":
@@ -359,4 +363,5 @@ class ModalState:
         self.feed_mode, self.block_time = other.feed_mode, other.block_time
         changes = self.coordinates.changes
         self.slope, self.coordinates = other.slope, other.coordinates
+        self.transition, self.contour = other.transition, other.contour
         self.coordinates.changes = changes

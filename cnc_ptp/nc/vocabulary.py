@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles
+from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 
@@ -57,7 +57,7 @@ _G_CODES = (
     dimension(91, False),
     centre(161, True),
     centre(162, False),
-    GCode(9, "block end"),
+    GCode(9, "block end", prepare=transitions.once),
     GCode(20, "mirror", prepare=codes.mirror),
     GCode(21, "mirror", prepare=codes.mirror),
     GCode(22, "mirror", prepare=codes.mirror),
@@ -71,12 +71,12 @@ _G_CODES = (
     *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
     GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
     GCode(160, "activity of offsets", function=codes.offset_activity, takes_axes=True, valued=True),
-    GCode(60, "block transition"),
-    GCode(359, "block transition"),
-    GCode(360, "block transition"),
-    GCode(61, "block transition", later="contouring of corners"),
-    GCode(260, "block transition"),
-    GCode(261, "block transition", later="contouring of corners"),
+    GCode(60, "block transition", select=transitions.exact_stop),
+    GCode(359, "block transition", select=transitions.through),
+    GCode(360, "block transition", select=transitions.exact_stop),
+    GCode(61, "block transition", prepare=transitions.once),
+    GCode(260, "block transition", select=transitions.through),
+    GCode(261, "block transition", select=transitions.contouring),
     GCode(63, "path", later="tapping"),
     GCode(70, "units", prepare=codes.unit),
     GCode(71, "units", prepare=codes.unit),

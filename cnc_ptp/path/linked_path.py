@@ -40,7 +40,7 @@ Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
     alike = motion.full_override == following.full_override and is_rapid(motion) == is_rapid(following)
-    return alike and not motion.exact
+    return alike and not motion.transition.stops
 
 
 def is_rapid(motion: Path) -> bool:
@@ -70,7 +70,8 @@ class LinkedPath:
         """Links the first two motions; False if they cannot be linked."""
         self._last = motion
         self._feeds.append(first.feed)
-        self._builder.begin(first)
+        self._builder.begin()
+        self._append(self._builder.add(first))
         return self._extend(following)
 
     @property
@@ -140,7 +141,7 @@ class LinkedPath:
             linked = self._make(last.target, motion, self._blocks)
         except CncError:
             return False  # it is told when the path gets there
-        parts = self._builder.link(linked, last.contour)
+        parts = self._builder.add(linked)
         self._source.accept()
         self._blocks += 1
         self._last = motion

@@ -92,7 +92,7 @@ class PathMotion:
         """The next block of the path is the active one."""
         assert self._linked is not None
         self._linked.pass_block()
-        self.feed = self._programmed(self._linked.feed)
+        self.feed = self._linked.feed
 
     @property
     def point(self) -> PathPoint:
@@ -148,7 +148,7 @@ class PathMotion:
         path = LinkedPath(self._look_ahead(), self._builder, source, self._make_linked)
         if not path.begin(first, motion, following):
             return False
-        self._linked, self.feed = path, self._programmed(path.feed)
+        self._linked, self.feed = path, path.feed
         return True
 
     def _look_ahead(self) -> LookAhead:
@@ -158,12 +158,10 @@ class PathMotion:
         return self._linked_motion(self._make_element(start, motion), motion, block)
 
     def _linked_motion(self, element: Line | Arc, motion: Path, block: int) -> LinkedMotion:
-        rapid = is_rapid(motion)
-        return LinkedMotion(element, self._axis_limits(motion), math.inf if rapid else motion.feed, block)
-
-    def _programmed(self, feed: float) -> float:
-        """In rapid traverse the velocity that the axes allow on the first part of the path."""
-        return feed
+        limits = self._rapid_limits if is_rapid(motion) else self._feed_limits
+        if self._steps(motion):
+            limits = [stepping(axis, self._cycle_time) for axis in limits]
+        return LinkedMotion(element, limits, math.inf if is_rapid(motion) else motion.feed, block, motion.transition)
 
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before."""
@@ -242,6 +240,14 @@ def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:
         return tuple([(p, v, a, 0.0) for p, v, a, _ in element.evaluate(s, v, a, j)])
 
     return without_jerk
+
+
+STEP_PART = 0.1
+
+
+def stepping(axis: AxisLimits, cycle_time: float) -> AxisLimits:
+    """Limits without one of the jerk: with one that lets the acceleration step within a part of a cycle."""
+    return axis._replace(jerk=max(axis.acceleration, axis.deceleration) / (STEP_PART * cycle_time))
 
 
 def path_axes(channel: ChannelParameters) -> frozenset[int]:

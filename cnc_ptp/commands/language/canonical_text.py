@@ -23,6 +23,7 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
     number,
 )
+from cnc_ptp.nc.contour import DEV, Transition
 
 
 def format_block(block: CanonicalBlock) -> str:
@@ -96,6 +97,7 @@ def _motion(motion: Motion) -> str:
         return "home " + ", then ".join(" ".join(group) for group in motion.groups)
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     slope += " G166" if motion.full_override else ""
+    slope += _transition(motion.transition)
     if isinstance(motion, LinearMove):
         return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"
@@ -107,3 +109,16 @@ def _motion(motion: Motion) -> str:
 
 def _numbers(values: tuple[float, ...]) -> str:
     return "(" + ", ".join(number(value) for value in values) + ")"
+
+
+def _transition(transition: Transition) -> str:
+    """Empty for an exact stop."""
+    text = "" if transition.exact else " through"
+    if transition.contour is not None:
+        contour = transition.contour
+        values = [contour.path_dev] if contour.mode == DEV else [contour.pre_dist, contour.post_dist]
+        text = f" {contour.mode} {_numbers(tuple(values))}"
+        text += "".join([f" {name} {number(value)}" for name, value in (("track", contour.track_dev),) if value])
+    if transition.smoothing is not None:
+        text += f" HSC {number(transition.smoothing.path_dev)}"
+    return text

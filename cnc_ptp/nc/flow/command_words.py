@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from cnc_ptp.nc.expressions.nodes import Constant, Node
@@ -50,10 +51,18 @@ class Words:
 
     def options(self, *names: str) -> dict[str, Node]:
         """`[ANGLE=30 CENTER1=10]`, empty without a bracket."""
-        found: dict[str, Node] = {}
+        begin = self.reader.skip_blanks()
+        if not self.reader.line.startswith("[", begin):
+            return {}
+        return self.bracket((), names)[1]
+
+    def bracket(self, keywords: Sequence[str], names: Sequence[str]) -> tuple[str, dict[str, Node]]:
+        """`[DEV PATH_DEV=0.01 TRACK_DEV=5]`: a keyword, if there is one, and options in any order."""
         opened = self.reader.skip_blanks()
         if not self.reader.follows("["):
-            return found
+            raise self.stray()
+        keyword = self.takes(*keywords)
+        found: dict[str, Node] = {}
         while not self.reader.follows("]"):
             self.reader.follows(",")
             if self.at_end:
@@ -62,7 +71,7 @@ class Words:
             if not name or not self.reader.follows("="):
                 raise self.stray()
             found[name] = self.reader.expression()
-        return found
+        return keyword, found
 
     def items(self) -> list[Node | None]:
         """`[10, , 5]`: values with gaps; the bracket is next."""

@@ -3,6 +3,7 @@
 from typing import Final
 
 from cnc_ptp.nc.canonical import Function, number
+from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, axis_values, offset_values, select_offset
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.iso import iso_faults as faults
@@ -100,16 +101,17 @@ def machine_coordinates(channel: Channel, state: ModalState, block: NcBlock, cod
     state.following = iter(())
 
 
-def exact_stop(state: ModalState) -> None:
-    """G61, G61.1."""
-    state.path_tolerance = None
-
-
 def path_tolerance(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G64 P0.01: how far the path may leave the programmed corners, mm; 0 without P. Q is for merging blocks."""
+    """G64 P0.01 Q0.01: how far the path may leave the programmed corners (P) and short blocks (Q), mm.
+
+    Without them it goes on where the direction does.
+    """
     for word in "PQ":
         value = block.words.get(word, 0.0)
         if value < 0.0:
             column = block.source.column(word)
             raise faults.TOLERANCE_NEGATIVE.at(block.source, column, word=word, value=number(value))
-    state.path_tolerance = block.words.get("P", 0.0) * state.coordinates.unit
+    unit = state.coordinates.unit
+    path_dev, merged = block.words.get("P", 0.0) * unit, block.words.get("Q", 0.0) * unit
+    contour = Contour(path_dev=path_dev) if path_dev else None
+    state.transition = Transition(exact=False, contour=contour, smoothing=Smoothing(merged) if merged else None)

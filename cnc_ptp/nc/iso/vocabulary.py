@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from cnc_ptp.nc import feeds, functions, motions
+from cnc_ptp.nc import feeds, functions, motions, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
@@ -52,8 +52,8 @@ _G_CODES = (
     *(GCode(number, "zero offset", prepare=codes.zero_offset) for number in range(54, 60)),
     GCode(54, "zero offset", minor=1, prepare=offsets.further_offset, words=frozenset("P")),
     *(GCode(59, "zero offset", minor=minor, prepare=offsets.further_offset) for minor in (1, 2, 3)),
-    GCode(61, "block transition", select=offsets.exact_stop),
-    GCode(61, "block transition", minor=1, select=offsets.exact_stop),
+    GCode(61, "block transition", select=transitions.exact_stop),
+    GCode(61, "block transition", minor=1, select=transitions.exact_stop),
     GCode(64, "block transition", prepare=offsets.path_tolerance, words=frozenset("PQ")),
     _cycle(73, "PQ"),
     GCode(74, "path", later=_TAPPING),

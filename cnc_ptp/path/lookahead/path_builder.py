@@ -1,6 +1,7 @@
 """Motions become parts of one path: each is linked to the one before it, by a corner curve or as it is.
 
-The last motion is kept back, because what follows decides where it is left.
+Short blocks of #HSC become a smooth curve first, whose pieces are linked like motions. The last motion is kept back,
+because what follows decides where it is left.
 """
 
 from __future__ import annotations
@@ -9,10 +10,11 @@ from collections.abc import Sequence
 from math import inf
 from typing import Final
 
-from cnc_ptp.nc.contour import Contour
-from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.nc.contour import Transition
+from cnc_ptp.path.geometry import AxisLimits, Line
 from cnc_ptp.path.lookahead.corners import corner, kink_square
 from cnc_ptp.path.lookahead.parts import PathPart
+from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
 
 SLOWEST: Final = 1.0
@@ -22,11 +24,14 @@ SLOWEST: Final = 1.0
 class LinkedMotion:
     """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse)."""
 
-    __slots__ = ("axes", "feed", "span")
+    __slots__ = ("axes", "block", "feed", "span", "transition")
 
-    def __init__(self, element: Curve, axes: Sequence[AxisLimits], feed: float, block: int) -> None:
+    def __init__(
+        self, element: Curve, axes: Sequence[AxisLimits], feed: float, block: int, transition: Transition
+    ) -> None:
         self.span = whole(element, block)
-        self.axes, self.feed = axes, feed
+        self.axes, self.feed, self.block = axes, feed, block
+        self.transition = transition
 
 
 class PathBuilder:
@@ -38,42 +43,82 @@ class PathBuilder:
         self._last: LinkedMotion | None = None
         self._entry = inf
         """y with which the last motion may be entered."""
+        self._smoother: Smoother | None = None
+        self._smoothed: LinkedMotion | None = None
+        """The last motion that went into the smoother."""
 
-    def begin(self, motion: LinkedMotion) -> None:
-        """The first motion, from rest."""
-        self._last, self._entry = motion, inf
+    def begin(self) -> None:
+        """A path begins at rest."""
+        self._last, self._entry = None, inf
+        self._smoother = None
 
-    def link(self, motion: LinkedMotion, contour: Contour | None) -> list[PathPart]:
-        """The parts that are known once `motion` follows; a kink that cannot be passed is an exact stop."""
-        last = self._last
-        assert last is not None
-        if contour is not None:
-            made = corner(last.span, motion.span, contour, self._path_axes)
-            if made is not None:
-                before, curve, after = made
-                spans = [before, *curve] if before.length > 0.0 else curve
-                parts = [self._part(last if span.block == last.span.block else motion, span) for span in spans]
-                motion.span = after
-                self._last = motion
-                return parts
-        square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
-        parts = [self._part(last, last.span)]
-        self._last, self._entry = motion, square if square >= SLOWEST * SLOWEST else 0.0
-        return parts
+    def add(self, motion: LinkedMotion) -> list[PathPart]:
+        """The parts that are known once `motion` follows."""
+        parts: list[PathPart] = []
+        before = self._smoothed
+        if self._smoother is not None and (before is None or not smoothed_together(before, motion)):
+            parts = self._end_of_curve()
+        smoothing, element = motion.transition.smoothing, motion.span.element
+        if smoothing is None or motion.feed == inf or not isinstance(element, Line):
+            return parts + self._link(motion)
+        if self._smoother is None:
+            self._smoother = Smoother(element.start, self._path_axes, smoothing.path_dev, smoothing.track_dev)
+        self._smoothed = motion
+        self._smoother.add(element.target, motion.block, motion.feed)
+        return parts + self._pieces()
 
     def finish(self) -> list[PathPart]:
-        """The last motion: nothing follows it."""
+        """The rest: nothing follows."""
+        parts = self._end_of_curve()
         last, self._last = self._last, None
-        return [] if last is None or last.span.length <= 0.0 else [self._part(last, last.span)]
+        if last is not None and last.span.length > 0.0:
+            parts.append(self._part(last, last.span))
+        return parts
+
+    def _end_of_curve(self) -> list[PathPart]:
+        if self._smoother is None:
+            return []
+        self._smoother.finish()
+        parts = self._pieces()
+        self._smoother = self._smoothed = None
+        return parts
+
+    def _pieces(self) -> list[PathPart]:
+        """Those of the smooth curve that are finished."""
+        parts: list[PathPart] = []
+        smoother, motion = self._smoother, self._smoothed
+        assert smoother is not None and motion is not None
+        for piece in smoother.take():
+            parts += self._link(LinkedMotion(piece.geometry, motion.axes, piece.feed, piece.block, motion.transition))
+        return parts
+
+    def _link(self, motion: LinkedMotion) -> list[PathPart]:
+        """A kink that cannot be passed is an exact stop."""
+        last, self._last = self._last, motion
+        if last is None:
+            return []
+        contour = last.transition.contour
+        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
+        if made is not None:
+            before, curve, motion.span = made
+            spans = [before, *curve] if before.length > 0.0 else curve
+            return [self._part(last if span.block == last.block else motion, span) for span in spans]
+        part = self._part(last, last.span)
+        square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
+        self._entry = square if square >= SLOWEST * SLOWEST else 0.0
+        return [part] if part.length > 0.0 else []
 
     def _part(self, motion: LinkedMotion, span: Span) -> PathPart:
         entry, self._entry = self._entry, inf
         return PathPart(span, motion.axes, self._path_axes, motion.feed, span.block, entry)
 
 
+def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
+    """Two motions of one smooth curve."""
+    return following.transition.smoothing == motion.transition.smoothing and isinstance(following.span.element, Line)
+
+
 def narrower(axes: Sequence[AxisLimits], others: Sequence[AxisLimits]) -> list[AxisLimits]:
     """The smaller limits of each axis."""
-    return [
-        AxisLimits(*[min(pair) for pair in zip(one, other, strict=True)])
-        for one, other in zip(axes, others, strict=True)
-    ]
+    pairs = zip(axes, others, strict=True)
+    return [AxisLimits(*[min(pair) for pair in zip(one, other, strict=True)]) for one, other in pairs]

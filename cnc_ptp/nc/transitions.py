@@ -1,0 +1,138 @@
+"""Transitions between blocks: exact stop (G09, G60, G359, G360), contouring (G61, G260, G261, #CONTOUR MODE), #HSC."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from cnc_ptp.nc import faults
+from cnc_ptp.nc.canonical import number
+from cnc_ptp.nc.contour import DEV, DIST, EXACT_STOP, THROUGH, Smoothing, Transition
+from cnc_ptp.nc.expressions.nodes import Node
+from cnc_ptp.nc.flow.command_words import Words
+from cnc_ptp.nc.flow.lines import Flow, Line, Statement
+from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+
+LENGTHS: Final = {"PATH_DEV": "path_dev", "PRE_DIST": "pre_dist", "POST_DIST": "post_dist"}
+"""Words in mm or inch, and what they are here."""
+OTHERS: Final = {"TRACK_DEV": "track_dev", "REMAIN_PART": "remain_part", "MAX_ANGLE": "max_angle"}
+CONTOUR: Final = "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5] or [DIST PRE_DIST=1 POST_DIST=2], ON, OFF"
+SMOOTHING: Final = "#HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF"
+OF_MODE: Final = {DEV: ("PATH_DEV",), DIST: ("PRE_DIST", "POST_DIST")}
+LARGEST: Final = {"REMAIN_PART": 100.0, "MAX_ANGLE": 180.0}
+
+
+def exact_stop(state: ModalState) -> None:
+    """G60, G360: the path stops at the end of each block that #HSC does not smooth."""
+    state.transition = EXACT_STOP._replace(smoothing=state.transition.smoothing)
+
+
+def through(state: ModalState) -> None:
+    """G359, G260: it goes on where the direction does; a corner is passed as slowly as its kink needs."""
+    state.transition = THROUGH._replace(smoothing=state.transition.smoothing)
+
+
+def contouring(state: ModalState) -> None:
+    """G261: corners are rounded as #CONTOUR MODE says."""
+    state.transition = Transition(exact=False, contour=state.contour, smoothing=state.transition.smoothing)
+
+
+def once(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """G09: an exact stop, G61: contouring at the end of this block."""
+    smoothing = state.transition.smoothing
+    state.once = EXACT_STOP if code.number == EXACT_ONCE else Transition(False, state.contour, smoothing)
+
+
+EXACT_ONCE: Final = 9
+
+
+class ContourMode(Statement):
+    """#CONTOUR MODE."""
+
+    def __init__(self, column: int, switch: str, mode: str, options: dict[str, Node]) -> None:
+        super().__init__(column)
+        self.switch, self.mode, self.options = switch, mode, options
+
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
+        state = execution.values.state
+        if self.mode:
+            given = {name: option(execution, line, name, node) for name, node in self.options.items()}
+            state.contour = state.contour._replace(mode=self.mode, **given)
+        if self.switch == "OFF":
+            through(state)
+        elif self.switch == "ON" or state.transition.contour is not None:
+            contouring(state)
+        return None
+
+
+class SmoothingMode(Statement):
+    """#HSC ON, #HSC OFF."""
+
+    def __init__(self, column: int, options: dict[str, Node] | None) -> None:
+        super().__init__(column)
+        self.options = options
+
+    def run(self, execution: Flow, line: Line) -> NcBlock | None:
+        state = execution.values.state
+        smoothing: Smoothing | None = None
+        if self.options is not None:
+            given = {name: option(execution, line, name, node) for name, node in self.options.items()}
+            smoothing = Smoothing(given.get("path_dev", state.contour.path_dev), given.get("track_dev", 0.0))
+        state.transition = state.transition._replace(smoothing=smoothing)
+        return None
+
+
+def option(execution: Flow, line: Line, name: str, node: Node) -> float:
+    """Value of an option, mm or deg. Raises ProgramError for one that is not above 0, or above its limit."""
+    values = execution.values
+    value = values.bounded(node.value(values), node.column, "the command")
+    word = next(word for word, field in (LENGTHS | OTHERS).items() if field == name)
+    if value < 0.0 or (value == 0.0 and word in LENGTHS):
+        raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value))
+    limit = LARGEST.get(word, value)
+    if value > limit:
+        raise faults.OPTION_TOO_LARGE.at(line.source, node.column, word=word, value=number(value), limit=number(limit))
+    return value * values.state.coordinates.unit if word in LENGTHS else value
+
+
+def read_contour_mode(line: Line, text: str, end: int, column: int) -> None:
+    words = Words(line, text, end, "#CONTOUR MODE", CONTOUR)
+    switch = words.takes("ON", "OFF")
+    mode = ""
+    options: dict[str, Node] = {}
+    if not words.at_end and switch != "OFF":
+        mode, options = read_options(words, DEV, DIST, *LENGTHS, *OTHERS)
+        if mode == "OFF":
+            switch, mode = "OFF", ""
+    elif not switch:
+        raise words.missing("values in brackets, ON or OFF")
+    words.require_end()
+    for word in ("PATH_DEV", "PRE_DIST", "POST_DIST"):
+        if LENGTHS[word] in options and word not in OF_MODE.get(mode, ()):
+            raise faults.OPTION_OF_OTHER_MODE.at(
+                line.source, options[LENGTHS[word]].column, word=word, mode=mode or "OFF"
+            )
+    line.statement = ContourMode(column, switch, mode, options)
+    line.synchronises = words.reader.synchronises
+
+
+def read_smoothing(line: Line, text: str, end: int, column: int) -> None:
+    words = Words(line, text, end, "#HSC", SMOOTHING)
+    switch = words.takes("ON", "OFF")
+    if not switch:
+        raise words.stray() if not words.at_end else words.missing("ON or OFF")
+    options: dict[str, Node] | None = None
+    if switch == "ON":
+        options = {}
+        if not words.at_end:
+            _, options = read_options(words, "BSPLINE", "PATH_DEV", "TRACK_DEV")
+    words.require_end()
+    line.statement = SmoothingMode(column, options)
+    line.synchronises = words.reader.synchronises
+
+
+def read_options(words: Words, *known: str) -> tuple[str, dict[str, Node]]:
+    """`[DEV PATH_DEV=0.01]`: the mode, which stands first and may be missing, and the options by their names here."""
+    fields = LENGTHS | OTHERS
+    keywords = [word for word in known if word not in fields]
+    mode, found = words.bracket([*keywords, "OFF"], [word for word in known if word in fields])
+    return mode or keywords[0], {fields[word]: node for word, node in found.items()}
