@@ -21,9 +21,11 @@ from cnc_ptp.parameters.view.machine_view import MachineParameters
 from cnc_ptp.parameters.view.offsets_view import NO_OFFSET_TABLES, OffsetTables
 from cnc_ptp.parameters.view.spindle_view import CurveParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.view.synchronisation import Synchronisation
+from cnc_ptp.parameters.view.tool_view import NO_TOOLS, Tool, ToolTable
 
 __all__ = [
     "NO_OFFSET_TABLES",
+    "NO_TOOLS",
     "AxisParameters",
     "ChannelAxis",
     "ChannelParameters",
@@ -40,7 +42,9 @@ __all__ = [
     "RosDescriptor",
     "SpindleParameters",
     "Synchronisation",
+    "Tool",
     "ToolLimits",
+    "ToolTable",
     "catalogue",
     "complete_text",
     "load_machine",

@@ -1,5 +1,6 @@
 """Machine file -> MachineParameters: read, check each value and values against each other, or report all problems."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from cnc_ptp.parameters import errors
@@ -7,8 +8,11 @@ from cnc_ptp.parameters.check.machine_checks import check_machine
 from cnc_ptp.parameters.check.machine_notices import machine_notices
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.machine_sections import read_parameters
-from cnc_ptp.parameters.read.offset_files import named_files, split_files, with_files, with_offsets
-from cnc_ptp.parameters.view.channel_members import axis_entries
+from cnc_ptp.parameters.read.named_files import named_files, split_files, with_files
+from cnc_ptp.parameters.read.offset_files import with_offsets
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.read.tool_file import with_tools
+from cnc_ptp.parameters.view.channel_members import Sets, axis_entries, rotary_axes
 from cnc_ptp.parameters.view.machine_view import MachineParameters, machine_view
 
 
@@ -18,7 +22,7 @@ def read_machine(path: str | Path) -> MachineParameters:
 
 
 def machine_text(path: str | Path) -> str:
-    """The text of a machine file with those of the offset files that it names: all that makes the machine.
+    """The text of a machine file with those of the files that it names: all that makes the machine.
 
     Raises ParameterError 25017 for one that cannot be read.
     """
@@ -49,9 +53,15 @@ def load_machine(text: str, file: str) -> MachineParameters:
     machine, sets, problems = read_parameters(text, file)
     for node, parameters in sets.items():
         if parameters.kind == "channel":
-            axes = [entry.name for entry in axis_entries(parameters, sets)]
-            sets[node] = with_offsets(parameters, axes, files, problems)
+            sets[node] = with_tables(parameters, sets, files, problems)
     problems += check_machine(sets)
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
+
+
+def with_tables(channel: ParameterSet, sets: Sets, files: Mapping[str, str], problems: list[Problem]) -> ParameterSet:
+    """The channel with the zero offsets, clamp positions and tools of its files."""
+    axes = [entry.name for entry in axis_entries(channel, sets)]
+    channel = with_offsets(channel, axes, files, problems)
+    return with_tools(channel, axes, rotary_axes(channel, sets), files, problems)
