@@ -18,18 +18,18 @@ NORMAL = {17: 2, 18: 1, 19: 0}
 
 def tool_words(channel: Channel, state: ModalState, block: NcBlock) -> bool:
     """T and D of a block; whether D has selected data. Raises ProgramError 20296, 21010, 21650 to 21652, 20738."""
-    words = channel.vocabulary.function_words & block.words.keys()
-    if "T" in words:
+    letters = channel.vocabulary.function_words
+    has_data = "D" in block.words and "D" in letters
+    if "T" in block.words and "T" in letters:
         tool = number_function(block, "T", MAX_TOOL).number
         _require_tool(channel, block, tool)
         state.tool.t = tool
-        if channel.tools.with_t and "D" not in words:
+        if channel.tools.with_t and not has_data:
             select(channel, state, block.source, tool, "T")
             return True
-    if "D" not in words:
-        return False
-    select(channel, state, block.source, number_function(block, "D", MAX_TOOL).number, "D")
-    return True
+    if has_data:
+        select(channel, state, block.source, number_function(block, "D", MAX_TOOL).number, "D")
+    return has_data
 
 
 def _require_tool(channel: Channel, block: NcBlock, tool: int) -> None:

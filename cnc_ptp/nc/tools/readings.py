@@ -116,8 +116,10 @@ def index_of(values: Values, unit: Scalar, column: int) -> int:
     number = int(unit) if isinstance(unit, float) and unit == int(unit) else -1
     if number < 0 or data_of(values.channel, values.state, number) is None:
         shown = unit if isinstance(unit, str) else f"{unit:g}"
-        known = ", ".join(str(each) for each in sorted(values.channel.tools.tools)) or "none"
-        raise values.fault(expression_faults.UNIT_UNKNOWN, column, kind="compensation data D", unit=shown, known=known)
+        known = ", ".join(f"D{each}" for each in sorted(values.channel.tools.tools)) or "none"
+        raise values.fault(
+            expression_faults.UNIT_UNKNOWN, column, kind="compensation data", unit=f"D{shown}", known=known
+        )
     return number
 
 
