@@ -243,7 +243,7 @@ def _reported(channel: Channel, state: ModalState, block: CanonicalBlock) -> Can
 def _with_new_tool(
     channel: Channel, state: ModalState, block: NcBlock, path: GCode | None, before: tuple[float, ...]
 ) -> Motion | None:
-    """P-CHAN-00100: what is not programmed stays as it was programmed `before`, so the axes make up for the tool.
+    """P-CHAN-00100: axes without a word keep their programmed position from `before`, so they make up for the tool.
 
     Not with arcs, whose axes make up for it with their next absolute word.
     """
