@@ -12,7 +12,7 @@ MachineParameters or raise ParameterError with everything that is wrong.
 
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
-from cnc_ptp.parameters.loader import complete_text, load_machine, machine_text, read_machine
+from cnc_ptp.parameters.loader import complete_text, load_machine, machine_files, machine_text, read_machine
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters
 from cnc_ptp.parameters.view.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
@@ -48,6 +48,7 @@ __all__ = [
     "catalogue",
     "complete_text",
     "load_machine",
+    "machine_files",
     "machine_text",
     "read_machine",
     "ros_descriptors",

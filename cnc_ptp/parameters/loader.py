@@ -39,6 +39,15 @@ def complete_text(text: str, file: str) -> str:
     return with_files(text, files)
 
 
+def machine_files(path: str | Path) -> list[Path]:
+    """The files that a machine file names, whether they are there or not; none if it cannot be read."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return []
+    return [Path(path).parent / named.name for named in named_files(text, str(path))]
+
+
 def read_text(path: Path, place: Place, what: str) -> str:
     try:
         return path.read_text(encoding="utf-8")

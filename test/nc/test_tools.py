@@ -16,14 +16,14 @@ from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Channel, ModalState, SpindleTable
 from cnc_ptp.nc.tools.compensation import cancel_length, select_length
-from cnc_ptp.parameters import Tool, ToolTable
+from cnc_ptp.parameters import OffsetTables, Tool, ToolTable
 
 LENGTHS = st.floats(-200.0, 200.0).map(lambda value: round(value, 4))
 ANGLES = st.floats(-180.0, 180.0).map(lambda value: round(value, 3))
 
 
-def last(text: str, tools: ToolTable) -> tuple[float, ...]:
-    motions = [block.motion for block in run(text, tools=tools) if block.motion is not None]
+def last(text: str, tools: ToolTable, **options: object) -> tuple[float, ...]:
+    motions = [block.motion for block in run(text, tools=tools, **options) if block.motion is not None]
     return motions[-1].target
 
 
@@ -64,6 +64,43 @@ def test_only_the_last_selection_counts(words):  # type: ignore[no-untyped-def]
         expected[axis] += offset
     expected[{"G17": 2, "G18": 1, "G19": 0}[plane]] += tool.length + tool.wear_length
     assert last(f"{text}\nX20 Y20 Z20\nX7 Y8 Z9", TOOLS["milling"]) == pytest.approx(expected, abs=1e-9)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.tuples(*[LENGTHS] * 8), st.booleans(), st.sampled_from((17, 18, 19)), st.booleans())
+def test_a_tool_and_machine_coordinates(values, fixed, plane, inside):  # type: ignore[no-untyped-def]
+    """machine = p between #MCS ON and #MCS OFF, behind it zero + clamp + p + t, wherever D and the plane stand."""
+    length, wear, offset, zero, clamp, *point = values
+    tool = Tool(1, length, 1.0, (offset, 0.0, 0.0), wear, fixed=fixed)
+    tables = OffsetTables(zero={1: (zero, 0.0, 0.0)}, clamp={0: (0.0, clamp, 0.0)})
+    selected = f"G{plane} D1"
+    before, between = ("D2", selected) if inside else (selected, "")
+    target = "X{:.4f} Y{:.4f} Z{:.4f}".format(*point)
+    text = f"G54 G00 {before}\nX1 Y1 Z1\n#MCS ON\n{between}\n{target}"
+    of_tables = ToolTable({1: tool, 2: MILLING[2]}, True)
+    assert last(text, of_tables, offsets=tables) == pytest.approx(point, abs=1e-9)
+    expected = [point[0] + zero + offset, point[1] + clamp, point[2]]
+    expected[{17: 2, 18: 1, 19: 0}[plane]] += length + wear
+    assert last(f"{text}\n#MCS OFF\n{target}", of_tables, offsets=tables) == pytest.approx(expected, abs=1e-9)
+
+
+def test_tools_at_once_do_not_move_the_axes_between_mcs_on_and_off() -> None:
+    """P-CHAN-00100: the axes make up for a tool of #MCS with their next absolute word."""
+    blocks = run("D1 G00 Z0\n#MCS ON\nD2\nX5\n#MCS OFF\nX5", tools=TOOLS["at_once"])
+    assert [block.motion.target for block in blocks if block.motion is not None] == [
+        (0.0, 0.0, 74.75),
+        (5.0, 0.0, 74.75),
+        (5.5, 0.0, 74.75),
+    ]
+
+
+def test_the_report_of_offsets_has_the_tool() -> None:
+    """In the block of the D word, with zero offset and clamp position beside it; in #MCS there is none."""
+    tables = OffsetTables(zero={1: (10.0, 0.0, 0.0)}, clamp={0: (0.0, 0.5, 0.0)})
+    blocks = run("G54 D2\nG00 X0\n#MCS ON\nX1", tools=TOOLS["milling"], offsets=tables)
+    reports = [block.offsets for block in blocks if block.offsets is not None]
+    assert [report.tool for report in reports] == [(0.5, -0.25, 110.5), (0.0, 0.0, 0.0)]
+    assert [report.shift for report in reports] == [(10.5, 0.25, 110.5), (0.0, 0.0, 0.0)]
 
 
 def test_relative_motions_do_not_make_up_for_a_tool() -> None:

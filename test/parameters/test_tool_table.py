@@ -6,7 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from cnc_ptp.parameters import ParameterError, Tool, ToolTable, complete_text, load_machine, read_machine
+from cnc_ptp.parameters import (
+    ParameterError,
+    Tool,
+    ToolTable,
+    complete_text,
+    load_machine,
+    machine_files,
+    machine_text,
+    read_machine,
+)
 from cnc_ptp.parameters.read.named_files import split_files
 
 END = "; the node does not start"
@@ -236,3 +245,19 @@ def test_the_complete_text_is_that_of_a_recording(tmp_path: Path) -> None:
     assert load_machine(complete, "r:machine.yaml").channels["ch"].tool_table.tools[5].length == 10.0
     plain = "/machine: {ros__parameters: {axes: [x]}}\n"
     assert complete_text(plain, file) == plain
+
+
+def test_one_text_has_tools_and_offsets(tmp_path: Path) -> None:
+    texts = {"tools.yaml": "5: {length: 10}", "zero.yaml": "G54: {X: 1}", "clamp.yaml": "0: {Z: 2}"}
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    file = tmp_path / "m.yaml"
+    file.write_text(
+        MACHINE.replace("tools.yaml\n", "tools.yaml\n    nullp_data: zero.yaml\n    pzv_data: clamp.yaml\n")
+    )
+    channel = load_machine(machine_text(file), "elsewhere.yaml").channels["ch"]
+    assert split_files(machine_text(file))[1] == texts
+    assert machine_files(file) == [tmp_path / name for name in texts]
+    assert (channel.offsets.zero, channel.offsets.clamp) == ({1: (1.0, 0.0, 0.0)}, {0: (0.0, 2.0, 0.0)})
+    assert channel.tool_table.tools[5].length == 10.0
+    assert machine_files(tmp_path / "nowhere.yaml") == []

@@ -104,12 +104,12 @@ class Coordinates:
         """Independent: what the fields hold is replaced as a whole, never changed."""
         return replace(self)
 
-    def set_tool(self, offsets: Offsets, fixed: bool) -> None:
-        """Offsets of the tool and `tool_fixed`; between #MCS ON and #MCS OFF they count from #MCS OFF on."""
-        where = self
-        if self.outside is not None:
-            self.outside = where = replace(self.outside)
-        where.tool, where.tool_fixed = offsets, fixed
+    def lasting(self) -> "Coordinates":
+        """Where clamp position and tool are changed: between #MCS ON and #MCS OFF those count from #MCS OFF on."""
+        if self.outside is None:
+            return self
+        self.outside = replace(self.outside)
+        return self.outside
 
     def leave(self) -> None:
         """#MCS ON: the coordinates of the machine."""

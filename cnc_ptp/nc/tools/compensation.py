@@ -99,7 +99,8 @@ def apply(channel: Channel, state: ModalState, source: Source, column: int) -> N
             words = {"length": number(length), "axis": "XYZ"[place], "plane": str(state.plane)}
             raise faults.LENGTH_AXIS.at(source, column, number=state.tool.d, **words)
         offsets[index] += length
-    state.coordinates.set_tool(tuple(offsets) if any(offsets) else (), data.fixed)
+    coordinates = state.coordinates.lasting()
+    coordinates.tool, coordinates.tool_fixed = tuple(offsets) if any(offsets) else (), data.fixed
     refresh(channel, state)
 
 
