@@ -203,8 +203,8 @@ def test_the_unit_of_a_tool_of_the_file_is_mm() -> None:
 
 def test_offsets_in_the_machine_file_for_an_axis_that_is_not_there() -> None:
     assert refusal("", "wz.5: {ax_versatz: {3: 1}}") == (
-        "25006 dir/m.yaml:5:28: tool list, P-TOOL-00006 wz[5].ax_versatz[3] of /ch: the channel has no axis 3, "
-        "it has 3 (0 to 2)"
+        "25006 dir/m.yaml:5:28: tool list, P-TOOL-00006 wz[5].ax_versatz[3] of /ch: "
+        "there is no axis 3, the channel has 3 axes (X, Z, C), the first one is 0"
     )
 
 

@@ -13,7 +13,6 @@ from cnc_ptp.parameters.view.channel_members import (
     COUPLING_GROUP,
     ChannelAxisEntry,
     Sets,
-    axis_entries,
     coupled_spindle_pairs,
     main_spindle_number,
     spindle_entries,
@@ -116,17 +115,6 @@ def tool_speeds(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
             yield problem(channel, errors.CONTRADICTION, ids.WZ_VB_MIN, (tool,), text)
 
 
-def tool_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
-    """Offsets and wear of tools are for axes that the channel has."""
-    count = len(axis_entries(channel, sets))
-    for ros_name in channel.given:
-        if ros_name.startswith("wz."):
-            declaration, indexes, _ = channel.find(ros_name)
-            if declaration.id in (ids.WZ_AX_VERSATZ, ids.WZ_WEAR) and indexes[1] >= count:
-                text = f"the channel has no axis {indexes[1]}, it has {count} (0 to {count - 1})"
-                yield problem(channel, errors.INDEX, declaration.id, indexes, text)
-
-
 SPINDLE_LIST_CHECKS = (
     one_synchronisation,
     gear_synchronisation,
@@ -134,5 +122,4 @@ SPINDLE_LIST_CHECKS = (
     coupled_pairs,
     tool_spindles,
     tool_speeds,
-    tool_axes,
 )
