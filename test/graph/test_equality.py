@@ -79,6 +79,7 @@ $ENDWHILE
 M30
 """
 TOOLS = "1: {type: mill, wear: {length: -0.02}, d: {11: {length: 75.2, offsets: {X: 0.25}}}}"
+FILES = "    werkz_data: tools.yaml\n    nullp_data: zero.yaml\n"
 SIDE = """G91 G00 Y[@P1 / 10]
 X[V.A.ACT_POS.Y / 100]
 M29
@@ -97,7 +98,8 @@ def folder(tmp_path_factory):
     (folder / "language.nc").write_text(LANGUAGE)
     (folder / "side.nc").write_text(SIDE)
     (folder / "tools.yaml").write_text(TOOLS)
-    mill = Path(MILL).read_text().replace("    spdl_anzahl: 1\n", "    spdl_anzahl: 1\n    tool_table: tools.yaml\n")
+    (folder / "zero.yaml").write_text("{default: G54, G54: {Z: 1.5}}")
+    mill = Path(MILL).read_text().replace("    spdl_anzahl: 1\n", "    spdl_anzahl: 1\n" + FILES)
     (folder / "mill.yaml").write_text(mill)
     (folder / "circle.yaml").write_text(ON_A_PATH_SCENARIO)
     return folder
@@ -151,7 +153,7 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
 
 @pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
 def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(folder, options):
-    """Actual positions, a cycle and a tool table in files of their own, a computation of many cycles, a message."""
+    """Actual positions, a cycle, tools and offsets in files of their own, a computation of many cycles, a message."""
     job = (folder / "mill.yaml", "--program", folder / "language.nc")
     told = run("simulate", *job, "--record", folder / "g.mcap").stdout
     output = run("run", *job, *options, "--record", folder / "h.mcap").stdout
@@ -159,7 +161,7 @@ def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(fold
     assert "message: it is at " in told and "message: it is at " in output
     assert states_equal(folder / "g.mcap", folder / "h.mcap") == []
     states = verified(folder / "h.mcap").states
-    assert states["/z/state"]["set_position"][-1] == pytest.approx(-90.0 + 75.2 - 0.02, abs=1e-12)
+    assert states["/z/state"]["set_position"][-1] == pytest.approx(-90.0 + 1.5 + 75.2 - 0.02, abs=1e-12)
 
 
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
