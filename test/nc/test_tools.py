@@ -16,6 +16,7 @@ from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Channel, ModalState, SpindleTable
 from cnc_ptp.nc.tools.compensation import cancel_length, select_length
+from cnc_ptp.nc.vocabulary import TWINCAT
 from cnc_ptp.parameters import OffsetTables, Tool, ToolTable
 
 LENGTHS = st.floats(-200.0, 200.0).map(lambda value: round(value, 4))
@@ -115,9 +116,8 @@ def test_inch_does_not_scale_the_tool() -> None:
 
 def channel() -> Channel:
     names = ("X", "Y", "Z")
-    return Channel(names, {name: place for place, name in enumerate(names)}, SpindleTable((), "S"), 0, 0)._replace(
-        tools=TOOLS["milling"]
-    )
+    places = {name: place for place, name in enumerate(names)}
+    return Channel(names, places, SpindleTable((), "S"), 0, 0, TWINCAT, tools=TOOLS["milling"])
 
 
 def test_length_by_an_h_number() -> None:
