@@ -93,7 +93,7 @@ class OffsetMemory:
     def give(self, coordinates: Coordinates) -> None:
         """To the state in which MDI texts start: it counts as soon as an offset is selected next."""
         coordinates.changes, coordinates.clamp_index = self.changes, self.clamp_index
-        coordinates.clamp = self._channel.offsets.clamp.get(self.clamp_index, ())
+        coordinates.lasting().clamp = self._channel.offsets.clamp.get(self.clamp_index, ())
         self._stale = True
 
     def _refusal(self, command: str, number: int, reason: str, **values: Value) -> CncError:
@@ -157,5 +157,6 @@ class OffsetMemory:
 
 
 def below(state: Coordinates, place: int) -> float:
-    """What clamp position and tool add to an axis."""
-    return sum(offsets[place] for offsets in (state.clamp, state.tool) if offsets)
+    """What clamp position and tool add to an axis, outside #MCS."""
+    lasting = state.outside or state
+    return sum(offsets[place] for offsets in (lasting.clamp, lasting.tool) if offsets)

@@ -129,6 +129,7 @@ class ProgramCheck:
             self._rotary,
             channel.offsets,
             self._soft_limits,
+            channel.tool_table,
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -154,6 +155,7 @@ class ProgramCheck:
             centre_offset=self._channel.circle_center_tolerance,
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
+            tools=self._channel.tool_table,
             files=files,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
@@ -261,6 +263,7 @@ class ProgramCheck:
             rotary=self._rotary,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
+            tools=self._channel.tool_table,
             limits=self._limits,
             runs=True,
         )

@@ -9,8 +9,11 @@ from rich.console import Console
 
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
+from cnc_ptp.parameters import machine_files
 
 OVERWRITES = 26117
+MACHINE_FILE = "machine_file"
+"""The input whose own files must not be overwritten either."""
 
 
 def check_output(output: str | None, **inputs: str | None) -> None:
@@ -31,12 +34,15 @@ def check_recording(record: str | None, **inputs: str | None) -> None:
 
 def _overwritten(output: str, inputs: Mapping[str, str | None]) -> str:
     """The input that is the same file as `output`, `machine file mill.yaml`; empty if none is."""
-    same = (
-        f"{what.replace('_', ' ')} {path}"
-        for what, path in inputs.items()
-        if path is not None and _same(Path(output), Path(path))
-    )
-    return next(same, "")
+    for what, path in inputs.items():
+        if path is None:
+            continue
+        if _same(Path(output), Path(path)):
+            return f"{what.replace('_', ' ')} {path}"
+        for named in machine_files(path) if what == MACHINE_FILE else ():
+            if _same(Path(output), named):
+                return f"file {named} of the machine file {path}"
+    return ""
 
 
 def _same(one: Path, other: Path) -> bool:

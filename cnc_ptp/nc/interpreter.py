@@ -32,8 +32,10 @@ from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
+from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
+from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
-from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
+from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
 
 CENTRE_OFFSET = 2.0
 """Default of P-CHAN-00059 mittelpkt_diff: 20000 in 0.1 µm; mm."""
@@ -59,6 +61,7 @@ def interpret(
     rotary: Collection[str] = (),
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
+    tools: ToolTable = NO_TOOLS,
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
@@ -72,8 +75,8 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` of the machine, `soft_limits` of
-    its axes for V.A. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine,
+    `soft_limits` of its axes for V.A. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
     change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
@@ -83,14 +86,15 @@ def interpret(
     """
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
-    vocabulary = program.vocabulary
-    channel = Channel(axes, index, table, centre_offset, ratio, vocabulary, frozenset(rotary), offsets, soft_limits)
+    words, turns = program.vocabulary, frozenset(rotary)
+    channel = Channel(axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools)
     state = ModalState(coordinates=initial_coordinates(channel)) if state is None else state
     state.position = tuple(start)
+    state.tool.written = NOT_WRITTEN
     refresh(channel, state)
     state.reported = True
-    if vocabulary.first_offset and not state.coordinates.own.zero_index:
-        select_offset(channel, state, vocabulary.first_offset)
+    if words.first_offset and not state.coordinates.own.zero_index:
+        select_offset(channel, state, words.first_offset)
     if values is None:
         values = Values(channel, state)
     else:
@@ -160,7 +164,11 @@ def _resolve(
         elif code.function is not None:
             control += code.function(channel, state, block, code)
             moves = moves and not code.takes_axes
+    before = state.programmed
+    selected = block.functions and (path.spindle or not path.own_words) and tool_words(channel, state, block)
     motion: Motion | None = None
+    if selected and channel.tools.at_once and not (moves and path.words):
+        motion, moves = _with_new_tool(channel, state, block, path if moves else None, before), False
     if moves and (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
     functions: tuple[Function, ...] = ()
@@ -237,6 +245,20 @@ def _reported(channel: Channel, state: ModalState, block: CanonicalBlock) -> Can
     return block if state.reported else _with_offsets(channel, state, block)
 
 
+def _with_new_tool(
+    channel: Channel, state: ModalState, block: NcBlock, path: GCode | None, before: tuple[float, ...]
+) -> Motion | None:
+    """P-CHAN-00100: axes without a word keep their programmed position from `before`, so they make up for the tool.
+
+    Not with arcs, whose axes make up for it with their next absolute word.
+    """
+    seen, state.programmed = state.programmed, before
+    motion = None if path is None or path.motion is None else path.motion(channel, state, block, path)
+    motion = motion or compensating_move(state)
+    state.programmed = seen
+    return motion
+
+
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
     return isinstance(block.motion, HomeAxes) or reads_the_run(block)
@@ -279,6 +301,7 @@ def check(
     centre_offset: float = CENTRE_OFFSET,
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
+    tools: ToolTable = NO_TOOLS,
     files: Mapping[str, str] = NO_FILES,
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
@@ -311,6 +334,7 @@ def check(
             rotary=rotary,
             offsets=offsets,
             soft_limits=soft_limits,
+            tools=tools,
             limits=limits,
             runs=True,
         )

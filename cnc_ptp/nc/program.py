@@ -9,7 +9,8 @@ from cnc_ptp.nc.contour import DEFAULT_CONTOUR, EXACT_STOP, Contour, Transition
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.parameters import NO_OFFSET_TABLES, OffsetTables
+from cnc_ptp.nc.tools.tool_state import ToolState
+from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
 
 MAX_M: Final = 999
 
@@ -275,6 +276,7 @@ class Channel(NamedTuple):
     rotary: frozenset[str] = frozenset()
     offsets: OffsetTables = NO_OFFSET_TABLES
     soft_limits: tuple[tuple[float, float], ...] = ()
+    tools: ToolTable = NO_TOOLS
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -350,14 +352,15 @@ class ModalState:
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR
     following: Iterator[Step] | None = None
+    tool: ToolState = field(default_factory=ToolState)
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
         spindle, coordinates = self.spindle.copy(), self.coordinates.copy()
-        return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates)
+        return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates, tool=self.tool.copy())
 
     def restore(self, other: "ModalState") -> None:
-        """After a cycle: codes, feed, radius and coordinates of its caller; position, spindles and tables are kept."""
+        """After a cycle: codes, feed, radius, coordinates, D of its caller; position, T, spindles, tables are kept."""
         self.path, self.plane, self.absolute = other.path, other.plane, other.absolute
         self.centre_absolute, self.feed, self.radius = other.centre_absolute, other.feed, other.radius
         self.feed_mode, self.block_time = other.feed_mode, other.block_time
@@ -365,3 +368,4 @@ class ModalState:
         self.slope, self.coordinates = other.slope, other.coordinates
         self.transition, self.contour = other.transition, other.contour
         self.coordinates.changes = changes
+        self.tool.d, self.tool.data = other.tool.d, other.tool.data

@@ -8,6 +8,7 @@ from typing import Final
 from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
+from cnc_ptp.nc.tools.compensation import follow_plane
 
 
 def plane(number: int) -> GCode:
@@ -16,7 +17,7 @@ def plane(number: int) -> GCode:
     def select(state: ModalState) -> None:
         state.plane = number
 
-    return GCode(number, "plane", select=select)
+    return GCode(number, "plane", select=select, prepare=follow_plane)
 
 
 def dimension(number: int, absolute: bool) -> GCode:

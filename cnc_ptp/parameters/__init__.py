@@ -12,7 +12,7 @@ MachineParameters or raise ParameterError with everything that is wrong.
 
 from cnc_ptp.parameters.declare.declarations import Declaration, catalogue
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
-from cnc_ptp.parameters.loader import complete_text, load_machine, machine_text, read_machine
+from cnc_ptp.parameters.loader import complete_text, load_machine, machine_files, machine_text, read_machine
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters
 from cnc_ptp.parameters.view.channel_view import ChannelAxis, ChannelParameters, ChannelSpindle, ToolLimits
@@ -21,9 +21,11 @@ from cnc_ptp.parameters.view.machine_view import MachineParameters
 from cnc_ptp.parameters.view.offsets_view import NO_OFFSET_TABLES, OffsetTables
 from cnc_ptp.parameters.view.spindle_view import CurveParameters, GearParameters, SpindleParameters
 from cnc_ptp.parameters.view.synchronisation import Synchronisation
+from cnc_ptp.parameters.view.tool_view import NO_TOOLS, Tool, ToolTable
 
 __all__ = [
     "NO_OFFSET_TABLES",
+    "NO_TOOLS",
     "AxisParameters",
     "ChannelAxis",
     "ChannelParameters",
@@ -40,10 +42,13 @@ __all__ = [
     "RosDescriptor",
     "SpindleParameters",
     "Synchronisation",
+    "Tool",
     "ToolLimits",
+    "ToolTable",
     "catalogue",
     "complete_text",
     "load_machine",
+    "machine_files",
     "machine_text",
     "read_machine",
     "ros_descriptors",

@@ -59,7 +59,7 @@ class ParameterError(CncError):
     """
 
     def __init__(self, problems: Sequence[Problem]) -> None:
-        self.problems = tuple(sorted(problems, key=lambda problem: problem.place[1:]))
+        self.problems = tuple(sorted(problems, key=lambda problem: problem.place))
         first, *others = self.problems
         lines = [str(first), *(f"P-ERR-{problem.error_id} {problem}" for problem in others)]
         super().__init__(first.error_id, "\n".join(lines))

@@ -1,5 +1,6 @@
 """Machine file -> MachineParameters: read, check each value and values against each other, or report all problems."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from cnc_ptp.parameters import errors
@@ -7,8 +8,11 @@ from cnc_ptp.parameters.check.machine_checks import check_machine
 from cnc_ptp.parameters.check.machine_notices import machine_notices
 from cnc_ptp.parameters.errors import ParameterError, Place, Problem
 from cnc_ptp.parameters.read.machine_sections import read_parameters
-from cnc_ptp.parameters.read.offset_files import named_files, split_files, with_files, with_offsets
-from cnc_ptp.parameters.view.channel_members import axis_entries
+from cnc_ptp.parameters.read.named_files import named_files, split_files, with_files
+from cnc_ptp.parameters.read.offset_files import with_offsets
+from cnc_ptp.parameters.read.parameter_set import ParameterSet
+from cnc_ptp.parameters.read.tool_file import with_tools
+from cnc_ptp.parameters.view.channel_members import Sets, axis_entries, rotary_axes
 from cnc_ptp.parameters.view.machine_view import MachineParameters, machine_view
 
 
@@ -18,7 +22,7 @@ def read_machine(path: str | Path) -> MachineParameters:
 
 
 def machine_text(path: str | Path) -> str:
-    """The text of a machine file with those of the offset files that it names: all that makes the machine.
+    """The text of a machine file with those of the files that it names: all that makes the machine.
 
     Raises ParameterError 25017 for one that cannot be read.
     """
@@ -35,6 +39,15 @@ def complete_text(text: str, file: str) -> str:
     return with_files(text, files)
 
 
+def machine_files(path: str | Path) -> list[Path]:
+    """The files that a machine file names, whether they are there or not; none if it cannot be read."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return []
+    return [Path(path).parent / named.name for named in named_files(text, str(path))]
+
+
 def read_text(path: Path, place: Place, what: str) -> str:
     try:
         return path.read_text(encoding="utf-8")
@@ -49,9 +62,15 @@ def load_machine(text: str, file: str) -> MachineParameters:
     machine, sets, problems = read_parameters(text, file)
     for node, parameters in sets.items():
         if parameters.kind == "channel":
-            axes = [entry.name for entry in axis_entries(parameters, sets)]
-            sets[node] = with_offsets(parameters, axes, files, problems)
+            sets[node] = with_tables(parameters, sets, files, problems)
     problems += check_machine(sets)
     if problems:
         raise ParameterError(problems)
     return machine_view(machine, sets, tuple(machine_notices(machine, sets)), Path(file).parent)
+
+
+def with_tables(channel: ParameterSet, sets: Sets, files: Mapping[str, str], problems: list[Problem]) -> ParameterSet:
+    """The channel with the zero offsets, clamp positions and tools of its files."""
+    axes = [entry.name for entry in axis_entries(channel, sets)]
+    channel = with_offsets(channel, axes, files, problems)
+    return with_tools(channel, axes, rotary_axes(channel, sets), files, problems)

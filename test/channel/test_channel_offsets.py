@@ -9,7 +9,7 @@ import pytest
 from machine_support import MILL, MachineBench
 from replay_support import bits, replay
 
-from cnc_ptp.parameters import MachineParameters, OffsetTables
+from cnc_ptp.parameters import MachineParameters, OffsetTables, Tool, ToolTable
 from cnc_ptp.protocol.blocks import ChannelOffsets
 
 TABLES = OffsetTables(
@@ -79,6 +79,34 @@ def test_teach_in_with_a_clamp_position_below_the_offset() -> None:
     assert at.give("channel", "teach_zero_offset", index=5).accepted
     start(at, "G58 G00 X0 Z0\nM30")
     assert (at.position("x"), at.position("z")) == (10.5, 1.5)
+
+
+def test_teach_in_with_a_tool_below_the_offset() -> None:
+    """The tip is at Z10, so the zero becomes 10; between #MCS ON and #MCS OFF the tool is below it, too."""
+    tools = ToolTable({1: Tool(1, length=75.0)}, True)
+    at = MachineBench(None, "", machine=machine(tool_table=tools), end_when_idle=False).run(0.1)
+    mdi(at, "D1 G00 Z10")
+    assert at.position("z") == 85.0
+    for text in ("G56 Z1", "#MCS ON"):
+        assert at.give("channel", "teach_zero_offset", index=3, axis="Z").accepted
+        mdi(at, text)
+    assert at.position("z") == 86.0
+    assert at.give("channel", "teach_zero_offset", index=3, axis="Z").accepted
+    mdi(at, "#MCS OFF")
+    mdi(at, "G56 Z0")
+    assert at.position("z") == 86.0
+    assert offsets(at)[-1].tool_offset == [0.0, 0.0, 75.0]
+
+
+def test_a_clamp_position_chosen_between_mcs_on_and_off() -> None:
+    at = bench().run(0.1)
+    mdi(at, "#MCS ON")
+    assert at.give("channel", "set_clamp_position", index=4).accepted
+    mdi(at, "G00 X10")
+    assert at.position("x") == 10.0
+    mdi(at, "#MCS OFF")
+    mdi(at, "X10")
+    assert at.position("x") == 10.5
 
 
 def test_the_clamp_position_counts_for_all_that_starts_later() -> None:

@@ -105,6 +105,22 @@ def test_a_recording_does_not_overwrite_what_the_run_is_made_of(name, tmp_path):
         assert path.read_bytes() == before
 
 
+@pytest.mark.parametrize("name", ["simulate", "run"])
+def test_a_recording_does_not_overwrite_files_that_the_machine_file_names(name, tmp_path):
+    machine = tmp_path / "m.yaml"
+    files = {"werkz_data": "t.yaml", "nullp_data": "o.yaml", "pzv_data": "c.yaml"}
+    named = ", ".join(f"{key}: {file}" for key, file in files.items())
+    nodes = "/machine: {ros__parameters: {channels: [ch], axes: [x]}}"
+    machine.write_text(f"{nodes}\n/ch: {{ros__parameters: {{{named}}}}}\n")
+    for file in files.values():
+        path = tmp_path / file
+        path.write_text("1: {}\n")
+        result = call(name, machine, "--duration", "0", "--record", path)
+        text = f"recording {path} would overwrite the file {path} of the machine file {machine}"
+        assert (result.exit_code, result.stderr) == (2, f"P-ERR-26117 {text}; nothing was started\n")
+        assert path.read_text() == "1: {}\n"
+
+
 def test_a_run_without_cycles(tmp_path):
     result = call("simulate", MILL, "--duration", "0", "--record", tmp_path / "a.mcap")
     assert result.exit_code == 0 and "machine time 0.000 s (0 cycles)" in result.stdout

@@ -27,7 +27,7 @@ def test_one_hit_is_shown_in_full():
         (["following"], "P-AXIS-00236", {"P-AXIS-00168", "P-AXIS-00169"}),
         (["FOLLOWING", "standstill"], "P-AXIS-00172", {"P-AXIS-00169"}),
         (["8"], "P-AXIS-00008", {"P-CHAN-00008", "P-SIM-00008", "P-MACH-00008"}),
-        (["P-TOOL"], "P-TOOL-00012", {"P-TOOL-00015"}),
+        (["P-TOOL"], "P-TOOL-00001", {"P-TOOL-00015"}),
         (["a_max"], "P-AXIS-00008", {"P-TOOL-00015"}),
         (["vorsteuer."], None, {"P-AXIS-00223"}),
     ],

@@ -1,6 +1,7 @@
 """Graph, free run, composed and offline run give the same numbers to the bit; each recording can be verified."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -63,7 +64,8 @@ ON_A_PATH_SCENARIO = """
 LANGUAGE = """#VAR
 V.P.STEP = 4
 #ENDVAR
-G00 X3
+T1 D11
+G00 X3 Z-90
 G04 0.3
 P1 = V.A.ACT_POS.X
 #MSG ["it is at %f", P1]
@@ -76,6 +78,8 @@ G01 X=P1 F6000 L CYCLE [NAME=side.nc @P1=P1]
 $ENDWHILE
 M30
 """
+TOOLS = "1: {type: mill, wear: {length: -0.02}, d: {11: {length: 75.2, offsets: {X: 0.25}}}}"
+FILES = "    werkz_data: tools.yaml\n    nullp_data: zero.yaml\n"
 SIDE = """G91 G00 Y[@P1 / 10]
 X[V.A.ACT_POS.Y / 100]
 M29
@@ -93,6 +97,10 @@ def folder(tmp_path_factory):
     (folder / "circle.nc").write_text(ON_A_PATH)
     (folder / "language.nc").write_text(LANGUAGE)
     (folder / "side.nc").write_text(SIDE)
+    (folder / "tools.yaml").write_text(TOOLS)
+    (folder / "zero.yaml").write_text("{default: G54, G54: {Z: 1.5}}")
+    mill = Path(MILL).read_text().replace("    spdl_anzahl: 1\n", "    spdl_anzahl: 1\n" + FILES)
+    (folder / "mill.yaml").write_text(mill)
     (folder / "circle.yaml").write_text(ON_A_PATH_SCENARIO)
     return folder
 
@@ -145,14 +153,15 @@ def test_slaves_in_the_graph_equal_the_offline_run(folder, options):
 
 @pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
 def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(folder, options):
-    """Actual positions, a cycle in a file of its own, a computation of many cycles, a message."""
-    job = (MILL, "--program", folder / "language.nc")
+    """Actual positions, a cycle, tools and offsets in files of their own, a computation of many cycles, a message."""
+    job = (folder / "mill.yaml", "--program", folder / "language.nc")
     told = run("simulate", *job, "--record", folder / "g.mcap").stdout
     output = run("run", *job, *options, "--record", folder / "h.mcap").stdout
     assert "lost 0, computed twice 0" in output and "refused" not in output
     assert "message: it is at " in told and "message: it is at " in output
     assert states_equal(folder / "g.mcap", folder / "h.mcap") == []
-    verified(folder / "h.mcap")
+    states = verified(folder / "h.mcap").states
+    assert states["/z/state"]["set_position"][-1] == pytest.approx(-90.0 + 1.5 + 75.2 - 0.02, abs=1e-12)
 
 
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)

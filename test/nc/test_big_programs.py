@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from nc_support import HERE, machine, vocabulary_of
+from nc_support import HERE, machine, tools, vocabulary_of
 
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
@@ -44,7 +44,7 @@ M30
 
 def stream(program, text: str) -> list[str]:
     axes, spindles = machine(text)
-    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
+    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles, tools=tools(text))]
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])

@@ -1,7 +1,7 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from nc_support import HERE, machine, vocabulary_of
+from nc_support import HERE, machine, tools, vocabulary_of
 
 from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
@@ -15,6 +15,7 @@ from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.iso import iso_faults
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.tools import tool_faults
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
 BAD = sorted((HERE / "bad").glob("*.nc"))
@@ -27,7 +28,7 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults)
+PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 
@@ -41,7 +42,8 @@ def files_of(text: str) -> dict[str, str]:
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
     program = parse_program(text, file, files=files_of(text), vocabulary=vocabulary_of(text))
-    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles)]
+    blocks = interpret(program, (0.0,) * len(axes), axes, spindles, tools=tools(text))
+    return [format_block(block) for block in blocks]
 
 
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
@@ -54,7 +56,8 @@ def test_canonical_stream_is_the_golden_one(path):
 def test_check_finds_nothing_in_good_programs(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    assert check(text, path.name, axes, spindles, files=files_of(text), vocabulary=vocabulary_of(text)) == []
+    given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
+    assert check(text, path.name, axes, spindles, **given) == []
 
 
 def test_example_bracket_gives_its_golden_stream():
@@ -75,8 +78,8 @@ def test_bad_program_raises_the_text_of_its_first_line(path):
 def test_check_finds_the_same_error(path):
     text = path.read_text()
     axes, spindles = machine(text)
-    errors = check(text, path.name, axes, spindles, files=files_of(text), vocabulary=vocabulary_of(text))
-    found = [str(error) for error in errors]
+    given = {"files": files_of(text), "vocabulary": vocabulary_of(text), "tools": tools(text)}
+    found = [str(error) for error in check(text, path.name, axes, spindles, **given)]
     assert text.split("\n")[0].removeprefix("; ") in found
 
 

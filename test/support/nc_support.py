@@ -9,6 +9,7 @@ from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Pair, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
+from cnc_ptp.parameters import NO_TOOLS, Tool, ToolTable
 
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
@@ -61,6 +62,35 @@ TABLES = {
 def vocabulary_of(text: str) -> Vocabulary:
     """From a comment `; dialect iso` in one of the first three lines."""
     return VOCABULARIES["iso" if "; dialect iso" in text.split("\n")[:3] else "twincat"]
+
+
+MILLING = {
+    1: Tool(number=1, length=75.0, radius=5.0, wear_length=-0.25, wear_radius=-0.01, name="end mill 10 mm"),
+    2: Tool(number=2, length=110.5, radius=3.0, offsets=(0.5, -0.25, 0.0), values=(12.0, 0.5)),
+    3: Tool(number=3, length=40.0, radius=2.0, offsets=(10.0, 20.0, 0.0), fixed=True, spindle=4),
+    7: Tool(number=7, length=60.0, valid=False),
+    13: Tool(number=3, length=41.0, radius=2.0),
+}
+TURNING = {
+    5: Tool(number=5, radius=0.8, offsets=(20.5, 41.0), wear=(-0.02, 0.03), orientation=3, type=1),
+    15: Tool(number=5, radius=0.8, offsets=(20.5, 38.0), wear=(-0.02, 0.03), orientation=4, type=1),
+    6: Tool(number=6, length=30.0, radius=0.4, orientation=8, type=1),
+}
+TOOLS = {
+    "milling": ToolTable(MILLING, True),
+    "turning": ToolTable(TURNING, True),
+    "with_t": ToolTable(MILLING, True, True),
+    "at_once": ToolTable(MILLING, True, False, True),
+}
+"""What a program may name in a comment `; tools milling` in one of its first three lines."""
+
+
+def tools(text: str) -> ToolTable:
+    """The tool table that a program names."""
+    for line in text.split("\n")[:3]:
+        if line.startswith("; tools"):
+            return TOOLS[line.split()[2]]
+    return NO_TOOLS
 
 
 def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...] | SpindleTable]:

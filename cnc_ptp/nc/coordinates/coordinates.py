@@ -74,6 +74,7 @@ class Coordinates:
     systems     coordinate systems that are on, the first one is the outermost
     defined     values of #CS DEF and #ACS DEF by command and number
     clamp, tool offsets of clamp position and tool
+    tool_fixed  the offsets of the tool are in machine axes; else they turn with the coordinate systems
     clamp_index number of the clamp position
     limits      software limits of G98 and G99 by place of the axis: negative, positive
     outside     what was there before #MCS ON, None without it
@@ -93,6 +94,7 @@ class Coordinates:
     last_defined: dict[str, int] | None = None
     clamp: Offsets = ()
     tool: Offsets = ()
+    tool_fixed: bool = False
     clamp_index: int = 0
     limits: dict[int, tuple[float, float]] | None = None
     outside: "Coordinates | None" = None
@@ -101,6 +103,13 @@ class Coordinates:
     def copy(self) -> "Coordinates":
         """Independent: what the fields hold is replaced as a whole, never changed."""
         return replace(self)
+
+    def lasting(self) -> "Coordinates":
+        """Where clamp position and tool are changed: between #MCS ON and #MCS OFF those count from #MCS OFF on."""
+        if self.outside is None:
+            return self
+        self.outside = replace(self.outside)
+        return self.outside
 
     def leave(self) -> None:
         """#MCS ON: the coordinates of the machine."""
@@ -114,13 +123,16 @@ class Coordinates:
             self.outside = None
 
     def _place(self, other: "Coordinates") -> None:
-        self.own, self.systems, self.clamp, self.tool = other.own, other.systems, other.clamp, other.tool
+        self.own, self.systems, self.clamp = other.own, other.systems, other.clamp
+        self.tool, self.tool_fixed = other.tool, other.tool_fixed
         self.turn, self.plane, self.scaled, self.mirror = other.turn, other.plane, other.scaled, other.mirror
 
     def frame(self, count: int, main: tuple[int, int, int]) -> Frame | None:
         """The map for `count` axes with the main axes at these places."""
         linear, shift = self._contour(count, main)
         shift = self._added(shift, self.own)
+        if not self.tool_fixed:
+            shift = self._sum(shift, self.tool)
         for system in reversed(self.systems):
             linear = product(system.rotation, linear)
             turned = times(system.rotation, [shift[index] if index >= 0 else 0.0 for index in main])
@@ -128,7 +140,9 @@ class Coordinates:
                 if index >= 0:
                     shift[index] = turned[place] + system.shift[place]
             shift = self._added(shift, system.before)
-        shift = self._sum(self._sum(shift, self.clamp), self.tool)
+        shift = self._sum(shift, self.clamp)
+        if self.tool_fixed:
+            shift = self._sum(shift, self.tool)
         if linear == IDENTITY and not any(shift):
             return None
         return Frame(linear, tuple(shift), main)

@@ -6,7 +6,7 @@ from typing import Final
 
 from cnc_ptp.nc.canonical import number
 from cnc_ptp.nc.expressions import expression_faults as faults
-from cnc_ptp.nc.expressions.readable import Reading
+from cnc_ptp.nc.expressions.reading import Reading
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, LONGEST_TEXT, Scalar, Values, shown
 
 TRUTH: Final = 0.5

@@ -3,41 +3,19 @@
 Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables. Lengths are in mm, or in inch with G70.
 """
 
-from collections.abc import Callable, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Final
 
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, default_offset, offset_values
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
+from cnc_ptp.nc.expressions.reading import Reading, Units, axis_of, in_mm, length
 from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.nc.tools.readings import TOOL_READINGS
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 
 LAST_TIMER: Final = 127
 """#TIMER has the timers 0 to 127."""
-
-Units = Sequence[Scalar]
-"""The axis, spindle or index of a name, in its order."""
-
-
-class Reading(NamedTuple):
-    """A readable name. `synchronises`: only the run knows the value, so the program waits until the path stands."""
-
-    text: str
-    read: Callable[[Values, Units, int], Scalar]
-    write: Callable[[Values, Units, Scalar, int], None] | None = None
-    synchronises: bool = False
-
-
-def axis_of(values: Values, unit: Scalar, column: int) -> int:
-    """Place of an axis among those of the channel, by its name or index."""
-    names = values.channel.axes
-    if isinstance(unit, float) and unit == int(unit) and 0.0 <= unit < len(names):
-        return int(unit)
-    if isinstance(unit, str) and unit in names:
-        return names.index(unit)
-    shown = unit if isinstance(unit, str) else f"{unit:g}"
-    known = ", ".join(names)
-    raise values.fault(faults.UNIT_UNKNOWN, column, kind="axis", unit=shown, known=known)
 
 
 def spindle_of(values: Values, unit: Scalar, column: int) -> str:
@@ -51,11 +29,6 @@ def spindle_of(values: Values, unit: Scalar, column: int) -> str:
     known = ", ".join(spindle.own_name for spindle in spindles) or "none"
     shown = unit if isinstance(unit, str) else f"{unit:g}"
     raise values.fault(faults.UNIT_UNKNOWN, column, kind="spindle", unit=shown, known=known)
-
-
-def length(values: Values, axis: int, value: float) -> float:
-    """As programs name it: in inch with G70, unless the axis is rotary."""
-    return value if values.channel.axes[axis] in values.channel.rotary else value / values.state.coordinates.unit
 
 
 def programmed(values: Values, units: Units, column: int) -> Scalar:
@@ -89,15 +62,6 @@ def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) ->
     table[axis] = in_mm(values, axis, value, column)
     changes = values.state.coordinates.changes
     values.state.coordinates.changes = changes._replace(values={**changes.values, index: tuple(table)})
-
-
-def in_mm(values: Values, axis: int, value: Scalar, column: int) -> float:
-    if isinstance(value, str):
-        raise values.fault(faults.NUMBER_EXPECTED, column, what="the value of an offset")
-    if not -LARGEST_POSITION <= value <= LARGEST_POSITION:
-        words = {"value": f"{value:g}", "limit": f"{LARGEST_POSITION:g}"}
-        raise values.fault(faults.VALUE_RANGE, column, word="the offset", **words)
-    return value if values.channel.axes[axis] in values.channel.rotary else value * values.state.coordinates.unit
 
 
 def active_offset(values: Values, units: Units, column: int) -> Scalar:
@@ -258,6 +222,7 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     ),
     "V.G.@P": ((("*", "VALID"), Reading("TRUE if the call gave @P of this number", argument_given)),),
     "V.G.TIMER": ((("*",), Reading("what #TIMER READ has found, ms", timer)),),
+    **TOOL_READINGS,
     "V.SPDL_PROG.SPEED": ((("*",), Reading("programmed speed, rpm", spindle_speed)),),
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),
     "V.SPDL_PROG.POSITION": ((("*",), Reading("programmed position, deg", spindle_position)),),
@@ -269,10 +234,15 @@ def forms(name: str) -> str:
     first = {"V.A": ".<axis>", "V.S": ".<spindle>"}.get(name[:3], "[<index>]")
     written = []
     for pattern, _ in READABLE[name]:
-        index = first if pattern[:1] == ("*",) else ""
-        written.append(
-            name + index + "".join(".<axis>" if part == "*" else f".{part}" for part in pattern[bool(index) :])
-        )
+        shown = name
+        for place, part in enumerate(pattern):
+            if part != "*":
+                shown += f".{part}"
+            elif place == 0:
+                shown += first
+            else:
+                shown += "[<index>]" if pattern[place - 1] == "P" else ".<axis>"
+        written.append(shown)
     return " or ".join(written)
 
 

@@ -41,7 +41,8 @@ from cnc_ptp.nc.expressions.nodes import (
     TextCall,
     Xor,
 )
-from cnc_ptp.nc.expressions.readable import READABLE, Reading, all_names, forms
+from cnc_ptp.nc.expressions.readable import READABLE, all_names, forms
+from cnc_ptp.nc.expressions.reading import Reading
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, SCOPES, in_words
 from cnc_ptp.nc.faults import Fault, ProgramError
 

@@ -1,4 +1,4 @@
-"""Zero offsets and clamp positions against the axes of their channel."""
+"""Zero offsets, clamp positions and tools against the axes of their channel."""
 
 from collections.abc import Iterator
 
@@ -9,20 +9,19 @@ from cnc_ptp.parameters.read.messages import problem
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.channel_members import Sets, axis_entries
 
-OF_AXES = {"np_grp": (ids.ACHSE_VERSCH, ids.ACHSE_INAKTIV), "pzv_grp": (ids.ACHSE_VERSATZ,)}
+OF_AXES = (ids.ACHSE_VERSCH, ids.ACHSE_INAKTIV, ids.ACHSE_VERSATZ, ids.WZ_AX_VERSATZ, ids.WZ_WEAR)
+"""Parameters of an offset or a tool for an axis."""
 
 
 def offset_axes(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:
     """The channel has the axis of each value."""
     names = [entry.name for entry in axis_entries(channel, sets)]
     axes = f"{len(names)} axes ({', '.join(names)})" if len(names) != 1 else f"1 axis ({names[0]})"
-    for array, parameters in OF_AXES.items():
-        for index in channel.used_indexes(array):
-            for axis in channel.used_indexes(f"{array}.{index}.achse"):
-                for parameter in parameters:
-                    if axis >= len(names) and channel.is_given(parameter, index, axis):
-                        text = f"there is no axis {axis}, the channel has {axes}, the first one is 0"
-                        yield problem(channel, errors.INDEX, parameter, (index, axis), text)
+    for ros_name in channel.given:
+        declaration, indexes, _ = channel.find(ros_name)
+        if declaration.id in OF_AXES and indexes[1] >= len(names):
+            text = f"there is no axis {indexes[1]}, the channel has {axes}, the first one is 0"
+            yield problem(channel, errors.INDEX, declaration.id, indexes, text)
 
 
 def offset_of_g53(channel: ParameterSet, sets: Sets) -> Iterator[Problem]:

@@ -148,6 +148,7 @@ ACHSE_BEZEICHNUNG = "P-CHAN-00006"  # gruppe[i].achse[j].bezeichnung
 SPINDEL_BEZEICHNUNG = "P-CHAN-00007"  # spindel[i].bezeichnung
 CAX_FACE_ID = "P-CHAN-00008"  # cax_face_id
 DEFAULT_AX_NAME_OF_SPINDLE = "P-CHAN-00010"  # default_ax_name_of_spindle
+EINRECHNEN_MIT_T = "P-CHAN-00014"  # einrechnen_mit_t
 GRP_ANZAHL = "P-CHAN-00023"  # grp_anzahl
 ACHSE_LOG_ACHS_NR = "P-CHAN-00035"  # gruppe[i].achse[j].log_achs_nr
 SPINDEL_LOG_ACHS_NR = "P-CHAN-00036"  # spindel[i].log_achs_nr
@@ -173,6 +174,7 @@ SPINDEL_RANGE_WAY = "P-CHAN-00074"  # spindel[i].range_way
 SPINDEL_S_SYNCH = "P-CHAN-00081"  # spindel[i].s_synch
 SPDL_ANZAHL = "P-CHAN-00082"  # spdl_anzahl
 USE_DRIVE_CURR_LIMIT = "P-CHAN-00097"  # use_drive_curr_limit
+MOVE_TOOL_OFFSETS_DIRECTLY = "P-CHAN-00100"  # move_tool_offsets_directly
 INTERPRETER_CALL_DEPTH = "P-CHAN-90001"  # interpreter.call_depth
 INTERPRETER_REPEATS = "P-CHAN-90002"  # interpreter.repeats
 INTERPRETER_KNOWN_BLOCKS = "P-CHAN-90003"  # interpreter.known_blocks
@@ -180,6 +182,7 @@ INTERPRETER_FOLDERS = "P-CHAN-90004"  # interpreter.folders
 INTERPRETER_DIALECT = "P-CHAN-90010"  # interpreter.dialect
 
 # startup list
+WERKZ_DATA = "P-STUP-00010"  # werkz_data
 NULLP_DATA = "P-STUP-00011"  # nullp_data
 PZV_DATA = "P-STUP-00012"  # pzv_data
 
@@ -206,10 +209,24 @@ FRICT_COMP_DELAY_CYCLES = "P-COMP-00058"  # frict_comp.delay_cycles
 FRICT_COMP_MAX_POINTS = "P-COMP-00062"  # frict_comp.max_points
 
 # tool list
+WZ_TYP = "P-TOOL-00001"  # wz[i].typ
+WZ_SRK_LAGE = "P-TOOL-00002"  # wz[i].srk_lage
+WZ_LAENGE = "P-TOOL-00003"  # wz[i].laenge
+WZ_RADIUS = "P-TOOL-00004"  # wz[i].radius
+WZ_GUELTIG = "P-TOOL-00005"  # wz[i].gueltig
+WZ_AX_VERSATZ = "P-TOOL-00006"  # wz[i].ax_versatz[j]
+WZ_PARAM = "P-TOOL-00007"  # wz[i].param[j]
+WZ_MASS_EINHEIT = "P-TOOL-00008"  # wz[i].mass_einheit
+WZ_TOOL_FIXED = "P-TOOL-00010"  # wz[i].tool_fixed
 WZ_LOG_AX_NR_SPDL = "P-TOOL-00012"  # wz[i].log_ax_nr_spdl
 WZ_VB_MIN = "P-TOOL-00013"  # wz[i].vb_min
 WZ_VB_MAX = "P-TOOL-00014"  # wz[i].vb_max
 WZ_A_MAX = "P-TOOL-00015"  # wz[i].a_max
+WZ_T_NUMBER = "P-TOOL-90001"  # wz[i].t_number
+WZ_NAME = "P-TOOL-90002"  # wz[i].name
+WZ_WEAR_LENGTH = "P-TOOL-90003"  # wz[i].wear_length
+WZ_WEAR_RADIUS = "P-TOOL-90004"  # wz[i].wear_radius
+WZ_WEAR = "P-TOOL-90005"  # wz[i].wear[j]
 
 # simulation list
 SIMULATION_DRIVE_TIME_CONSTANT = "P-SIM-00001"  # simulation.drive_time_constant

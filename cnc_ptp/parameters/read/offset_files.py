@@ -1,14 +1,10 @@
 """Files with zero offsets and clamp positions, in mm and °, as parameters of a channel.
 
-    G54: {name: left vice, X: 100, Y: 50.5, Z: -20}
-    G159=7: {X: 12.5, inactive: [X]}
-    default: G54
-
-The texts of the files stand behind that of the machine file, each behind a line that names it, so that one text holds
-all that a recording needs.
+G54: {name: left vice, X: 100, Y: 50.5, Z: -20}
+G159=7: {X: 12.5, inactive: [X]}
+default: G54
 """
 
-import difflib
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,20 +13,20 @@ from typing import Any, ClassVar, NamedTuple
 
 import yaml
 
+from cnc_ptp.errors import did_you_mean, nearest
 from cnc_ptp.parameters import errors
 from cnc_ptp.parameters.declare import ids
 from cnc_ptp.parameters.declare.declarations import ParameterValue, catalogue
 from cnc_ptp.parameters.errors import Place, Problem
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
-from cnc_ptp.parameters.read.messages import problem
+from cnc_ptp.parameters.read.named_files import file_text, given_before
 from cnc_ptp.parameters.read.parameter_set import Given, ParameterSet
-from cnc_ptp.parameters.read.source import Entry, Reader, Scalar, Value, is_null, read_events, read_sections
+from cnc_ptp.parameters.read.source import Entry, Reader, Scalar, Value, is_null, read_events
 from cnc_ptp.parameters.read.values import BadValue, checked_value, described, shown
 
 DIVISOR = 10_000
 """0.1 µm in a mm, 0.0001° in a degree."""
 FIRST_OFFSET_CODE = 53
-_BEGIN = re.compile(r"^--- # file of the machine: (.+)\n", re.MULTILINE)
 _INDEX = re.compile(r"(?:G159\s*=\s*)?([0-9]{1,9})")
 _CODE = re.compile(r"G(5[3-9])")
 
@@ -51,42 +47,6 @@ ZERO_OFFSETS = Kind(
 )
 CLAMP_POSITIONS = Kind(ids.PZV_DATA, "clamp position", ids.ACHSE_VERSATZ, ids.PZV_GRP_BEZEICHNUNG, 149, "0 to 149")
 KINDS = (ZERO_OFFSETS, CLAMP_POSITIONS)
-
-
-def with_files(text: str, files: Mapping[str, str]) -> str:
-    """The text of a machine file with those of the files that it names."""
-    parts = [text if text.endswith("\n") or not files else f"{text}\n"]
-    parts += [f"--- # file of the machine: {name}\n{content}\n" for name, content in files.items()]
-    return "".join(parts)
-
-
-def split_files(text: str) -> tuple[str, dict[str, str]]:
-    """The text of the machine file alone, and by name those of its files."""
-    machine, *rest = _BEGIN.split(text)
-    return machine, {name: content.removesuffix("\n") for name, content in zip(rest[::2], rest[1::2], strict=True)}
-
-
-class NamedFile(NamedTuple):
-    """A file that a machine file names, and where; `subject`: the parameter, for errors."""
-
-    name: str
-    place: Place
-    subject: str
-
-
-def named_files(text: str, file: str) -> list[NamedFile]:
-    """The files that the text of a machine file names."""
-    declared = {kind.file: catalogue().by_id[kind.file] for kind in KINDS}
-    if not any(declaration.key in text for declaration in declared.values()):
-        return []
-    sections, _ = read_sections(text, file)
-    found = []
-    for section in sections:
-        for entry in section.entries:
-            for declaration in declared.values():
-                if entry.name == declaration.key and isinstance(entry.value, str) and entry.value:
-                    found.append(NamedFile(entry.value, entry.place, declaration.subject((), section.node)))
-    return found
 
 
 class Record(NamedTuple):
@@ -136,14 +96,12 @@ def with_offsets(
     """The channel with the offsets of its files; `axes` by their names in programs."""
     given: dict[str, Given] = {}
     for kind in KINDS:
-        name = channel.text(kind.file)
-        if not name:
+        file = file_text(channel, kind.file, files, problems)
+        if file is None:
             continue
-        if name not in files:
-            problems.append(problem(channel, errors.UNREADABLE, kind.file, (), f"the text of file {name} is missing"))
-            continue
+        name, text = file
         reader = OffsetReader(name)
-        read_events(reader, files[name])
+        read_events(reader, text)
         problems += reader.problems
         given |= Offsets(kind, channel, axes, problems).read(reader.records)
     return replace(channel, given={**channel.given, **given}) if given else channel
@@ -192,7 +150,7 @@ class Offsets:
             return None
         code_meant = _CODE.fullmatch(key.upper())
         known = [code_meant[0] if code_meant else "default"] if zero else []
-        text = f"{shown(key)} is no {self.kind.record}, {self.kind.names} are{nearest(key, known)}"
+        text = f"{shown(key)} is no {self.kind.record}, {self.kind.names} are{similar(key, known)}"
         self.add_problem(errors.UNKNOWN_NAME, place, text)
         return None
 
@@ -222,7 +180,7 @@ class Offsets:
             return True
         words = [*self.axes, "name", *(["inactive"] if self.kind is ZERO_OFFSETS else [])]
         text = f"{self.kind.record} {record.key}: {shown(axis)} is no axis of /{self.channel.node}"
-        self.add_problem(errors.UNKNOWN_NAME, place, f"{text} ({', '.join(self.axes)}){nearest(axis, words)}")
+        self.add_problem(errors.UNKNOWN_NAME, place, f"{text} ({', '.join(self.axes)}){similar(axis, words)}")
         return False
 
     def length(self, where: str, entry: Entry) -> int | None:
@@ -247,10 +205,9 @@ class Offsets:
         """A parameter of the list, unless the machine file gives it, too."""
         declaration = catalogue().by_id[parameter]
         name, where = declaration.ros_name(indexes), declaration.subject(indexes, self.channel.node)
-        other = self.channel.given.get(name)
-        if other is not None:
-            text = f"{where}: is given twice, also in {other.place}"
-            self.add_problem(errors.DUPLICATE_KEY, place, text)
+        twice = given_before(self.channel, declaration, indexes, place)
+        if twice is not None:
+            self.problems.append(twice)
             return
         try:
             checked: ParameterValue = checked_value(declaration, value, declaration.unit_for(""))
@@ -263,6 +220,5 @@ class Offsets:
         self.problems.append(Problem(error_id, place, text))
 
 
-def nearest(name: Scalar, known: Sequence[str]) -> str:
-    close = difflib.get_close_matches(str(name)[:100], known, n=1, cutoff=0.5)
-    return f", did you mean {close[0]}?" if close else ""
+def similar(name: Scalar, known: Sequence[str]) -> str:
+    return did_you_mean(nearest(str(name), known, cutoff=0.5))

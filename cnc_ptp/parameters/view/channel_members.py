@@ -44,6 +44,11 @@ def axis_entries(channel: ParameterSet, sets: Sets) -> list[ChannelAxisEntry]:
     return [unlisted(unit) for unit in sets.values() if is_path_axis(unit) and unit.node not in taken]
 
 
+def rotary_axes(channel: ParameterSet, sets: Sets) -> list[bool]:
+    """Whether each axis of a channel is rotary."""
+    return [entry.node is not None and sets[entry.node].axis_type == "R" for entry in axis_entries(channel, sets)]
+
+
 def listed_axes(channel: ParameterSet, sets: Sets) -> Iterator[ChannelAxisEntry]:
     for group in channel.used_indexes("gruppe"):
         for axis in channel.used_indexes(f"gruppe.{group}.achse"):

@@ -18,6 +18,7 @@ from cnc_ptp.parameters.view.channel_members import (
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.offsets_view import NO_OFFSET_TABLES, OffsetTables, offset_tables
 from cnc_ptp.parameters.view.synchronisation import Synchronisation, synchronisation
+from cnc_ptp.parameters.view.tool_view import NO_TOOLS, ToolTable, tool_table
 
 INTERNAL_M_FUNCTIONS = (0, 1, 2, 3, 4, 5, 17, 19, 29, 30)
 GEAR_M_FUNCTIONS = range(40, 46)
@@ -91,6 +92,8 @@ class ChannelParameters:
     """Limits of the tools that have some, by D number."""
     tool_records: frozenset[int] = frozenset()
     """D numbers of all tools in the file."""
+    tool_table: ToolTable = NO_TOOLS
+    """Compensation data of the tools."""
     slope: str = "TRAPEZ"
     """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
     offsets: OffsetTables = NO_OFFSET_TABLES
@@ -119,6 +122,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         tools=tool_limits(channel, spindles),
         tool_records=frozenset(channel.used_indexes("wz")),
         dialect=channel.text(ids.INTERPRETER_DIALECT),
+        tool_table=tool_table(channel, sets),
         slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
         offsets=offset_tables(channel, len(axes)),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),

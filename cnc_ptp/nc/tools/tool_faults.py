@@ -1,0 +1,12 @@
+"""Faults of tools."""
+
+from cnc_ptp.nc.faults import Fault
+
+DATA_UNKNOWN = Fault(20296, "{word}: the tool table has no compensation data D{number}; known are: {known}")
+TOOL_UNKNOWN = Fault(21650, "tool T{number} is not in the tool table; known are: {known}")
+DATA_INVALID = Fault(21651, "{word}: compensation data D{number} are not valid (P-TOOL-00005 wz[{number}].gueltig)")
+LENGTH_AXIS = Fault(
+    21652, "the tool of D{number} is {length} mm long in axis {axis} (G{plane}), which this channel does not have"
+)
+WRITTEN_WITH_D = Fault(20738, "{name} is written in a block with {word}, which selects other data")
+VALUE_INDEX = Fault(21653, "value {index} of a tool must be an integer from 0 to {limit}")

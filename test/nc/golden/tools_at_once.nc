@@ -1,0 +1,11 @@
+; tools at_once
+; P-CHAN-00100: the block of D moves all axes that it changes
+%AT_ONCE
+N10 G00 X5 Y5 Z5
+N20 D2
+N30 G01 F600 D1 X10
+N40 G91 D3 X1
+N50 G90 D2 G02 X30.5 Y25.25 I5
+N60 G01 X30
+N70 D0 G136 X80
+M30
