@@ -129,7 +129,7 @@ SLOPE_UNKNOWN = Fault(21110, "slope {slope} is not known; known are: {known}")
 SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available are: STEP, TRAPEZ")
 
 # Transitions between blocks
-OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be above 0")
+OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be {least}")
 OPTION_TOO_LARGE = Fault(21112, "{word}={value} must be at most {limit}")
 OPTION_OF_OTHER_MODE = Fault(21113, "{word} has no meaning in mode {mode} of #CONTOUR MODE")
 

@@ -87,7 +87,8 @@ def option(execution: Flow, line: Line, name: str, node: Node) -> float:
     value = values.bounded(node.value(values), node.column, "the command")
     word = next(word for word, field in (LENGTHS | OTHERS).items() if field == name)
     if value < 0.0 or (value == 0.0 and word in LENGTHS):
-        raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value))
+        least = "above 0" if word in LENGTHS else "at least 0"
+        raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value), least=least)
     limit = LARGEST.get(word, value)
     if value > limit:
         raise faults.OPTION_TOO_LARGE.at(line.source, node.column, word=word, value=number(value), limit=number(limit))

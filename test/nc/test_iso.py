@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import HERE, lines, run
 
+from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.blocks import plain_block
 from cnc_ptp.nc.canonical import Dwell, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
@@ -41,12 +42,20 @@ def test_headers_run_and_do_nothing(header):
 
 @pytest.mark.parametrize(
     ("text", "tolerance"),
-    [("G64 P0.5", 0.5), ("G64", 0.0), ("G20 G64 P0.001", 0.0254), ("G64 P1\nG61", None), ("G64 P1\nG61.1", None)],
+    [("G64 P0.5", 0.5), ("G64", None), ("G20 G64 P0.001", 0.0254), ("G64 P1\nG61", None), ("G64 P1\nG61.1", None)],
 )
 def test_the_tolerance_of_g64_is_in_the_state(text, tolerance):
     state = ModalState()
     run(text, dialect="iso", state=state)
-    assert state.path_tolerance == (None if tolerance is None else pytest.approx(tolerance, abs=1e-12))
+    contour = state.transition.contour
+    assert (None if contour is None else contour.path_dev) == (tolerance and pytest.approx(tolerance, abs=1e-12))
+    assert state.transition.exact == ("G61" in text)
+
+
+def test_q_of_g64_smooths_short_blocks():
+    state = ModalState()
+    run("G64 P0.5 Q0.02", dialect="iso", state=state)
+    assert state.transition == Transition(exact=False, contour=Contour(path_dev=0.5), smoothing=Smoothing(0.02))
 
 
 levels = st.integers(-9999, 9999).map(lambda value: value / 100.0)

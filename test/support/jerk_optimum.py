@@ -29,7 +29,9 @@ class JerkOptimum:
         before = sparse.vstack([sparse.csr_matrix((1, count)), eye]).tocsr()
         after = sparse.vstack([eye, sparse.csr_matrix((1, count))]).tocsr()
         scale = np.full(count + 1, 1.0 / self.cell)
-        scale[0] = scale[-1] = 1.0 / (1.25 * self.cell)  # from rest: the tangent leaves y = 0 after a quarter of the cell
+        scale[0] = scale[-1] = 1.0 / (
+            1.25 * self.cell
+        )  # from rest: the tangent leaves y = 0 after a quarter of the cell
         self.slopes = sparse.diags(scale) @ (after - before)
         weight = np.full(count + 1, 0.5)
         weight[0] = 0.75 / 1.25

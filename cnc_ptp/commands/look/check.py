@@ -28,8 +28,6 @@ from cnc_ptp.protocol.notes import Note
 
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
-_CONTOURING = re.compile(r"G\s*0*64(?![\d.])", re.ASCII | re.IGNORECASE)
-_COMMENT = re.compile(r"\([^)]*\)|;.*")
 
 
 def check(program: str, machine: str | None, canonical: bool = False, dialect: str | None = None) -> int:
@@ -55,17 +53,7 @@ def check(program: str, machine: str | None, canonical: bool = False, dialect: s
         print_error(error)
     if not errors and not canonical:
         print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
-    for hint in hints(text) if vocabulary is ISO else []:
-        print(f"{Path(program).name} {hint}", file=sys.stderr)
     return WRONG_INPUT if errors else 0
-
-
-def hints(text: str) -> Iterator[str]:
-    """What a program asks for and does not get: the tolerance of G64, once."""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if _CONTOURING.search(_COMMENT.sub("", line)):
-            yield f"line {number}: G64: each motion still ends with exact stop, which is within any tolerance"
-            return
 
 
 def print_stream(program: Program, machine: MachineParameters | None) -> None:

@@ -94,17 +94,17 @@ class LookAhead:
     def step(self, count: int, cycle_time: float) -> list[MotionState]:
         """(u, u', u'', u''') of the next cycles; fewer when the path ends before (`done`)."""
         rows: list[MotionState] = []
-        if self.done:
-            return [(self.end, 0.0, 0.0, 0.0)] * count
-        self._renew_plan()
-        for _ in range(count):
+        if not self.done:
+            self._renew_plan()
+        while len(rows) < count and not self.done:
             time = self._time + cycle_time
             profile = self._profile
             if profile is not None and time >= profile.duration:
                 time -= profile.duration
-                if self._finish(time):
-                    break
+                self._finish(time)
                 profile = self._profile
+                if self.done:
+                    break
             self._time = time
             if profile is not None:
                 self.state = profile.state_at(time)
@@ -141,19 +141,18 @@ class LookAhead:
     def _factor(self) -> float:
         return 0.0 if self._stopping else self.override
 
-    def _finish(self, surplus: float) -> bool:
-        """The plan has come to rest. True at the end of the path; else it goes on from here when it can."""
+    def _finish(self, surplus: float) -> None:
+        """The plan has come to rest: at the end of the path, or it goes on from here when it can."""
         self.state = (self._planned_end, 0.0, 0.0, 0.0)
         self._profile = None
         if self._planned_end >= self.end and self.closed:
             self.done = True
             self.remaining_time = surplus
-            return True
+            return
         self._stretches[0] = [cell for cell in self._cells if cell.middle > self._planned_end]
         if not self._cells and len(self._stretches) > 1:
             self._stretches.popleft()
         self._plan_from_rest()
-        return False
 
     def _renew_plan(self) -> None:
         """Plans over what was appended, before the end of the last plan makes the path brake."""

@@ -1,0 +1,160 @@
+"""Blocks that the path runs through without a stop: limits, corners within their tolerance, functions, hold, abort."""
+
+from __future__ import annotations
+
+import math
+import random
+
+import numpy as np
+import pytest
+from machine_support import CYCLE_TIME, MILL, MachineBench, assert_smooth
+from shapely import LineString, Point
+
+AXES = ("x", "y", "z")
+
+
+def smooth(bench: MachineBench) -> None:
+    for name in AXES:
+        axis = MILL.axes[name]
+        columns = [bench.column(name, f"set_{what}") for what in ("position", "velocity", "acceleration")]
+        assert_smooth(*columns, acceleration=max(axis.acceleration, axis.deceleration), jerk=axis.jerk * (1.0 + 1e-6))
+
+
+def path(bench: MachineBench) -> np.ndarray:
+    return np.column_stack([bench.column(name, "set_position") for name in AXES])
+
+
+def moving(bench: MachineBench) -> np.ndarray:
+    """Path velocity between the first and the last cycle with one, without the ramps there (100 cycles)."""
+    velocity = np.array(bench.column("channel", "path_velocity"))
+    cycles = np.nonzero(velocity)[0]
+    return velocity[cycles[0] + 100 : cycles[-1] - 100]
+
+
+def program(*lines: str) -> str:
+    return "\n".join(["%P", *lines, "M30"])
+
+
+def test_a_line_in_many_blocks_takes_the_time_of_one() -> None:
+    one = MachineBench(program("G01 X60 F6000")).run()
+    many = MachineBench(program("G359 F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
+    stops = MachineBench(program("F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
+    cycles = [len(bench.column("channel", "line")) for bench in (one, many, stops)]
+    assert cycles[1] <= 1.02 * cycles[0] + 2 and cycles[2] > 1.8 * cycles[0]
+    assert path(many)[-1] == pytest.approx((60.0, 0.0, 0.0), abs=1e-9)
+    assert max(many.column("channel", "path_velocity")) == pytest.approx(100.0)
+    smooth(many)
+
+
+def test_line_and_block_count_follow_the_path() -> None:
+    bench = MachineBench(program("G359 F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
+    lines, x = bench.column("channel", "line"), path(bench)[:, 0]
+    for line, place in zip(lines, x, strict=True):
+        if 0.0 < place < 60.0:
+            assert line == 3 + math.floor(place / 6.0 - 1e-12)
+    to_go = np.array(bench.column("channel", "distance_to_go"))
+    inside = (x > 0.0) & (x < 60.0)
+    assert to_go[inside] == pytest.approx(6.0 - x[inside] % 6.0, abs=1e-9)
+    assert bench.blocks["channel"][-1].blocks_done == bench.blocks["channel"][-1].blocks_total
+
+
+@pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.1])
+def test_corners_stay_within_the_tolerance(tolerance: float) -> None:
+    """Shapely's distance to the programmed polygon; the tolerance is used."""
+    corners = [(0, 0), (30, 0), (30, 20), (10, 25), (12, 5), (0, 0)]
+    lines = [f"G01 X{x} Y{y}" for x, y in corners[1:]]
+    bench = MachineBench(program(f"#CONTOUR MODE [DEV PATH_DEV={tolerance}]", "G261 F6000", *lines)).run()
+    programmed = LineString(corners)
+    deviations = [programmed.distance(Point(*point[:2])) for point in path(bench)]
+    assert 0.5 * tolerance < max(deviations) <= tolerance * (1.0 + 1e-9)
+    assert path(bench)[-1] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    assert moving(bench).min() > 0.0
+    smooth(bench)
+
+
+def test_arcs_and_lines_with_contouring() -> None:
+    bench = MachineBench(
+        program("#CONTOUR MODE [DEV PATH_DEV=0.02]", "G261 F4000", "G01 X30", "G03 X30 Y20 I0 J10", "G01 X5 Z3", "Y0")
+    ).run()
+    smooth(bench)
+    x, y, _ = path(bench).T
+    right = x > 30.0
+    assert np.abs(np.hypot(x[right] - 30.0, y[right] - 10.0) - 10.0).max() <= 0.02 + 1e-9
+    assert moving(bench).min() > 3.0
+
+
+def test_exact_stop_reaches_its_corner() -> None:
+    lines = ("#CONTOUR MODE [DEV PATH_DEV=0.1]", "G261 F6000", "G01 X20", "G09 Y20", "X0", "G60 Y0", "X5")
+    bench = MachineBench(program(*lines)).run()
+    points = path(bench)
+    for corner in ((20.0, 20.0), (0.0, 0.0)):
+        assert np.hypot(*(points[:, :2] - corner).T).min() < 1e-5  # half a cycle from rest
+    assert np.hypot(*(points[:, :2] - (20.0, 0.0)).T).min() > 0.01
+
+
+def test_a_function_that_nobody_waits_for_goes_out_as_the_path_passes() -> None:
+    """S is of type MOS here, M8 makes the path wait (MVS_SVS)."""
+    passed = MachineBench(program("M3 S100", "G359 F6000", "G01 X20", "S200 X40", "X60")).run()
+    stopped = MachineBench(program("M3 S100", "G359 F6000", "G01 X20", "M8 X40", "X60")).run()
+    x, v = path(passed)[:, 0], np.array(passed.column("channel", "path_velocity"))
+    assert v[(x > 10.0) & (x < 50.0)] == pytest.approx(100.0)
+    speeds = [command for block in passed.blocks["channel"] for command in block.commands]
+    crossed = int(np.argmax(x > 20.0))
+    sent = next(
+        block.first_cycle
+        for block in passed.blocks["channel"]
+        if 200.0 in [value for command in block.commands for value in command.arguments.values()]
+    )
+    assert speeds and 0 <= sent - crossed <= 2 * MILL.block_cycles
+    x, v = path(stopped)[:, 0], np.array(stopped.column("channel", "path_velocity"))
+    assert v[np.abs(x - 20.0) < 1e-9].min() == 0.0
+
+
+def test_hold_override_and_reset_at_random_moments() -> None:
+    lines = ["#CONTOUR MODE [DEV PATH_DEV=0.05]", "G261 F6000"]
+    corners = [(0, 0), (30, 0), (30, 20), (10, 25), (12, 5), (0, 10), (0, 0)]
+    lines += [f"G01 X{x} Y{y}" for x, y in corners[1:]]
+    programmed = LineString(corners)
+    for seed in range(20):
+        draw = random.Random(seed)
+        bench = MachineBench(program(*lines), end_when_idle=False)
+        for _ in range(6):
+            bench.run(draw.randrange(1, 30) * 0.01)
+            if draw.random() < 0.5:
+                bench.give("channel", "feed_hold", enabled=draw.random() < 0.5)
+            else:
+                bench.give("channel", "set_override", percent=draw.choice((0.0, 20.0, 60.0, 100.0, 120.0)))
+        if draw.random() < 0.3:
+            bench.give("channel", "reset")
+        bench.give("channel", "feed_hold", enabled=False)
+        bench.give("channel", "set_override", percent=100.0)
+        bench.run(4.0)
+        assert bench.blocks["channel"][-1].done, seed
+        smooth(bench)
+        assert max(programmed.distance(Point(*point[:2])) for point in path(bench)) <= 0.05 + 1e-9
+
+
+def test_a_smoothed_contour_runs_at_feed_rate() -> None:
+    """600 chords of 0.05 mm, rounded to 1 µm, on a circle of 30 mm at F6000."""
+    angles = np.arange(1, 601) * 0.05 / 30.0
+    lines = [f"G01 X{30 * math.sin(t):.3f} Y{30 - 30 * math.cos(t):.3f}" for t in angles]
+    bench = MachineBench(program("#HSC ON [BSPLINE PATH_DEV=0.005]", "F3000", *lines, "#HSC OFF")).run()
+    velocity = np.array(bench.column("channel", "path_velocity"))
+    assert np.count_nonzero(velocity) * CYCLE_TIME <= 1.05 * (30.0 / 50.0 + 50.0 / 2000.0 + 2000.0 / 50_000.0)
+    assert moving(bench) == pytest.approx(50.0, rel=1e-3)
+    smooth(bench)
+    x, y, _ = path(bench).T
+    assert np.abs(np.hypot(x, y - 30.0) - 30.0).max() <= 0.006
+
+
+def test_single_block_stops_at_every_end() -> None:
+    bench = MachineBench(program("G359 F6000", "G01 X6", "X12", "X18"), start=False, end_when_idle=False)
+    bench.run(0.02)
+    bench.give("channel", "single_block", enabled=True)
+    bench.give("channel", "start")
+    places = []
+    for _ in range(3):
+        bench.run(1.0)
+        places.append(path(bench)[-1][0])
+        bench.give("channel", "start")
+    assert places == pytest.approx([6.0, 12.0, 18.0], abs=1e-9)

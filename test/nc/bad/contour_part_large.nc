@@ -1,0 +1,3 @@
+; P-ERR-21112 contour_part_large.nc line 2 column 32 '#CONTOUR MODE [DEV REMAIN_PART=101]': REMAIN_PART=101 must be at most 100
+#CONTOUR MODE [DEV REMAIN_PART=101]
+M30

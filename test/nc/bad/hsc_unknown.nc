@@ -1,0 +1,2 @@
+; P-ERR-21615 hsc_unknown.nc line 2 column 10 '#HSC ON [SPLINE PATH_DEV=1]': 'SPLINE' is not available in #HSC; its syntax is #HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF
+#HSC ON [SPLINE PATH_DEV=1]
