@@ -69,7 +69,7 @@ class FollowingBlocks:
                 return None
 
     def accept(self) -> None:
-        """The path goes on with the motion that `peek` has shown."""
+        """The path continues with the motion that `peek` has shown."""
         self._accepted = self._shown
 
     def _block(self, place: int) -> CanonicalBlock | None:

@@ -375,9 +375,9 @@ class ProgramSequence:
         return self.single_block or any(wait.until in LATER_WAITS for wait in self._waits)
 
     def pass_block(self, cycle: int) -> None:
-        """The path goes on into the next block without a stop; blocks without motion in between are done at once.
+        """The path continues in the next block without a stop; blocks without motion in between are done at once.
 
-        On the ramp of an aborted program their functions do not go out any more.
+        On the ramp of an aborted program their functions no longer go out.
         """
         moves = False
         while not moves:

@@ -27,7 +27,7 @@ def exact_stop(state: ModalState) -> None:
 
 
 def through(state: ModalState) -> None:
-    """G359, G260: it goes on where the direction does; a corner is passed as slowly as its kink needs."""
+    """G359, G260: the path continues where the direction does; a corner is passed as slowly as its kink needs."""
     state.transition = THROUGH._replace(smoothing=state.transition.smoothing)
 
 

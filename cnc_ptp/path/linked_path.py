@@ -140,7 +140,7 @@ class LinkedPath:
         try:
             linked = self._make(last.target, motion, self._blocks)
         except CncError:
-            return False  # it is told when the path gets there
+            return False  # reported when the path gets there
         parts = self._builder.add(linked)
         self._source.accept()
         self._blocks += 1

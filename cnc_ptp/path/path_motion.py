@@ -85,7 +85,7 @@ class PathMotion:
 
     @property
     def passes(self) -> bool:
-        """The active block is finished; the path goes on in the next one without a stop."""
+        """The active block is finished; the path continues in the next one without a stop."""
         return self._linked is not None and self._linked.passes
 
     def pass_block(self) -> None:
@@ -107,7 +107,7 @@ class PathMotion:
     def start(self, motion: Path | Dwell, source: MotionSource | None = None) -> None:
         """Starts a motion, directly after another one at its exact end inside a cycle.
 
-        With a `source` the path goes on with the motions that follow, as far as nothing needs a stop between them.
+        With a `source` the path continues with the motions that follow, as far as nothing needs a stop between them.
         Raises CncError (22101–22112, 23001) for impossible motions; then nothing is started.
         """
         if isinstance(motion, Dwell):

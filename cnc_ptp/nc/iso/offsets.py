@@ -104,7 +104,7 @@ def machine_coordinates(channel: Channel, state: ModalState, block: NcBlock, cod
 def path_tolerance(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """G64 P0.01 Q0.01: how far the path may leave the programmed corners (P) and short blocks (Q), mm.
 
-    Without them it goes on where the direction does.
+    Without them the path continues where the direction does.
     """
     for word in "PQ":
         value = block.words.get(word, 0.0)

@@ -142,7 +142,7 @@ class LookAhead:
         return 0.0 if self._stopping else self.override
 
     def _finish(self, surplus: float) -> None:
-        """The plan has come to rest: at the end of the path, or it goes on from here when it can."""
+        """The plan has come to rest: at the end of the path, or it continues from here when it can."""
         self.state = (self._planned_end, 0.0, 0.0, 0.0)
         self._profile = None
         if self._planned_end >= self.end and self.closed:

@@ -35,7 +35,7 @@ class PathPiece:
         self.growth, self.duration, self.kind = growth, duration, kind
 
     def state_after(self, t: float) -> MotionState:
-        """(u, u', u'', u''') t seconds after the begin of the piece."""
+        """(u, u', u'', u''') t seconds after the piece begins."""
         if self.kind != BETWEEN:
             jerk = self.growth
             acceleration = self.acceleration + jerk * t

@@ -174,7 +174,7 @@ def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> Veloc
 
 
 def stop_soon(cells: Sequence[PathCell], start: MovingStart) -> VelocityPlan | None:
-    """To rest at the end of the first cell at which that is possible; the feed does not count any more."""
+    """To rest at the end of the first cell at which that is possible; the feed no longer counts."""
     last = len(cells) - 1
 
     def stop_at(cell: int) -> VelocityPlan | None:
