@@ -90,6 +90,16 @@ class PathInterpolator:
         """Path length (mm) from the last cycle given out to the end of the element."""
         return 0.0 if self.done else self._length - self.state[0]
 
+    @property
+    def time_to_go(self) -> float:
+        """Seconds from the last cycle given out to the end of the element or dwell, at the present override.
+
+        0.0 when it is done, -1.0 while the override or a stop does not let it reach its end.
+        """
+        if self.done:
+            return 0.0
+        return max(0.0, self._profile.duration - self._now()) if self._reaches_end else -1.0
+
     def start(
         self, element: Element, limits: Limits, feed: float | None = None, *, planner: Planner = JERK_LIMITED
     ) -> None:
