@@ -21,6 +21,7 @@ from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.number_range import DURATION, POSITIVE, RATE, STATES_PER_SECOND
 from cnc_ptp.ros_arguments import client_namespace_option, namespace_option, ros_arguments
 from cnc_ptp.ros_arguments import split as split_ros_arguments
+from cnc_ptp.start_options import start_options, take_start
 
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
@@ -42,6 +43,7 @@ DIALECT_OF_A_FILE = click.option(
 def run_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Options that offline run and graph share."""
     for option in (
+        start_options,
         click.option("--strict", is_flag=True, help="A refused command makes the exit status 1."),
         click.option("--record", type=click.Path(dir_okay=False), help="Write an MCAP recording."),
         click.option(
@@ -92,7 +94,7 @@ def simulate_command(**options: Any) -> None:
     """Run a machine offline, as fast as possible."""
     from cnc_ptp.commands.run.simulate import simulate
 
-    sys.exit(simulate(**options))
+    sys.exit(simulate(begin=take_start(options, options["program"]), **options))
 
 
 @main.command("run")
@@ -117,7 +119,7 @@ def run_command(**options: Any) -> None:
     if options["stay"] and options["free_run"]:
         raise click.UsageError("--stay and --free-run exclude each other: a machine is commanded in real time.")
     ros_arguments().require_for_all_nodes("cnc_ptp run")
-    sys.exit(run(**options))
+    sys.exit(run(begin=take_start(options, options["program"]), **options))
 
 
 COMPLETE_FROM = click.option(
@@ -230,14 +232,15 @@ def format_command(**options: Any) -> None:
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
 @DIALECT
 @click.option("--canonical", is_flag=True, help="Print the blocks that result: line, functions, machine positions.")
+@start_options
 def check_command(**options: Any) -> None:
     """Check an NC program: syntax and modal states.
 
-    Errors are shown with line and column.
+    Errors are shown with line and column. With --start-line or --start-block: what a start there does first.
     """
     from cnc_ptp.commands.look.check import check
 
-    sys.exit(check(**options))
+    sys.exit(check(begin=take_start(options, options["program"]), **options))
 
 
 @main.command("replay")

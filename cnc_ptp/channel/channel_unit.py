@@ -6,7 +6,7 @@ rows cycle by cycle: from the path while a motion is active, at a standstill whi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count as numbers
 from typing import ClassVar, NoReturn
 
@@ -18,21 +18,27 @@ from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
+from cnc_ptp.channel.program_start import ProgramStart
+from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
+from cnc_ptp.channel.program_view import ProgramView
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
+from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.expressions.values import Variable
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Pairs, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
+from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
-from cnc_ptp.protocol.notes import PROGRAM_MESSAGE
+from cnc_ptp.protocol.commands import BAD_ARGUMENT
+from cnc_ptp.protocol.notes import PROGRAM_MESSAGE, START_STEP
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
 
 NO_PROGRAM = 22003
@@ -96,6 +102,7 @@ class ChannelUnit(Unit):
         """The state in which an MDI text starts: that of the previous one, if it was carried out in full."""
         self._state_at_end: ProgramState | None = None
         self._is_mdi = False
+        self._progress = ProgramProgress(NO_TIMES, 0)
         self._turning_after_reset = {node for node, spindle in spindles.items() if not spindle.stops_at_reset}
         self._links: dict[int, Pairs] = {}
         """Coupling groups that programs have defined; they are kept for the next one, as V.S. is."""
@@ -123,8 +130,11 @@ class ChannelUnit(Unit):
         parsed = parse_program(text, program, files=files, vocabulary=self._vocabulary_of(dialect))
         state = self._initial_state(self._feedback)
         before = state.copy()
-        known = self._check.known_ahead(parsed, self._motion.position, state)
-        self._prepared = PreparedProgram(text, dict(files), parsed, self._motion.position, before, state, known)
+        start = self._motion.position
+        known = self._check.known_ahead(parsed, start, state)
+        times = block_times(self._motion, known.blocks, start, known.total)
+        skip = self._check.block_skip
+        self._prepared = PreparedProgram(text, dict(files), parsed, start, before, state, known, times, skip)
 
     # commands
 
@@ -157,23 +167,47 @@ class ChannelUnit(Unit):
     def _vocabulary_of(self, dialect: str | None) -> Vocabulary:
         return self._check.vocabulary if dialect is None else VOCABULARIES[dialect]
 
-    def do_start(self, cycle: int) -> None:
-        """Starts the program, which is interpreted as a whole first; or resumes it after M00 or in single block."""
+    def do_start(
+        self,
+        cycle: int,
+        *,
+        line: int | None = None,
+        block_number: int | None = None,
+        in_program: str = "",
+        pass_number: int | None = None,
+    ) -> None:
+        """Starts the program, which is interpreted as a whole first; or resumes it after M00 or in single block.
+
+        With a `line` or `block_number` it begins there (ProgramStart): an event for each step that comes before.
+        Raises ProgramError, 22001, 22003 … 22005, 22040 … 22044.
+        """
+        point = start_point(line, block_number, in_program, pass_number, self._refuse)
         if self._sequence.phase is Phase.STOPPED:
+            if point is not None:
+                at = self._sequence.source.line
+                self._refuse("start", NOT_NOW, f"the program is stopped in line {at} and can only be resumed there")
             self._sequence.resume()
             return
         self._require_idle("start")
         if self._program is None:
             self._refuse("start", NO_PROGRAM, "no program is loaded")
-        self._begin(cycle, "start", self._program, self._initial_state(self._feedback))
+        begin = None if point is None else ProgramStart(point, self._program)
+        position = self._motion.position
+        self._begin(cycle, "start", self._program, self._initial_state(self._feedback), begin)
         self._sequence.end_couplings()
+        for step in () if begin is None else begin.lines(self._check.axis_names, position):
+            self.event(cycle, Severity.INFO, START_STEP, step)
 
-    def do_mdi(self, cycle: int, *, text: str) -> None:
-        """Executes NC text immediately; modal states are kept from one such text to the next."""
+    def do_mdi(self, cycle: int, *, text: str, files: Mapping[str, str] = NO_FILES) -> None:
+        """Executes NC text immediately; modal states are kept from one such text to the next.
+
+        It may call `files`, texts by name, and what the loaded program may call.
+        """
         self._require_idle("mdi")
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
-        program = parse_program(text, "mdi", mdi=True, library=self._library, vocabulary=self._vocabulary)
+        vocabulary, library = self._vocabulary, self._library
+        program = parse_program(text, "mdi", mdi=True, files=files, library=library, vocabulary=vocabulary)
         self._begin(cycle, "mdi", program, state)
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:
@@ -215,13 +249,21 @@ class ChannelUnit(Unit):
         self._override_percent = float(percent)
         self._apply_override()
 
-    def do_single_block(self, cycle: int, *, enabled: bool) -> None:
-        """Single block: the channel stops after each block until `start`."""
-        self._sequence.single_block = enabled
+    def do_single_block(self, cycle: int, *, enabled: bool, mode: str = "block") -> None:
+        """Single block: the channel stops after each block, or (mode `motion`) after each motion, until `start`."""
+        self._sequence.single_block = mode if enabled else ""
 
     def do_optional_stop(self, cycle: int, *, enabled: bool) -> None:
         """Makes M01 a stop like M00 (off by default)."""
         self._sequence.optional_stop = enabled
+
+    def do_block_skip(self, cycle: int, *, enabled: bool, level: int = 1) -> None:
+        """Skips blocks with / (level 1) or /2 … /10 from the next start on (off by default)."""
+        if not 1 <= level <= MAX_SKIP_LEVEL:
+            reason = f"level = {level} is not within 1 ... {MAX_SKIP_LEVEL}"
+            self._refuse("block_skip", BAD_ARGUMENT, reason, level=level)
+        bit = 1 << level - 1
+        self._check.block_skip = self._check.block_skip | bit if enabled else self._check.block_skip & ~bit
 
     def do_reset(self, cycle: int) -> None:
         """Aborts the program on the path ramp and clears the error; refused while an error ramp runs (22008).
@@ -274,6 +316,7 @@ class ChannelUnit(Unit):
         self._fill(rows, first_cycle, count + 1)
         self._axes.give(rows.axes[count - 1], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
+        self._update_progress()
         if self._sequence.finished and self._state_at_end is not None:
             ended, self._state_at_end = self._state_at_end, None
             self._shared, self._offsets.changes = ended.values.shared, ended.modal.coordinates.changes
@@ -282,6 +325,27 @@ class ChannelUnit(Unit):
         if self._sequence.phase is Phase.IDLE:
             self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
         return self._channel_block(tick, rows, outgoing, path_active=on_path)
+
+    def _update_progress(self) -> None:
+        sequence = self._sequence
+        if sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
+            self._progress.end(finished=sequence.finished)
+            return
+        in_file = self._program is not None and sequence.source.file == self._program.file
+        line = sequence.source.line if in_file else 0
+        self._progress.update(sequence.stream.done, self._motion, line, begun=sequence.motion_begun)
+
+    @property
+    def program_view(self) -> ProgramView:
+        """Which program the channel has, and where it is."""
+        source = self._sequence.source
+        return ProgramView(
+            program="" if self._program is None else self._program.file,
+            manual=self._is_mdi and self._sequence.phase is not Phase.IDLE,
+            file=source.file,
+            text=source.text.strip(),
+            calls=self._sequence.calls,
+        )
 
     def _channel_block(
         self, tick: CycleTick, rows: CycleRows, outgoing: Outgoing, *, path_active: bool
@@ -314,6 +378,8 @@ class ChannelUnit(Unit):
             blocks_total=self._sequence.stream.total,
             programmed_position=self._offsets.programmed([state[0] for state in rows.axes[count - 1]]),
             offsets=self._offsets.news(),
+            progress=self._progress.now.share,
+            time_left=self._progress.now.time_left,
             commands=outgoing.commands,
             requests=outgoing.requests,
         )
@@ -387,7 +453,9 @@ class ChannelUnit(Unit):
             return C.IDLE if self._program is None else C.READY
         return PHASE_STATES[phase]
 
-    def _begin(self, cycle: int, command: str, program: Program, state: ProgramState) -> None:
+    def _begin(
+        self, cycle: int, command: str, program: Program, state: ProgramState, begin: ProgramStart | None = None
+    ) -> None:
         for node, axis_state in self._axes.states.items():
             if axis_state != AxisStateCode.STANDSTILL:
                 self._refuse(
@@ -405,20 +473,24 @@ class ChannelUnit(Unit):
                 self._refuse(command, AXIS_NOT_READY, f"'{node}' no longer publishes", unit=node)
         before = state.copy()
         unreferenced = self._axes.unreferenced(self._feedback)
-        ready = None if unreferenced else self._ready(command, program, state)
+        start = self._motion.position
+        ready = None if unreferenced or begin is not None else self._ready(command, program, state)
         if ready is not None:
-            known, state = ready.known, ready.at_end
+            known, state, times = ready.known, ready.at_end, ready.times
         else:
-            known = self._check.known_blocks(program, self._motion.position, state, unreferenced)
+            known = self._check.known_blocks(program, start, state, unreferenced, begin)
+            times = block_times(self._motion, known.blocks, start, known.total)
         stream = BlockStream.of(known.blocks)
         if not known.complete:
             state = before
-            blocks = self._check.running(program, self._motion.position, state, unreferenced)
+            again = None if begin is None else begin.again()
+            blocks = self._check.running(program, start, state, unreferenced, again)
             stream = BlockStream(blocks, known.total, state.values)
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
         self._offsets.begin(cycle, before.modal.coordinates)
+        self._progress = ProgramProgress(times, program.lines)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 
@@ -427,7 +499,8 @@ class ChannelUnit(Unit):
         ready = self._prepared
         if ready is None or command != "start" or ready.program is not program or not ready.before.same_as(state):
             return None
-        return ready if ready.start == self._motion.position else None
+        same_way = ready.start == self._motion.position and ready.block_skip == self._check.block_skip
+        return ready if same_way else None
 
     # override, feedback, faults
 
@@ -546,6 +619,27 @@ class ChannelUnit(Unit):
     def _refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
         where = f"channel {self.name}: {command} refused"
         raise CncError(number, reason, "nothing was changed", where=where, **values)
+
+
+def start_point(
+    line: int | None,
+    block_number: int | None,
+    in_program: str,
+    pass_number: int | None,
+    refuse: Callable[[str, int, str], NoReturn],
+) -> StartPoint | None:
+    """The place of a start that is not at the beginning of the program; `refuse` is called for a contradiction."""
+    for name, value in (("line", line), ("block_number", block_number), ("pass_number", pass_number)):
+        if value is not None and value < 1:
+            refuse("start", BAD_ARGUMENT, f"{name} = {value} must be at least 1")
+    if line is not None and block_number is not None:
+        refuse("start", BAD_ARGUMENT, f"line = {line} and block_number = {block_number} are both given")
+    if line is None and block_number is None:
+        if in_program or pass_number is not None:
+            name = "in_program" if in_program else "pass_number"
+            refuse("start", BAD_ARGUMENT, f"{name} is given without line or block_number")
+        return None
+    return StartPoint(line or 0, block_number or 0, in_program, pass_number or 1)
 
 
 PHASE_STATES = {

@@ -8,6 +8,8 @@ from math import inf
 from typing import NamedTuple
 
 from cnc_ptp.axis.faults import HOMING_DISABLED, SOFT_LIMIT_NEGATIVE, SOFT_LIMIT_POSITIVE
+from cnc_ptp.channel.program_start import ProgramStart
+from cnc_ptp.channel.program_times import BlockTimes
 from cnc_ptp.control.commands import NO_FRICTION_COMPENSATION
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import (
@@ -80,7 +82,10 @@ class KnownBlocks(NamedTuple):
 
 
 class PreparedProgram(NamedTuple):
-    """A program that was interpreted ahead of its load, from the position `start` and the state `before`."""
+    """A program that was interpreted ahead of its load, from the position `start` and the state `before`.
+
+    `block_skip`: the levels that were skipped; `times` of its motions.
+    """
 
     text: str
     files: dict[str, str]
@@ -89,6 +94,8 @@ class PreparedProgram(NamedTuple):
     before: ProgramState
     at_end: ProgramState
     known: KnownBlocks
+    times: BlockTimes
+    block_skip: int
 
     def is_of(self, text: str, files: Mapping[str, str], file: str, vocabulary: Vocabulary) -> bool:
         """Whether a load with these arguments means this program."""
@@ -133,6 +140,8 @@ class ProgramCheck:
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
+        self.block_skip = 0
+        """Bit n - 1: blocks with /n are skipped."""
 
     @classmethod
     def of_first_channel(cls, machine: MachineParameters, file: str) -> ProgramCheck:
@@ -169,6 +178,11 @@ class ProgramCheck:
         except ProgramError as error:
             return [error]
         return []
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """As programs name them, in the order of the channel."""
+        return self._axis_names
 
     @property
     def start(self) -> tuple[float, ...]:
@@ -208,9 +222,11 @@ class ProgramCheck:
         """The blocks of a program that is started from the initial state, as far as they are known before it runs."""
         return self.known_ahead(program, start, self.state({}, {}, {})).blocks
 
-    def known_ahead(self, program: Program, start: Sequence[float], state: ProgramState) -> KnownBlocks:
+    def known_ahead(
+        self, program: Program, start: Sequence[float], state: ProgramState, begin: ProgramStart | None = None
+    ) -> KnownBlocks:
         """`known_blocks` before the machine runs: others may still home its axes."""
-        return self.known_blocks(program, start, state, self.unreferenced_at_start, required=False)
+        return self.known_blocks(program, start, state, self.unreferenced_at_start, begin, required=False)
 
     def known_blocks(
         self,
@@ -218,18 +234,19 @@ class ProgramCheck:
         start: Sequence[float],
         state: ProgramState,
         unreferenced: Collection[str] = (),
+        begin: ProgramStart | None = None,
         *,
         required: bool = True,
     ) -> KnownBlocks:
         """Interprets a program from `start` (mm, in the channel's order of axes) before anything moves.
 
-        All of it, up to a homing or a line that reads what only the run knows. `unreferenced`: nodes of axes without
-        soft limits, which it must not move before it homes them if that is `required` (P-MACH-00061).
-        Raises ProgramError; then `state` is void.
+        All of it, up to a homing or a line that reads what only the run knows; `begin`: not from its beginning.
+        `unreferenced`: nodes of axes without soft limits, which it must not move before it homes them if that is
+        `required` (P-MACH-00061). Raises ProgramError and the errors of ProgramStart; then `state` is void.
         """
         blocks: list[CanonicalBlock] = []
         total = 0
-        for block in self.running(program, start, state, unreferenced, required=required):
+        for block in self.running(program, start, state, unreferenced, begin, required=required):
             if block is BUSY:
                 continue
             total += 1
@@ -245,11 +262,29 @@ class ProgramCheck:
         start: Sequence[float],
         state: ProgramState,
         unreferenced: Collection[str] = (),
+        begin: ProgramStart | None = None,
         *,
         required: bool = True,
     ) -> Iterator[CanonicalBlock]:
-        """The blocks one by one, also BUSY and those with WaitForPath. Raises ProgramError; then `state` is void."""
+        """The blocks one by one, also BUSY and those with WaitForPath. Raises as `known_blocks`."""
         missing = self._names(unreferenced)
+        stream = self._interpreted(program, start, state, begin, missing, required=required)
+        if begin is None:
+            return stream
+        check = partial(self.check_target, unlimited=missing)
+        return begin.blocks(stream, tuple(start), self._axis_names, state.modal, check)
+
+    def _interpreted(
+        self,
+        program: Program,
+        start: Sequence[float],
+        state: ProgramState,
+        begin: ProgramStart | None,
+        missing: set[str],
+        *,
+        required: bool,
+    ) -> Iterator[CanonicalBlock]:
+        """`missing`: names of axes that are not referenced; homing takes them out."""
         stream = interpret(
             program,
             tuple(start),
@@ -265,7 +300,9 @@ class ProgramCheck:
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
             limits=self._limits,
+            block_skip=self.block_skip,
             runs=True,
+            search=None if begin is None else begin.search,
         )
         position = tuple(start)
         for block in stream:

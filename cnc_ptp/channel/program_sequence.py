@@ -98,7 +98,10 @@ class ProgramSequence:
         """The program has been carried out to its end."""
         self.source = NO_SOURCE
         """Source of the active block; after the end, of the last one."""
-        self.single_block = False
+        self.calls: tuple[str, ...] = ()
+        """From where the subroutine of the active block was called, the innermost first."""
+        self.single_block = ""
+        """`block`: the program stops behind each block, `motion`: behind each motion, "": behind none."""
         self.optional_stop = False
         self._block: CanonicalBlock | None = None
         self._following = FollowingBlocks(functions, self._stops_before_next)
@@ -326,7 +329,7 @@ class ProgramSequence:
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
         self._block = block
-        self.source = block.source
+        self.source, self.calls = block.source, block.calls
         if block.offsets is not None:
             self.offsets = block.offsets
         gear = self._functions.gear_change(block)
@@ -372,7 +375,7 @@ class ProgramSequence:
 
     def _stops_before_next(self) -> bool:
         """The path has to stop behind the active block, whatever follows."""
-        return self.single_block or any(wait.until in LATER_WAITS for wait in self._waits)
+        return bool(self.single_block) or any(wait.until in LATER_WAITS for wait in self._waits)
 
     def pass_block(self, cycle: int) -> None:
         """The path continues in the next block without a stop; blocks without motion in between are done at once.
@@ -405,7 +408,15 @@ class ProgramSequence:
             self.phase = Phase.NEXT
 
     def _stops_between_blocks(self) -> bool:
-        return self.single_block and self.stream.done < self.stream.total
+        """The program is not at its end then."""
+        by_motion = self.single_block == "motion"
+        moved = self._block is not None and isinstance(self._block.motion, LinearMove | CircularMove)
+        return self.single_block != "" and (moved or not by_motion) and self.stream.done < self.stream.total
+
+    @property
+    def motion_begun(self) -> bool:
+        """The motion of the block that is not through yet is active, or has finished."""
+        return self.phase in (Phase.MOTION, Phase.WAIT_AFTER)
 
     def _finish(self) -> None:
         """The program has been carried out to its end."""

@@ -69,6 +69,19 @@ def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
     return found
 
 
+def folder_of(program: str) -> str:
+    """Where programs are looked for: the folder of the loaded one, without one ("") the working directory."""
+    return str(Path(program).parent)
+
+
+def available_programs(folder: str) -> list[str]:
+    """Names of the NC programs (.nc) in a folder, in their order; none if it cannot be read."""
+    try:
+        return sorted(entry.name for entry in Path(folder).iterdir() if entry.suffix.lower() == ".nc")
+    except OSError:
+        return []
+
+
 def called_names(text: str) -> list[str]:
     """Names behind L and in L CYCLE, and those of G80 to G89, also in comments; without folders."""
     text = _CONTINUED.sub(" ", text)

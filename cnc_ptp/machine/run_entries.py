@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from cnc_ptp.channel.program_check import ProgramCheck
-from cnc_ptp.machine.program_files import called_programs, read_file, read_program
+from cnc_ptp.channel.program_start import ProgramStart
+from cnc_ptp.machine.program_files import called_programs, folder_of, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters
@@ -23,21 +25,22 @@ def read_entries(
     scenario: str | None,
     may_be_empty: bool = False,
     dialect: str | None = None,
+    begin: StartPoint | None = None,
 ) -> list[Entry]:
     """The entries of a run: load and start of `program` on the first channel at 0 s, then the scenario.
 
-    `dialect`: vocabulary of `program`; None: that of the machine file.
-    `may_be_empty`: a scenario may have no entries. Loads carry the text of their program; a path in a scenario,
-    relative to its file, becomes one relative to the working directory.
+    `dialect`: vocabulary of `program`; None: that of the machine file. `begin`: where it begins, if not at its
+    beginning. `may_be_empty`: a scenario may have no entries. Loads carry the text of their program; a path in a
+    scenario, relative to its file, becomes one relative to the working directory.
     Raises ScenarioError, ProgramError, CncError 26110 (file) and 26112 (a program but no channel).
     """
     entries: list[Entry] = []
     if program is not None:
         text, files = read_program(program, program_folders(machine))
-        check_program(machine, text, program, files, dialect)
+        check_program(machine, text, program, files, dialect, begin)
         channel = next(iter(machine.channels))
         entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))
-        entries.append(Entry(0.0, Command(channel, "start", {})))
+        entries.append(Entry(0.0, Command(channel, "start", start_arguments(begin))))
     if scenario is not None:
         folder = Path(scenario).parent
         text = read_file("scenario", scenario)
@@ -51,16 +54,38 @@ def read_entries(
                 arguments = entry.command.arguments
                 arguments["program"] = str(folder / arguments["program"])
                 add_files(arguments, program_folders(machine, entry.command.target))
-    return sorted(entries, key=lambda entry: entry.at)
+    entries.sort(key=lambda entry: entry.at)
+    add_manual_files([entry.command for entry in entries], machine)
+    return entries
 
 
 def check_program(
-    machine: MachineParameters, text: str, file: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None
+    machine: MachineParameters,
+    text: str,
+    file: str,
+    files: Mapping[str, str] = NO_FILES,
+    dialect: str | None = None,
+    begin: StartPoint | None = None,
 ) -> None:
-    """Interprets a program for the first channel as started from the start positions. Raises ProgramError, 26112."""
+    """Interprets a program for the first channel as started from the start positions.
+
+    Raises ProgramError, CncError 26112 and the errors of ProgramStart.
+    """
     check = ProgramCheck.of_first_channel(machine, file)
     vocabulary = check.vocabulary if dialect is None else VOCABULARIES[dialect]
-    check.blocks(parse_program(text, file, files=files, vocabulary=vocabulary), check.start)
+    parsed = parse_program(text, file, files=files, vocabulary=vocabulary)
+    start = None if begin is None else ProgramStart(begin, parsed)
+    check.known_ahead(parsed, check.start, check.state({}, {}, {}), start)
+
+
+def start_arguments(begin: StartPoint | None) -> dict[str, Any]:
+    """Arguments of the command `start`."""
+    if begin is None:
+        return {}
+    place: dict[str, Any] = {"line": begin.line} if begin.line else {"block_number": begin.block_number}
+    if begin.file:
+        place["in_program"] = begin.file
+    return place | ({"pass_number": begin.pass_number} if begin.pass_number > 1 else {})
 
 
 def load_arguments(program: str, text: str, files: Mapping[str, str], dialect: str | None = None) -> dict[str, Any]:
@@ -77,6 +102,25 @@ def program_folders(machine: MachineParameters, channel: str = "") -> tuple[str,
     """Where programs that others call are looked for (P-CHAN-90004), by a channel or the first one."""
     of_channel = machine.channels.get(channel) or next(iter(machine.channels.values()), None)
     return of_channel.folders if of_channel else ()
+
+
+def add_manual_files(
+    commands: Iterable[Command], machine: MachineParameters, loaded: Mapping[str, str] = NO_FILES
+) -> None:
+    """To manual blocks the texts of the programs that they call, from the folder of the program loaded before.
+
+    `loaded`: the file of the program that a channel has before these commands. Raises CncError 26110, 26122.
+    """
+    programs = dict(loaded)
+    for command in commands:
+        arguments = command.arguments
+        if command.command == "load":
+            programs[command.target] = arguments["program"]
+        elif command.command == "mdi" and "files" not in arguments:
+            folders = [folder_of(programs.get(command.target, "")), *program_folders(machine, command.target)]
+            files = called_programs(arguments["text"], folders)
+            if files:
+                arguments["files"] = files
 
 
 def add_files(arguments: dict[str, Any], folders: Sequence[str]) -> None:

@@ -265,7 +265,8 @@ class OffsetReport(NamedTuple):
 class CanonicalBlock(NamedTuple):
     """One program block with something to do; `stop` is "", "M00", "M01" or "end" (M02, M30).
 
-    `offsets` that count from here on, when they have changed.
+    `offsets` that count from here on, when they have changed. `calls`: from where its subroutine was called, the
+    innermost first: "part.nc line 12".
     """
 
     source: Source
@@ -273,10 +274,13 @@ class CanonicalBlock(NamedTuple):
     motion: Motion | None
     stop: str
     offsets: OffsetReport | None = None
+    calls: tuple[str, ...] = ()
 
 
 BUSY: Final = CanonicalBlock(Source("", 0, 0, ""), (), None, "")
 """In place of a block: the interpreter has executed many lines without one, and continues when it is asked again."""
+BEGIN: Final = CanonicalBlock(Source("", 0, 0, ""), (), None, "")
+"""In place of a block: the place that was looked for (BlockSearch) is reached; what follows is to be carried out."""
 
 
 def number(value: float) -> str:

@@ -3,7 +3,9 @@
 from collections.abc import Callable, Collection, Iterator, Mapping
 
 from cnc_ptp.nc.arcs import extreme_points
+from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
+    BEGIN,
     BUSY,
     CanonicalBlock,
     CircularMove,
@@ -25,7 +27,7 @@ from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.feeds import timed
-from cnc_ptp.nc.flow.execution import COMPUTES, PAUSE, Execution, Limits, with_calls
+from cnc_ptp.nc.flow.execution import COMPUTES, FOUND, PAUSE, Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.parser import NO_FILES, parse_all
@@ -66,6 +68,7 @@ def interpret(
     limits: Limits = LIMITS,
     values: Values | None = None,
     runs: bool = False,
+    search: BlockSearch | None = None,
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
@@ -82,6 +85,7 @@ def interpret(
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
     it, and BUSY in long computations. Otherwise such a line is the error 21438.
     `values`: parameters and variables to continue with, of the same `state`.
+    `search`: a place; BEGIN comes in place of a block when it is reached, before its line is executed.
     Raises ProgramError; state and values are then undefined, so MDI continues with copies taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
@@ -99,7 +103,7 @@ def interpret(
         values = Values(channel, state)
     else:
         values.channel, values.state = channel, state
-    execution = Execution(program, values, limits=limits, block_skip=block_skip)
+    execution = Execution(program, values, limits=limits, block_skip=block_skip, search=search)
     source = program.main.source
     try:
         while (block := execution.next_block()) is not None:
@@ -107,18 +111,21 @@ def interpret(
                 if runs:
                     yield BUSY
                 continue
+            if block is FOUND:
+                yield BEGIN
+                continue
             if block is PAUSE:
                 if not runs:
                     raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
-                yield CanonicalBlock(values.source, (WaitForPath(True),), None, "")
+                yield CanonicalBlock(values.source, (WaitForPath(True),), None, "", calls=execution.calls)
                 continue
             source = block.source
-            canonical = _resolve(channel, state, block, check_target)
+            canonical = _resolve(channel, state, block, check_target, execution.calls)
             motion = None if canonical is None else canonical.motion
             execution.moved = isinstance(motion, (LinearMove, CircularMove))
             if state.following is not None:
                 steps, state.following = state.following, None
-                yield from _followed(channel, state, block, canonical, steps, check_target)
+                yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
             elif canonical is not None:
                 yield _reported(channel, state, canonical)
                 if isinstance(motion, HomeAxes) and values.position:
@@ -136,12 +143,16 @@ def _with_offsets(channel: Channel, state: ModalState, block: CanonicalBlock) ->
 
 
 def _resolve(
-    channel: Channel, state: ModalState, block: NcBlock, check_target: CheckTarget | None
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    check_target: CheckTarget | None,
+    calls: tuple[str, ...],
 ) -> CanonicalBlock | None:
     """One block with the modal state: selects its G codes, builds motion and functions, moves the position."""
     if block.command is not None:
         commanded = block.command.run(channel, state, block, block.command)
-        return CanonicalBlock(block.source, commanded, None, "") if commanded else None
+        return CanonicalBlock(block.source, commanded, None, "", calls=calls) if commanded else None
     path: GCode | None = None
     modal = -1
     control: tuple[Function, ...] = ()
@@ -185,7 +196,7 @@ def _resolve(
         functions += end_of_links(state)
     if motion is None and not functions and not stop:
         return None
-    return CanonicalBlock(block.source, functions, motion, stop)
+    return CanonicalBlock(block.source, functions, motion, stop, calls=calls)
 
 
 def _moved(
@@ -223,6 +234,7 @@ def _followed(
     first: CanonicalBlock | None,
     steps: Iterator[Step],
     check_target: CheckTarget | None,
+    calls: tuple[str, ...],
 ) -> Iterator[CanonicalBlock]:
     """A block and its further motions (cycles, G28); what stops the program comes behind the last one."""
     stop = "" if first is None else first.stop
@@ -233,12 +245,12 @@ def _followed(
             state.frame, state.programmed = None, state.position
         motion = None if step.motion is None else _moved(channel, state, block, step.motion, check_target)
         if motion is not None or step.functions:
-            yield _reported(channel, state, CanonicalBlock(block.source, step.functions, motion, ""))
+            yield _reported(channel, state, CanonicalBlock(block.source, step.functions, motion, "", calls=calls))
     reported = state.reported
     refresh(channel, state)
     state.reported = reported
     if stop:
-        yield _reported(channel, state, CanonicalBlock(block.source, (), None, stop))
+        yield _reported(channel, state, CanonicalBlock(block.source, (), None, stop, calls=calls))
 
 
 def _reported(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:

@@ -123,6 +123,7 @@ class _Reader:
                 self._line(line, offset)
             else:
                 self._inside(line)
+            program.lines = number
             number, offset = line.next_number, line.next_offset
         return self.finish()
 

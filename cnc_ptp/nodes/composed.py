@@ -111,7 +111,8 @@ def unit_nodes(machine: MachineParameters, options: RunOptions, **of_nodes: Any)
     nodes: list[UnitNode] = []
     for name, kind in unit_kinds(machine).items():
         if kind == PLC:
-            entries = read_entries(machine, program=options.program, scenario=options.scenario, dialect=options.dialect)
+            program, scenario, dialect, begin = options.program, options.scenario, options.dialect, options.begin
+            entries = read_entries(machine, program=program, scenario=scenario, dialect=dialect, begin=begin)
             idle_ends = options.duration is None and not options.stay
             nodes.append(PlcBridgeNode(machine, scenario=entries, end_when_idle=idle_ends, **of_nodes))
         else:

@@ -11,21 +11,24 @@ from cnc_ptp import action, msg
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_program
-from cnc_ptp.machine.run_entries import load_arguments
+from cnc_ptp.machine.run_entries import add_manual_files, load_arguments
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import convert, node_command_line
+from cnc_ptp.nodes.program_topic import ProgramTopic
 from cnc_ptp.nodes.topics import EVENTS, handshake_topic, offsets_topic
 from cnc_ptp.nodes.unit.jobs import JobServer
+from cnc_ptp.nodes.unit.requests import given_arguments
 from cnc_ptp.nodes.unit.unit_node import UnitNode
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.protocol.blocks import ChannelBlock, Command, CommandRecord, CycleBlock, PlcBlock
+from cnc_ptp.protocol.commands import COMMANDS
 
 
 class ChannelNode(UnitNode):
     """UnitNode of a channel.
 
     Publishes besides: /<channel>/handshake (HandshakeRequest) for M, S, T and D functions; /<channel>/offsets
-    (ChannelOffsets) when they change.
+    (ChannelOffsets) and /<channel>/program (ProgramState) when they change.
     Action: /<channel>/run_program (RunProgram); cancel = reset.
     """
 
@@ -45,6 +48,8 @@ class ChannelNode(UnitNode):
             unit.prepare(program, *read_program(program, machine.channels[name].folders), dialect)
         self._folders = machine.channels[name].folders
         super().__init__(machine, unit, **options)
+        self._cycle_time = machine.cycle_time_us * 1e-6
+        self._program_topic: ProgramTopic | None = None
 
     def setup(self) -> None:
         """As UnitNode, with handshakes and the action."""
@@ -52,6 +57,8 @@ class ChannelNode(UnitNode):
         name = self.unit.name
         self._handshake_publisher = self.create_publisher(msg.HandshakeRequest, handshake_topic(name), EVENTS)
         self._offsets_publisher = self.create_publisher(msg.ChannelOffsets, offsets_topic(name), EVENTS)
+        if isinstance(self.unit, ChannelUnit):
+            self._program_topic = ProgramTopic(self, self.unit, cycle_time=self._cycle_time)
         self._program_job = JobServer(
             self,
             action.RunProgram,
@@ -63,7 +70,8 @@ class ChannelNode(UnitNode):
         )
 
     def _start_program(self, goal: Any) -> list[Command]:
-        start = Command(self.unit.name, "start", {})
+        known = COMMANDS["channel"]["start"]
+        start = Command(self.unit.name, "start", given_arguments(known, goal))
         return [Command(self.unit.name, "load", {"program": goal.program}), start] if goal.program else [start]
 
     def command(self, command: Command) -> CommandRecord:
@@ -77,15 +85,29 @@ class ChannelNode(UnitNode):
             command = Command(
                 self.unit.name, "load", load_arguments(path, text, files, command.arguments.get("dialect"))
             )
+        elif command.command == "mdi":
+            try:
+                add_manual_files([command], self._machine, self._loaded)
+            except CncError as error:
+                return self.refuse(command, error.number, error.reason)
         return super().command(command)
 
+    @property
+    def _loaded(self) -> dict[str, str]:
+        """Channel -> file of its program."""
+        unit = self.unit
+        return {unit.name: unit.program_view.program} if isinstance(unit, ChannelUnit) else {}
+
     def complete_commands(self, block: PlcBlock) -> None:
-        """The text of a program does not travel in blocks; a missing file leaves a load that the unit refuses."""
+        """Texts of programs do not travel in blocks; a missing file leaves a command that the unit refuses."""
         for command in block.commands:
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
                     path = command.arguments["program"]
                     command.arguments.update(load_arguments(path, *read_program(path, self._folders)))
+        with contextlib.suppress(CncError):
+            own = [each for each in block.commands if each.target == self.unit.name]
+            add_manual_files(own, self._machine, self._loaded)
 
     def run_ended(self) -> None:
         self._program_job.end()
@@ -95,6 +117,8 @@ class ChannelNode(UnitNode):
             self._program_job.after_block(block)
             for offsets in block.offsets:
                 self._offsets_publisher.publish(convert.offsets_to_message(offsets, self.stamp(offsets.cycle)))
+            if self._program_topic is not None:
+                self._program_topic.after_block(block)
             for request in block.requests:
                 self._handshake_publisher.publish(convert.request_to_message(request, self.stamp(request.cycle)))
 
@@ -103,7 +127,7 @@ def program_feedback(block: CycleBlock, feedback: Any) -> None:
     if isinstance(block, ChannelBlock):
         feedback.line, feedback.block_number = block.line[-1], block.block_number[-1]
         feedback.path_velocity, feedback.distance_to_go = block.path_velocity[-1], block.distance_to_go[-1]
-        feedback.progress = block.blocks_done / max(1, block.blocks_total)
+        feedback.progress, feedback.time_left = block.progress, block.time_left
         feedback.state = block.state[-1]
 
 

@@ -29,6 +29,7 @@ from cnc_ptp.plc.plc_unit import PlcUnit
 from cnc_ptp.plc.scenario import Entry
 from cnc_ptp.protocol.blocks import Command, CycleBlock, Severity
 from cnc_ptp.protocol.unit import PLC
+from cnc_ptp.start_options import start_options, take_start
 
 LIFE_SIGN_LOST = 26103
 FACTOR_STALE = 26118
@@ -234,12 +235,13 @@ class PlcBridgeNode(UnitNode):
 
 
 def without_text(entry: Entry) -> Entry:
-    """A load travels without the text of its program: blocks go to every unit; the channel reads the file itself."""
-    if entry.command.command != "load":
+    """Loads and manual blocks travel without texts of programs: blocks go to every unit; the channel reads files."""
+    command = entry.command
+    if command.command not in ("load", "mdi"):
         return entry
-    given = entry.command.arguments
-    arguments: dict[str, Any] = {name: given[name] for name in ("program", "dialect") if name in given}
-    return Entry(entry.at, Command(entry.command.target, "load", arguments))
+    kept = ("program", "dialect") if command.command == "load" else ("text",)
+    arguments = {name: command.arguments[name] for name in kept if name in command.arguments}
+    return Entry(entry.at, Command(command.target, command.command, arguments))
 
 
 @click.command()
@@ -248,6 +250,7 @@ def without_text(entry: Entry) -> Entry:
 @node_command_line.DIALECT
 @click.option("--scenario", type=click.Path(dir_okay=False), help="Timed PLC commands (YAML).")
 @click.option("--stay", is_flag=True, help="Continue when everything is at a standstill, instead of ending the run.")
+@start_options
 @node_command_line.RECORDERS
 @node_command_line.STATE_RATE
 @node_command_line.FREE_RUN
@@ -255,12 +258,13 @@ def command(
     machine: str, program: str | None, dialect: str | None, scenario: str | None, stay: bool, **options: Any
 ) -> None:
     """Runs the PLC interface of MACHINE as a ROS node; plays a scenario."""
+    begin = take_start(options, program)
 
     def make() -> PlcBridgeNode:
         parameters = read_machine(machine)
         node = PlcBridgeNode(
             parameters,
-            scenario=read_entries(parameters, program=program, scenario=scenario, dialect=dialect),
+            scenario=read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin),
             end_when_idle=not stay,
             **options,
         )

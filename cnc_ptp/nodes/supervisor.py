@@ -18,6 +18,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.interrupt import INTERRUPTED
 from cnc_ptp.machine.runner import CLOCK
 from cnc_ptp.machine.wiring import unit_kinds
+from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes import convert, process
 from cnc_ptp.nodes.events import EventPublisher
 from cnc_ptp.nodes.forked import (
@@ -39,6 +40,7 @@ from cnc_ptp.protocol.blocks import Event, Severity
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.closing import close_cut
 from cnc_ptp.ros_arguments import ros_arguments
+from cnc_ptp.start_options import start_words
 
 SERVER = "server of processes"
 NOT_READY = 26105
@@ -66,6 +68,8 @@ class RunOptions:
     """Live states per second, None = as the machine file says."""
     dialect: str | None = None
     """Vocabulary of the program, None = as the machine file says."""
+    begin: StartPoint | None = None
+    """Where the program begins, if not at its beginning."""
 
 
 class Supervisor:
@@ -242,15 +246,19 @@ def command_lines(
     units = [*units, "--state-rate", str(options.state_rate)] if options.state_rate is not None else units
     program = ["--program", options.program] if options.program else []
     program += ["--dialect", options.dialect] if options.program and options.dialect else []
+    begin = [*start_words(options.begin)]
     if options.record:
         yield RECORDER, ["recorder", options.machine, options.record]
     for name, kind in unit_kinds(machine).items():
         if kind != "plc":
-            first = program if name == next(iter(machine.channels), None) else []
+            first = program if options.begin is None and name == next(iter(machine.channels), None) else []
             yield name, [MODULES[kind], options.machine, name, *first, *units]
     scenario = ["--scenario", options.scenario] if options.scenario else []
     stay = ["--stay"] if options.stay or options.duration is not None else []
-    yield PLC, ["plc_bridge", options.machine, *program, *scenario, *stay, *free_run, *units]
+    yield (
+        PLC,
+        ["plc_bridge", options.machine, *program, *begin, *scenario, *stay, *free_run, *units],
+    )
     duration = ["--duration", str(options.duration)] if options.duration is not None else []
     wait_for = [word for name in observers for word in ("--wait-for", name)]
     yield CLOCK, ["clock", options.machine, *duration, *free_run, *wait_for]

@@ -22,6 +22,9 @@ EVENTS = QoSProfile(
 )
 """Events and command records: late joiners see what has happened."""
 
+LATEST = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+"""What changes seldom: late joiners get the newest."""
+
 PLC_INPUT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 """Cyclic values that PLC programmers write: `ros2 topic pub` works without options."""
 
@@ -98,11 +101,12 @@ SERVICES: dict[str, dict[str, Any]] = {
     },
     "channel": {
         "load": srv.LoadProgram,
-        "start": srv.Execute,
+        "start": srv.StartProgram,
         "feed_hold": srv.SetHold,
         "set_override": srv.SetOverride,
-        "single_block": srv.SetHold,
+        "single_block": srv.SetSingleBlock,
         "optional_stop": srv.SetHold,
+        "block_skip": srv.SkipBlocks,
         "reset": srv.Execute,
         "mdi": srv.ManualDataInput,
         "measuring_event": srv.Execute,
@@ -172,6 +176,10 @@ def handshake_topic(channel: str) -> str:
 
 def offsets_topic(channel: str) -> str:
     return f"{channel}/offsets"
+
+
+def program_topic(channel: str) -> str:
+    return f"{channel}/program"
 
 
 def recorded_topic(topic: str) -> str:

@@ -99,6 +99,16 @@ class PathInterpolator:
         """What has moved the path meanwhile has ended; `offset` as above."""
         self._next_offset = offset
 
+    @property
+    def time_to_go(self) -> float:
+        """Seconds from the last cycle given out to the end of the element or dwell, at the present override.
+
+        0.0 when it is done, -1.0 while the override or a stop does not let it reach its end.
+        """
+        if self.done:
+            return 0.0
+        return max(0.0, self._profile.duration - self._now()) if self._reaches_end else -1.0
+
     def start(
         self, element: Element, limits: Limits, feed: float | None = None, *, planner: Planner = JERK_LIMITED
     ) -> None:

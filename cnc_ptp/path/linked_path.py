@@ -63,6 +63,8 @@ class LinkedPath:
         """Number of blocks that belong to the path."""
         self._ends: deque[float] = deque([0.0])
         """u at the ends of the active block and of those behind it, as far as they are known."""
+        self._begin = 0.0
+        """u at which the active block begins."""
         self._feeds: deque[float] = deque()
         self._rows: deque[MotionState] = deque()
 
@@ -93,10 +95,15 @@ class LinkedPath:
         """The active block is finished, and the path is in the next one already."""
         return self._block_ahead() > self.block
 
+    def part_to_go(self, distance: float) -> float:
+        """Part of the active block that is still to come, from the distance to its end."""
+        length = self._ends[0] - self._begin
+        return min(1.0, distance / length) if length > 0.0 else 0.0
+
     def pass_block(self) -> None:
         """The next block is the active one."""
         self.block += 1
-        self._ends.popleft()
+        self._begin = self._ends.popleft()
         self._feeds.popleft()
 
     def follow(self, count: int, cycle_time: float) -> list[LinkedPoint]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
+from cnc_ptp.motion import Limits
 from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
@@ -21,6 +23,15 @@ Evaluation = Callable[[float, float, float, float], AxisStates]
 """States of the axes from path length, velocity, acceleration and jerk."""
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
+
+
+class Plan(NamedTuple):
+    """How a motion is run: its element, dynamics of the path, feed (mm/s), with `steps` of the acceleration."""
+
+    element: Line | Arc
+    limits: Limits
+    feed: float
+    steps: bool
 
 
 class PathMotion:
@@ -46,6 +57,8 @@ class PathMotion:
         self._held = False
         self._full_override = False
         """The active motion is one of G166."""
+        self._dwell = 0.0
+        """Seconds of the last dwell."""
         self._element: Line | Arc | None = None
         self._evaluate: Evaluation | None = None
         """States of the axes on the active element."""
@@ -65,6 +78,30 @@ class PathMotion:
     def on_path(self) -> bool:
         """An element is active (a dwell is none)."""
         return self._element is not None or self._linked is not None
+
+    @property
+    def override(self) -> float:
+        """Override of motions without G166, 1 is 100 %, 0 is feed hold."""
+        return self._override
+
+    @property
+    def time_to_go(self) -> float:
+        """Seconds to the end of the active motion or dwell; 0.0 without one, -1.0 while it is held.
+
+        Of a block that the path runs through: at its present velocity.
+        """
+        if self._linked is not None:
+            return self.distance_to_go / self.velocity if self.velocity > 0.0 else -1.0
+        return self._interpolator.time_to_go
+
+    @property
+    def part_to_go(self) -> float:
+        """Part of the active element's length, or of the dwell's time, that is still to come; 0.0 without one."""
+        if self._linked is not None:
+            return self._linked.part_to_go(self.distance_to_go)
+        if self._element is not None:
+            return self.distance_to_go / self._element.length if self._element.length > 0.0 else 0.0
+        return max(0.0, self._interpolator.time_to_go) / self._dwell if self._dwell > 0.0 else 0.0
 
     @property
     def held(self) -> bool:
@@ -112,27 +149,37 @@ class PathMotion:
         """
         if isinstance(motion, Dwell):
             self._interpolator.dwell(motion.seconds)
+            self._dwell = motion.seconds
             return
-        element = self._make_element(self.position, motion)
+        plan = self._plan(motion, self.position)
+        element, feed = plan.element, plan.feed
         self._set_full_override(motion.full_override)
         if source is not None and self._link(element, motion, source):
             return
-        rapid = is_rapid(motion)
-        axis_limits = self._axis_limits(motion)
-        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
-        feed = limits.velocity if rapid else motion.feed
-        steps = self._steps(motion)
-        self._interpolator.start(element, limits, feed, planner=STEPS if steps else JERK_LIMITED)
+        self._interpolator.start(element, plan.limits, feed, planner=STEPS if plan.steps else JERK_LIMITED)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
-        self._evaluate = evaluation(element, steps=steps)
+        self._evaluate = evaluation(element, steps=plan.steps)
+
+    def duration(self, motion: Path, start: tuple[float, ...]) -> float:
+        """Seconds that a motion from `start` takes from rest to rest with override 100 %. Raises as `start`."""
+        plan = self._plan(motion, start)
+        if plan.element.length == 0.0:
+            return 0.0
+        limits = plan.limits._replace(velocity=min(plan.feed, plan.limits.velocity))
+        planner = STEPS if plan.steps else JERK_LIMITED
+        return planner.from_rest(0.0, plan.element.length, limits).duration
+
+    def _plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
+        element, rapid, steps = self._make_element(start, motion), is_rapid(motion), self._steps(motion)
+        axis_limits = self._rapid_limits if rapid else self._feed_limits
+        if steps:
+            axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
+        limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
+        return Plan(element, limits, limits.velocity if rapid else motion.feed, steps)
 
     def _steps(self, motion: Path) -> bool:
         """The acceleration of the path may step."""
         return (motion.slope or self._default_slope) == STEP
-
-    def _axis_limits(self, motion: Path) -> list[AxisLimits]:
-        axis_limits = self._rapid_limits if is_rapid(motion) else self._feed_limits
-        return [axis._replace(jerk=math.inf) for axis in axis_limits] if self._steps(motion) else axis_limits
 
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):

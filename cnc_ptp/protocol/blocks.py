@@ -178,6 +178,8 @@ class ChannelBlock:
     done: bool = True
     blocks_done: int = 0
     blocks_total: int = 0
+    progress: float = 0.0
+    time_left: float = 0.0
     programmed_position: list[float] = field(default_factory=list)
     offsets: list[ChannelOffsets] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)

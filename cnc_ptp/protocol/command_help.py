@@ -71,11 +71,12 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
     },
     "channel": {
         "load": "reads and checks an NC program",
-        "start": "starts the loaded program, or resumes it after M00, M01 and single block",
+        "start": "starts the program at its beginning, a line or block; resumes it after M00, M01, single block",
         "feed_hold": "stops the path on its ramp, and resumes it",
         "set_override": "override of the path",
-        "single_block": "stops after each NC block",
+        "single_block": "stops after each NC block, or after each motion",
         "optional_stop": "whether M01 stops",
+        "block_skip": "whether blocks with `/` are left out, from the next start on",
         "reset": "aborts the program; path and spindles stop on their ramps",
         "mdi": "executes NC text (manual data input)",
         "acknowledge": "acknowledges a handshake request",
@@ -144,6 +145,11 @@ ARGUMENT_TEXTS: Mapping[str, ArgumentText] = {
     "factor_den": ArgumentText("", "ratio: denominator", "1"),
     "program": ArgumentText("", "NC program; file relative to the scenario"),
     "text": ArgumentText("", "NC text"),
+    "line": ArgumentText("", "begins at this line", "the beginning"),
+    "block_number": ArgumentText("", "begins at the block with this N number", "the beginning"),
+    "in_program": ArgumentText("", "of the line or block: one that is called", "the loaded one"),
+    "pass_number": ArgumentText("", "of several passes of the line", "the first one"),
+    "level": ArgumentText("", "skip level 1 … 10 (`/` is `/1`)", "1"),
     "id": ArgumentText("", "number of the request"),
 }
 """By name; those that differ for single commands follow below."""
@@ -170,6 +176,7 @@ SPECIAL_TEXTS: Mapping[tuple[str, str, str], ArgumentText] = {
     ("spindle", "orient", "speed_rpm"): ArgumentText("rpm", "speed of the positioning", "P-AXIS-00209"),
     ("spindle", "orient", "direction"): ArgumentText("", "of rotation", "the rules of M19"),
     ("spindle", "couple", "master"): ArgumentText("", "name of the master spindle"),
+    ("channel", "single_block", "mode"): ArgumentText("", "behind what the program stops", "`block`"),
     ("channel", "load", "text"): ArgumentText("", "the program itself", "`program` is read"),
 }
 """Kind of unit, command, argument."""

@@ -39,6 +39,7 @@ SWITCH = Argument("switch")
 TEXT = Argument("text")
 OPTIONAL_TEXT = Argument("text", required=False)
 ROWS = Argument("rows")
+OPTIONAL_COUNT = Argument("integer", required=False, positive=True)
 OPTIONAL_POSITIVE = Argument("number", required=False, positive=True)
 LENIENT_NUMBER = Argument("number", required=False, lenient=True)
 DYNAMICS: dict[str, Argument] = dict.fromkeys(("velocity", "acceleration", "deceleration", "jerk"), OPTIONAL_POSITIVE)
@@ -158,13 +159,19 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
             "files": Argument("files", required=False),
             "dialect": DIALECT,
         },
-        "start": {},
+        "start": {
+            "line": OPTIONAL_COUNT,
+            "block_number": OPTIONAL_COUNT,
+            "in_program": OPTIONAL_TEXT,
+            "pass_number": OPTIONAL_COUNT,
+        },
         "feed_hold": {"enabled": SWITCH},
         "set_override": {"percent": NUMBER},
-        "single_block": {"enabled": SWITCH},
+        "single_block": {"enabled": SWITCH, "mode": Argument("text", required=False, choices=("block", "motion"))},
         "optional_stop": {"enabled": SWITCH},
+        "block_skip": {"enabled": SWITCH, "level": OPTIONAL_COUNT},
         "reset": {},
-        "mdi": {"text": TEXT},
+        "mdi": {"text": TEXT, "files": Argument("files", required=False)},
         "acknowledge": {"id": INTEGER},
         "measuring_event": {},
         "set_zero_offset": {"index": INTEGER, "axis": TEXT, "value": NUMBER},

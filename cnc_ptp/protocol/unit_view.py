@@ -37,6 +37,10 @@ class UnitView:
     line: int = 0
     blocks_done: int = 0
     blocks_total: int = 0
+    progress: float = 0.0
+    """Of a program, 0 … 1."""
+    time_left: float = 0.0
+    """Of a program, s; below 0 if it is not known."""
 
 
 def view_of(name: str, kind: str, block: Any, *, rotary: bool = False) -> UnitView:
@@ -98,6 +102,8 @@ def _channel_view(block: Any, common: dict[str, Any], unit: str) -> UnitView:
         line=block.line[-1],
         blocks_done=block.blocks_done,
         blocks_total=block.blocks_total,
+        progress=block.progress,
+        time_left=block.time_left,
         stopped=block.done and block.blocks_done < block.blocks_total,
     )
 

@@ -320,7 +320,7 @@ def test_without_a_program() -> None:
     )
     assert bench.refused("channel", "warm_up") == (
         "P-ERR-22002 channel channel: unknown command 'warm_up'; nothing was changed. Known: acknowledge, "
-        "feed_hold, load, "
+        "block_skip, feed_hold, load, "
         "mdi, measuring_event, optional_stop, reset, set_clamp_position, set_override, "
         "set_zero_offset, single_block, start, teach_zero_offset"
     )

@@ -55,13 +55,20 @@ def test_a_long_computation_takes_its_cycles_and_no_more_at_once() -> None:
 
 
 def test_a_long_program_is_interpreted_again_while_it_runs() -> None:
-    """With the same cycles as one of which every block is kept."""
+    """With the same cycles as one of which every block is kept; only its time is estimated from those that are."""
     text = "\n".join([*(f"G00 X{n % 7} Y{n % 5}" for n in range(40)), "M30"])
     kept = MachineBench(text).run()
     channel = replace(MILL.channels["channel"], known_blocks=10)
     again = MachineBench(text, machine=replace(MILL, channels={"channel": channel})).run()
-    for unit in ("channel", "x", "y"):
+    for unit in ("x", "y"):
         assert again.blocks[unit] == kept.blocks[unit]
+    known = dict.fromkeys(("progress", "time_left"), 0.0)
+    assert [replace(b, **known) for b in again.blocks["channel"]] == [
+        replace(b, **known) for b in kept.blocks["channel"]
+    ]
+    first, exact = again.blocks["channel"][0].time_left, kept.blocks["channel"][0].time_left
+    assert first == pytest.approx(exact, rel=0.5) and first != exact
+    assert (again.last("channel").progress, again.last("channel").time_left) == (1.0, 0.0)
 
 
 def test_shared_variables_stay_for_the_next_program_and_others_do_not() -> None:

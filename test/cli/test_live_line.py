@@ -1,6 +1,7 @@
 """The live line of a run: what it shows at each width, of machines with and without a channel."""
 
 import io
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
@@ -30,6 +31,8 @@ CHANNEL = UnitView(
     line=17,
     blocks_done=12,
     blocks_total=40,
+    progress=0.4,
+    time_left=83.2,
 )
 MILL = [CHANNEL, axis("x", 12.3456, "SynchronizedMotion"), axis("y", -3.0), axis("z"), SPINDLE]
 
@@ -43,13 +46,21 @@ def test_it_never_is_longer_than_its_terminal(views, width):
 def test_what_is_left_out_first():
     assert line_text(MILL, 3725.0, 200) == (
         "block 12/40 line 17 F1500  X   12.346 SynchronizedMotion  Y   -3.000 Standstill  Z    0.000 Standstill  "
-        "S  3000.0 rpm ContinuousMotion  1:02:05"
+        "S  3000.0 rpm ContinuousMotion  1:02:05  0:01:24 left"
     )
     assert line_text(MILL, 3725.0, 110) == (
-        "block 12/40 line 17 F1500  X   12.346  Y   -3.000  Z    0.000  S  3000.0 rpm ContinuousMotion  1:02:05"
+        "block 12/40 line 17 F1500  X   12.346  Y   -3.000  Z    0.000  S  3000.0 rpm  1:02:05  0:01:24 left"
     )
     assert line_text(MILL, 3725.0, 80) == "block 12/40 line 17 F1500  X   12.346  Y   -3.000  Z    0.000  S  3000.0 rpm"
     assert line_text(MILL, 3725.0, 40) == "block 12/40  X   12.3  Y   -3.0  +2"
+
+
+def test_a_time_left_that_is_not_known_is_not_shown():
+    for left in (-1.0, 0.0):
+        assert "left" not in line_text([replace(CHANNEL, time_left=left)], 3725.0, 200)
+    two = [CHANNEL, replace(CHANNEL, name="second", time_left=100.0)]
+    assert line_text(two, 3725.0, 200).endswith("1:02:05  0:01:40 left")
+    assert "left" not in line_text([*two, replace(CHANNEL, time_left=-1.0)], 3725.0, 200)
 
 
 def test_a_machine_without_a_channel_shows_its_axes():
@@ -59,7 +70,7 @@ def test_a_machine_without_a_channel_shows_its_axes():
     assert line_text([], 3.0, 80) == "the nodes are starting  0:00:03"
 
 
-@pytest.mark.parametrize(("width", "bar"), [(45, False), (97, False), (80, True), (160, True)])
+@pytest.mark.parametrize(("width", "bar"), [(45, False), (80, False), (97, True), (160, True)])
 def test_the_bar_takes_what_is_left(width, bar):
     line = LiveLine()
     line.views = MILL[:3]

@@ -21,7 +21,7 @@ from sensor_msgs.msg import JointState
 
 from cnc_ptp import action, msg
 from cnc_ptp.nodes import convert, process
-from cnc_ptp.nodes.topics import BLOCKS, DIAGNOSTICS, EVENTS, JOINT_STATES, PLC_INPUT
+from cnc_ptp.nodes.topics import BLOCKS, DIAGNOSTICS, EVENTS, JOINT_STATES, LATEST, PLC_INPUT
 from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -334,6 +334,52 @@ def test_run_program_action(client, program):
         client.wait_last(axis, stands, "standstill")
         client.done(axis, "move_absolute", target=0.0)
         client.wait_last(axis, stands, "standstill")
+
+
+def test_the_program_topic_and_a_start_at_a_line(client, program, tmp_path):
+    """Late readers get the newest state; the action starts at a line and says how long it takes."""
+    (tmp_path / "own.nc").write_text("G91 Y1\nG90\nM29\n")
+    client.done("channel", "load", program=program)
+    states = []
+    client.create_subscription(msg.ProgramState, "/channel/program", states.append, LATEST)
+    client.spin_until(lambda: states and states[-1].program == program, "the loaded program")
+    assert (states[-1].available, states[-1].active) == (["job.nc", "own.nc"], False)
+    goal, feedback = client.action(action.RunProgram, "/channel/run_program", line=4)
+    status, result = client.result_of(goal)
+    assert (result.message, status) == ("", GoalStatus.STATUS_SUCCEEDED)
+    left = [message.feedback.time_left for message in feedback]
+    assert left == sorted(left, reverse=True) and 0.0 < left[0] < 3.0
+    active = [state for state in states if state.active]
+    assert {state.text for state in active} >= {"N30 G01 X0 Y5"} and 2 not in {state.line for state in active}
+    assert [state.percent for state in active] == sorted(state.percent for state in active)
+    client.spin_until(lambda: not states[-1].active, "the end")
+    assert (states[-1].percent, states[-1].time_left) == (100.0, 0.0)
+    events = [event.text for event in client.events if event.error_id == 22045]
+    assert events[-3:] == ["line 3: M8", "G00: X 0 to 60", "continues with line 4 'N30 G01 X0 Y5'"]
+    client.done("channel", "mdi", text="L own.nc")
+    client.wait_last("channel", lambda block: block.done and block.set_position[-10] == 6.0, "the called program")
+    assert (
+        '"files": {"own.nc": "G91 Y1' in next(r for r in reversed(client.records) if r.command == "mdi").arguments_json
+    )
+    client.done("channel", "block_skip", enabled=True, level=2)
+    client.done("channel", "single_block", enabled=True, mode="motion")
+    client.done("channel", "single_block", enabled=False)
+    client.refused(
+        "channel",
+        "block_skip",
+        22001,
+        "channel channel: block_skip refused: level = 11 is not within 1 ... 10; nothing was changed",
+        level=11,
+    )
+    client.refused(
+        "channel",
+        "start",
+        22040,
+        f"{program}: there is no block N25; there are N20 and N30 next to it; nothing was started",
+        block_number=25,
+    )
+    client.done("channel", "mdi", text="G00 X0 Y0")
+    client.wait_last("channel", lambda block: block.done, "the way back")
 
 
 def test_a_block_comes_soon_after_its_stamp(client):

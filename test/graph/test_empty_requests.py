@@ -65,7 +65,7 @@ MEANT = {
         "power", "stop", "home", "set_override", "suppress_override", "reset_limits", "stop_at_program_end", "reset",
         "set_feedforward",
     },
-    "channel": {"feed_hold", "set_override", "single_block", "optional_stop", "reset"},
+    "channel": {"feed_hold", "set_override", "single_block", "optional_stop", "block_skip", "reset"},
     "plc": {"auto_acknowledge", "set_life_sign", "stop_all"},
 }  # fmt: skip
 """Accepted: their names say all, or what is left out holds back or switches off."""

@@ -1,5 +1,6 @@
 """Graph, free run, composed and offline run give the same numbers to the bit; each recording can be verified."""
 
+import re
 import struct
 from pathlib import Path
 
@@ -162,6 +163,54 @@ def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(fold
     assert states_equal(folder / "g.mcap", folder / "h.mcap") == []
     states = verified(folder / "h.mcap").states
     assert states["/z/state"]["set_position"][-1] == pytest.approx(-90.0 + 1.5 + 75.2 - 0.02, abs=1e-12)
+
+
+CONTROLLED = """%P
+N10 M3 S1000 T3
+N20 G00 X10 Y10
+/2 N30 Z5
+N40 $FOR P1 = 1, 3, 1
+N50 G01 X[20+P1] F3000
+N60 L side.nc
+N70 $ENDFOR
+N80 G00 X0 Y0
+M30
+"""
+CONTROLLED_SCENARIO = """
+- {at: 0.0, to: channel, do: single_block, enabled: on, mode: motion}
+- {at: 1.0, to: channel, do: single_block, enabled: off}
+- {at: 1.0, to: channel, do: start}
+- {at: 4.0, to: channel, do: block_skip, enabled: on, level: 2}
+- {at: 4.0, to: channel, do: mdi, text: "G00 X1\\n/2 Z9\\nL side.nc"}
+- {at: 5.0, to: channel, do: start, line: 2, in_program: side.nc, pass_number: 3}
+- {at: 6.0, to: channel, do: start, line: 77}
+"""
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_program_control_in_the_graph_equals_the_offline_run(folder, options):
+    """A start at a block, stops behind motions, manual blocks with a file, skip levels, a second start in a file."""
+    (folder / "side.nc").write_text("G91 Y1\nG90 M8\nM29\n")
+    (folder / "controlled.nc").write_text(CONTROLLED)
+    (folder / "controlled.yaml").write_text(CONTROLLED_SCENARIO)
+    job = (MILL, "--program", folder / "controlled.nc", "--scenario", folder / "controlled.yaml")
+    start = ("--start-block", 50, "--start-pass", 2)
+    told = run("simulate", *job, *start, "--record", folder / "i.mcap").stdout
+    output = run("run", *job, *start, *options, "--record", folder / "j.mcap").stdout
+    assert "lost 0, computed twice 0" in output
+    for text in (told, output):
+        steps = re.findall(r"^message: (.*)$", text, re.MULTILINE)
+        assert steps[:4] == [
+            "line 2: T3 S[M3 REV1000]",
+            "line 2 of side.nc: M8",
+            "G00: Z 0 to 5",
+            "G00: X 0 to 21, Y 0 to 11",
+        ]
+        assert "message: continues with line 6 'N50 G01 X[20+P1] F3000'" in text
+        assert "continues with line 2 'G90 M8'" in text
+        assert text.count("refused: ") == 1 and "there is no line 77: the last one is 10; nothing was started" in text
+    assert states_equal(folder / "i.mcap", folder / "j.mcap") == []
+    verified(folder / "j.mcap")
 
 
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)

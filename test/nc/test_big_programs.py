@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from nc_support import HERE, machine, tools, vocabulary_of
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.flow import sections
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program, parse_text

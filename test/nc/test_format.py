@@ -7,9 +7,9 @@ from click.testing import CliRunner
 from nc_support import HERE, machine, tools, vocabulary_of
 
 from cnc_ptp.cli import main
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.commands.language.format import format_text
 from cnc_ptp.machine.program_files import called_programs
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 

@@ -3,9 +3,9 @@
 import pytest
 from nc_support import HERE, machine, tools, vocabulary_of
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.faults import Fault, ProgramError

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import HERE, lines, run
 
-from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.blocks import plain_block
 from cnc_ptp.nc.canonical import Dwell, LinearMove, Source
+from cnc_ptp.nc.contour import Contour, Smoothing, Transition
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.interpreter import check, interpret

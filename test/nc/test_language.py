@@ -3,9 +3,9 @@
 import pytest
 from nc_support import lines, run
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import AuxiliaryFunction, CanonicalBlock, LinearMove, Source
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret

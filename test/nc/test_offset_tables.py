@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.canonical import CanonicalBlock, OffsetReport
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.parameters import OffsetTables
 
 TABLES = OffsetTables(

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.blocks import careful_line, plain_block
 from cnc_ptp.nc.canonical import LinearMove, Source
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.interpreter import check, interpret

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 
 import numpy as np
@@ -18,14 +19,14 @@ from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.parts import graded
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import PathProfile, circular, duration_between, pieces_of
-from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, plan_velocity
+from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
 
 AXIS = AxisLimits(300.0, 1000.0, 1000.0, 20_000.0)
 
 
 def straight_cells(length: float, count: int) -> list[PathCell]:
     ends = [length * index / count for index in range(count + 1)]
-    return [PathCell(a, b, 1e4, 1e4, 1000.0, 1000.0, 20_000.0) for a, b in zip(ends, ends[1:], strict=False)]
+    return [PathCell(a, b, 1e4, 1e4, 1000.0, 1000.0, 20_000.0) for a, b in itertools.pairwise(ends)]
 
 
 def planned(cells: list[PathCell]) -> PathProfile:
@@ -49,7 +50,7 @@ def test_profile_in_time_is_that_of_its_plan() -> None:
     profile = planned(straight_cells(12.0, 57))
     step = 1e-6
     for t in np.linspace(0.001, profile.duration - 0.001, 400):
-        (u0, v0, a0, _), (u, v, a, j), (u1, v1, a1, _) = (profile.state_at(t + d) for d in (-step, 0.0, step))
+        (u0, v0, a0, _), (_u, v, a, j), (u1, v1, a1, _) = (profile.state_at(t + d) for d in (-step, 0.0, step))
         assert (u1 - u0) / (2.0 * step) == pytest.approx(v, abs=1e-6)
         assert (v1 - v0) / (2.0 * step) == pytest.approx(a, abs=0.02)
         assert (a1 - a0) / (2.0 * step) == pytest.approx(j, abs=25.0) or abs(j) < 20_000.0

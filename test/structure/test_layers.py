@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "cnc_ptp"
 GENERATED = ("msg", "srv", "action")
 FLOORS = (
     "compiled", "one_thread", "errors", "yaml_text", "motion", "parameters", "protocol", "control", "spindle", "nc", "path", "axis", "channel",
-    "plc", "machine", "wire", "recording", "plots", "commissioning", "interrupt", "ros_arguments", "number_range", "nodes", "commands",
+    "plc", "machine", "wire", "recording", "plots", "commissioning", "interrupt", "ros_arguments", "number_range", "start_options", "nodes", "commands",
     "cli", "__main__",
 )  # fmt: skip
 """From the ground up; docs/architecture.md says what each of them is."""

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.nc.canonical import CanonicalBlock
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Pair, Spindle, SpindleTable, Vocabulary

@@ -14,6 +14,7 @@ from cnc_ptp.commands.client.unit_table import line, unit_table, wide_console
 from cnc_ptp.commands.console import RUN_FAILED
 from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.nodes.client.latest_blocks import GONE_TEXT, LatestBlocks
+from cnc_ptp.nodes.client.latest_programs import LatestPrograms
 from cnc_ptp.nodes.client.machine_client import PATIENCE, MachineClient, connected
 
 
@@ -22,12 +23,15 @@ def status() -> int:
     with connected() as client:
         units = shown_units(client, ())
         blocks = client.look_at(units)
-        client.spin_until(lambda: len(blocks.views()) == len(units), PATIENCE)
+        programs = LatestPrograms(client, [unit for unit in units if client.kinds[unit] == "channel"])
+        client.spin_until(lambda: len(blocks.views()) == len(units) and programs.complete, PATIENCE)
         views = blocks.views()
         silent = [unit for unit in units if unit not in {view.name for view in views}]
         console = wide_console()
         console.print(headline(client, blocks), markup=False)
         console.print(unit_table(views, silent))
+        for text in programs.lines():
+            console.print(text, markup=False)
     return RUN_FAILED if silent or any(view.error_id for view in views) else 0
 
 

@@ -40,6 +40,8 @@ def cells(view: UnitView) -> list[str]:
     place = value_text(view.position, 3, view.unit)
     if view.kind == "channel":
         place = f"line {view.line}, block {view.blocks_done}/{view.blocks_total}"
+        place += f", {100.0 * view.progress:.0f} %" if view.busy else ""
+        place += f", {view.time_left:.0f} s left" if view.busy and view.time_left >= 0.0 else ""
     return [
         view.name,
         view.state,

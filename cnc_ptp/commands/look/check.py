@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import re
-import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
 
 from rich.console import Console
 
 from cnc_ptp.channel.program_check import ProgramCheck
+from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.commands.console import print_error
-from cnc_ptp.commands.language.canonical_text import format_block
 from cnc_ptp.errors import WRONG_INPUT, CncError
 from cnc_ptp.machine.program_files import read_program
 from cnc_ptp.machine.run_entries import program_folders
-from cnc_ptp.nc.canonical import BUSY
+from cnc_ptp.nc.block_search import StartPoint
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
+from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, interpret
 from cnc_ptp.nc.interpreter import check as check_text
-from cnc_ptp.nc.iso.vocabulary import ISO
-from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.parser import parse_all, parse_program
+from cnc_ptp.nc.program import ModalState
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.notes import Note
@@ -30,11 +31,18 @@ AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
 
 
-def check(program: str, machine: str | None, canonical: bool = False, dialect: str | None = None) -> int:
+def check(
+    program: str,
+    machine: str | None,
+    canonical: bool = False,
+    dialect: str | None = None,
+    begin: StartPoint | None = None,
+) -> int:
     """Prints all syntax errors and the first modal one, and the warnings of the machine file.
 
-    Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too. `dialect`:
-    vocabulary of the program; None: that of the machine file, or twincat.
+    Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too, with `begin`
+    those from the start point on. `dialect`: vocabulary of the program; None: that of the machine file, or twincat.
+    `begin`: prints what is done when the program starts there. Raises the errors of ProgramStart.
     """
     parameters = None if machine is None else read_machine(machine)
     text, files = read_program(program, () if parameters is None else program_folders(parameters))
@@ -47,22 +55,52 @@ def check(program: str, machine: str | None, canonical: bool = False, dialect: s
         checked = ProgramCheck.of_first_channel(parameters, program)
         vocabulary = checked.vocabulary if dialect is None else vocabulary
         errors = checked.errors(text, program, files, vocabulary)
-    if canonical:
-        print_stream(parse_all(text, program, files=files, vocabulary=vocabulary)[0], parameters)
+    if begin is not None and not errors:
+        parsed = parse_program(text, program, files=files, vocabulary=vocabulary)
+        print_start(ProgramStart(begin, parsed), parameters, canonical=canonical)
+    elif canonical:
+        print_stream(Stream(parse_all(text, program, files=files, vocabulary=vocabulary)[0], parameters).blocks())
     for error in errors:
         print_error(error)
-    if not errors and not canonical:
+    if not errors and not canonical and begin is None:
         print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
     return WRONG_INPUT if errors else 0
 
 
-def print_stream(program: Program, machine: MachineParameters | None) -> None:
+class Stream:
+    """A program as it would run from the start positions of a machine, or from 0 without one."""
+
+    def __init__(self, program: Program, machine: MachineParameters | None) -> None:
+        self._program = program
+        self._check = None if machine is None else ProgramCheck.of_first_channel(machine, program.file)
+        self.axes = AXES_WITHOUT_MACHINE if self._check is None else self._check.axis_names
+        self.start = (0.0,) * len(self.axes) if self._check is None else self._check.start
+
+    def blocks(self, begin: ProgramStart | None = None) -> Iterator[CanonicalBlock]:
+        """Its blocks, also BUSY."""
+        if self._check is not None:
+            return self._check.running(self._program, self.start, self._check.state({}, {}, {}), (), begin)
+        state, search = ModalState(), None if begin is None else begin.search
+        spindles = SPINDLES_WITHOUT_MACHINE
+        stream = interpret(self._program, self.start, self.axes, spindles, state=state, runs=True, search=search)
+        if begin is None:
+            return stream
+        return begin.blocks(stream, self.start, self.axes, state, lambda target, source: None)
+
+
+def print_start(begin: ProgramStart, machine: MachineParameters | None, *, canonical: bool) -> None:
+    """What is done at the start, step by step; `canonical`: then the blocks."""
+    stream = Stream(begin.program, machine)
+    blocks = stream.blocks(begin)
+    first = next((block for block in blocks if block is not BUSY), None)
+    for number, step in enumerate(begin.lines(stream.axes, stream.start), 1):
+        print(f"{number}. {step}")
+    if canonical and first is not None:
+        print_stream(chain([first], blocks))
+
+
+def print_stream(blocks: Iterator[CanonicalBlock]) -> None:
     """The canonical blocks up to the first error, or to a line that reads what only the run knows."""
-    if machine is None:
-        blocks = interpret(program, (0.0,) * 3, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, runs=True)
-    else:
-        checked = ProgramCheck.of_first_channel(machine, program.file)
-        blocks = checked.running(program, checked.start, checked.state({}, {}, {}))
     with suppress(CncError):
         for block in blocks:
             if block is BUSY:

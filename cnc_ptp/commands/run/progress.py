@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterable, Sequence
 from types import TracebackType
@@ -88,13 +89,13 @@ class LiveLine:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         text = line_text(self.views, time.monotonic() - self._started, options.max_width)
         room = min(LARGEST_BAR, options.max_width - len(text) - 1)
-        total = sum(view.blocks_total for view in self.views)
-        if not total or room < SMALLEST_BAR:
+        programs = [view for view in self.views if view.blocks_total]
+        if not programs or room < SMALLEST_BAR:
             yield Text(text, no_wrap=True, overflow="crop")
             return
         row = Table.grid(padding=(0, 1, 0, 0))
-        done = sum(view.blocks_done for view in self.views)
-        row.add_row(ProgressBar(total=total, completed=done, width=room), Text(text, no_wrap=True))
+        done = sum(view.progress for view in programs)
+        row.add_row(ProgressBar(total=len(programs), completed=done, width=room), Text(text, no_wrap=True))
         yield row
 
 
@@ -106,15 +107,23 @@ def line_text(views: Sequence[UnitView], seconds: float, width: int) -> str:
     movers = [view for view in views if view.kind != "channel"]
     short = [f"{view.name if channels[1:] else 'block'} {view.blocks_done}/{view.blocks_total}" for view in channels]
     long = [f"{text} line {view.line} F{view.speed or 0.0:.0f}" for text, view in zip(short, channels, strict=True)]
+    times: tuple[list[str], ...] = ([clock_text(seconds), *left_text(channels)], [clock_text(seconds)], [])
     texts = (
         "  ".join([*programs, *(mover_text(view, decimals, states) for view in movers), *time])
         for programs in (long, short)
-        for time in ([clock_text(seconds)], [])
+        for time in times
         for decimals, states in ((3, "all"), (3, "moving"), (3, "none"), (2, "none"))
     )
     fitting = next((text for text in texts if len(text) <= width), None)
     shortest = [*short, *(mover_text(view, 1, "none") for view in movers)]
     return fitting if fitting is not None else as_many_as_fit(shortest, width)
+
+
+def left_text(channels: Sequence[UnitView]) -> list[str]:
+    """The time that the longest program still takes, if that is known."""
+    left = max((view.time_left for view in channels if view.busy), default=0.0)
+    known = all(view.time_left >= 0.0 for view in channels)
+    return [f"{clock_text(math.ceil(left))} left"] if known and left > 0.0 else []
 
 
 def as_many_as_fit(texts: Sequence[str], width: int) -> str:

@@ -10,6 +10,7 @@ from cnc_ptp.commands.console import RUN_FAILED, print_faults, print_note_of_idl
 from cnc_ptp.commands.output_file import check_recording
 from cnc_ptp.commands.run.progress import RunProgress
 from cnc_ptp.machine.run_entries import read_entries
+from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nodes.composed import run_composed
 from cnc_ptp.nodes.monitor import RunMonitor
 from cnc_ptp.nodes.supervisor import RunOptions, Supervisor
@@ -29,6 +30,7 @@ def run(
     strict: bool = False,
     state_rate: float | None = None,
     dialect: str | None = None,
+    begin: StartPoint | None = None,
 ) -> int:
     """Runs the graph; prints a summary. Status 1 when a unit ended in error or a node died.
 
@@ -37,8 +39,8 @@ def run(
     """
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
-    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate, dialect)
+    read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
+    options = RunOptions(machine, program, scenario, duration, record, free_run, stay, state_rate, dialect, begin)
     with RunProgress() as progress:
 
         def show(monitor: RunMonitor) -> None:

@@ -20,6 +20,7 @@ from cnc_ptp.interrupt import EndRequest
 from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.run_entries import read_entries
 from cnc_ptp.machine.wiring import build_units
+from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.parameters import MachineParameters, machine_text, read_machine
 from cnc_ptp.plc.plc_unit import error_of
 from cnc_ptp.protocol.blocks import (
@@ -74,11 +75,12 @@ def simulate(
     record: str | None,
     strict: bool = False,
     dialect: str | None = None,
+    begin: StartPoint | None = None,
 ) -> int:
     """Runs offline; prints a summary. Status 1 when a unit ended in error, with `strict` also for a refused command."""
     check_recording(record, machine_file=machine, NC_program=program, scenario=scenario)
     parameters = read_machine(machine)
-    job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect)
+    job = read_entries(parameters, program=program, scenario=scenario, dialect=dialect, begin=begin)
     offline = OfflineMachine(parameters, build_units(parameters, scenario=job, end_when_idle=duration is None))
     cycles = None if duration is None else round(duration * 1e6 / parameters.cycle_time_us)
     result = Result()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
+from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
@@ -54,6 +55,8 @@ PAUSE: Final = NcBlock(Source("", 0, 0, ""), (), {})
 """In place of a block: the path must stand before the next line, which reads what only the run knows."""
 COMPUTES: Final = NcBlock(Source("", 0, 0, ""), (), {})
 """In place of a block: many lines had none."""
+FOUND: Final = NcBlock(Source("", 0, 0, ""), (), {})
+"""In place of a block: the place that was looked for is reached."""
 LINES_AT_ONCE: Final = 5000
 """Lines that are executed before the caller has its turn again."""
 
@@ -61,11 +64,22 @@ LINES_AT_ONCE: Final = 5000
 class Execution(Flow):
     """The line that is next and how it came there."""
 
-    def __init__(self, program: Program, values: Values, *, limits: Limits, block_skip: int = 0) -> None:
+    def __init__(
+        self,
+        program: Program,
+        values: Values,
+        *,
+        limits: Limits,
+        block_skip: int = 0,
+        search: BlockSearch | None = None,
+    ) -> None:
         super().__init__(values)
+        self._search = search
         self.program, self.limits, self.block_skip = program, limits, block_skip
         self.number, self.offset = program.main.line, program.main.offset
         self.frames: list[Frame] = []
+        self.calls: tuple[str, ...] = ()
+        """From where the active subroutine was called, the innermost first."""
         self.ended = False
         self.moved = False
         """The last block had a motion; who resolves it says so."""
@@ -87,7 +101,7 @@ class Execution(Flow):
     # the next block
 
     def next_block(self) -> NcBlock | None:
-        """The next block with words, PAUSE, COMPUTES, or None at the end of the program. Raises ProgramError."""
+        """The next block with words, PAUSE, COMPUTES, FOUND, or None at the end of the program. Raises ProgramError."""
         if self._line is not None:
             self._after_block(self._line)
         lines = 0
@@ -112,6 +126,9 @@ class Execution(Flow):
             if line.header:
                 self._end_of_section()
                 continue
+            if self._search is not None and self._search.meets(line.source):
+                self._search = None
+                return FOUND
             if line.skip & self.block_skip:
                 self.number, self.offset = line.next_number, line.next_offset
                 continue
@@ -217,6 +234,7 @@ class Execution(Flow):
         self.program, place = self.program.called(call, line.source)
         self.number, self.offset = place
         self.frames.append(frame)
+        self.calls = (f"{line.source.file} line {line.source.line}", *self.calls)
         values.inherited = values.cycle
         values.local, values.cycle, values.arguments = {}, dict(values.cycle), arguments
         values.level = len(self.frames) + 1
@@ -232,6 +250,7 @@ class Execution(Flow):
 
     def _return(self) -> None:
         frame = self.frames.pop()
+        self.calls = self.calls[1:]
         if len(self.frames) < self._modal_depth:
             self.end_modal_call()
         self.program, self.number, self.offset = frame.program, frame.number, frame.offset
@@ -242,13 +261,8 @@ class Execution(Flow):
             self.values.state.restore(frame.modal)
             refresh(self.values.channel, self.values.state)
 
-    @property
-    def calls(self) -> list[str]:
-        """From where the active subroutine was called, the innermost first."""
-        return [f"{frame.source.file} line {frame.source.line}" for frame in reversed(self.frames)]
-
 
 def with_calls(error: ProgramError, execution: Execution) -> ProgramError:
     """The error with its call stack."""
-    error.calls = execution.calls
+    error.calls = list(execution.calls)
     return error

@@ -48,10 +48,12 @@ class Program:
     structure_of    by number of the line that opens, divides, closes or leaves a structure
     targets         where the $GOTO of a line leads to, or why it leads nowhere
     library         the other files that it may call, by upper-case name
+    lines           number of its last line
     """
 
     def __init__(self, file: str, text: ProgramText, read_line: ReadLine, vocabulary: Vocabulary) -> None:
         self.file, self.text, self.vocabulary = file, text, vocabulary
+        self.lines = 0
         self.main = Section("main program", "", Source(file, 1, 0, ""), 1, 0)
         self.subroutines: dict[str, Section] = {}
         self.structure_of: dict[int, Structure] = {}

@@ -57,4 +57,4 @@ def _is_left_out(argument: Argument, value: Any) -> bool:
         return False
     if isinstance(value, str):
         return value == ""
-    return isinstance(value, float) and (math.isnan(value) or (argument.positive and value == 0.0))
+    return (argument.positive and value == 0) or (isinstance(value, float) and math.isnan(value))

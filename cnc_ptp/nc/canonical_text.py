@@ -29,7 +29,7 @@ from cnc_ptp.nc.contour import DEV, Transition
 def format_block(block: CanonicalBlock) -> str:
     """One line for golden streams: line, block number, functions, motion, stop; 6 decimals."""
     parts = [f"{block.source.line}:N{block.source.block_number}"]
-    parts += [_function(function) for function in block.functions]
+    parts += [format_function(function) for function in block.functions]
     if block.motion is not None:
         parts.append(_motion(block.motion))
     if block.stop:
@@ -39,7 +39,8 @@ def format_block(block: CanonicalBlock) -> str:
     return " | ".join(parts)
 
 
-def _function(function: Function) -> str:
+def format_function(function: Function) -> str:
+    """A function as in `format_block`."""
     match function:
         case AuxiliaryFunction(letter, code, ""):
             return f"{letter}{code}" + (f"={number(function.value)}" if function.value else "")
