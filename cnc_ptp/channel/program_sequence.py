@@ -387,7 +387,7 @@ class ProgramSequence:
             self.stream.done += 1
             block = self._following.take()
             assert block is not None
-            self._block, self.source = block, block.source
+            self._block, self.source, self.calls = block, block.source, block.calls
             if self.phase is Phase.MOTION:
                 self._tell(block, cycle)
                 self._queue(self._functions.of_block(block, Moment.BEFORE))
