@@ -188,7 +188,7 @@ class PathMotion:
 
     def _link(self, element: Line | Arc, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""
-        following = source.peek()
+        following = None if motion.transition.stops else source.peek()
         if following is None:
             return False
         first = self._linked_motion(element, motion, 0)
