@@ -14,7 +14,7 @@ def block_functions(channel: Channel, state: ModalState, block: NcBlock) -> tupl
     letters = channel.vocabulary.function_words
     used = [letter for letter in "TDH" if letter in block.words and letter in letters]
     functions: list[Function] = [number_function(block, letter, MAX_TOOL) for letter in used if letter != "H"]
-    if channel.tools.with_t and "T" in used and "D" not in used:
+    if channel.t_selects and "T" in used and "D" not in used:
         functions.append(AuxiliaryFunction("D", state.tool.d))
     functions += spindle_functions(channel, state, block)
     gear_change = channel.table.gear_change

@@ -21,7 +21,7 @@ from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.controls import bracketed_controls
 from cnc_ptp.nc.coordinates.codes import initial_coordinates, select_offset
 from cnc_ptp.nc.coordinates.limits import check_limits
-from cnc_ptp.nc.coordinates.placement import place, refresh
+from cnc_ptp.nc.coordinates.placement import leave_frame, place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.values import Values
@@ -177,6 +177,9 @@ def _resolve(
             moves = moves and not code.takes_axes
     before = state.programmed
     selected = block.functions and (path.spindle or not path.own_words) and tool_words(channel, state, block)
+    if state.machine_words:
+        state.machine_words, state.following = False, iter(())
+        leave_frame(state)
     motion: Motion | None = None
     if selected and channel.tools.at_once and not (moves and path.words):
         motion, moves = _with_new_tool(channel, state, block, path if moves else None, before), False
@@ -242,7 +245,7 @@ def _followed(
         yield _reported(channel, state, first._replace(stop=""))
     for step in steps:
         if step.machine:
-            state.frame, state.programmed = None, state.position
+            leave_frame(state)
         motion = None if step.motion is None else _moved(channel, state, block, step.motion, check_target)
         if motion is not None or step.functions:
             yield _reported(channel, state, CanonicalBlock(block.source, step.functions, motion, "", calls=calls))

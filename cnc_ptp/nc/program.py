@@ -284,6 +284,11 @@ class Channel(NamedTuple):
         x, y, z = (self.axis_index.get(name, -1) for name in "XYZ")
         return x, y, z
 
+    @property
+    def t_selects(self) -> bool:
+        """T selects compensation data too (P-CHAN-00014); not in the vocabulary iso, which has no D."""
+        return self.tools.with_t and "D" in self.vocabulary.function_words
+
 
 @dataclass(slots=True)
 class SpindleModes:
@@ -327,8 +332,8 @@ class ModalState:
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
     `coordinates` amount to. `reported`: the canonical stream has them. `transition`: between blocks; `once`: at the
-    end of the active one instead; `contour`: what G261 means. `following`: further motions of a block
-    while it is resolved.
+    end of the active one instead; `contour`: what G261 means. While a block is resolved: `following`, its further
+    motions; `machine_words`, its axis words are machine positions (G53 of the vocabulary iso).
     """
 
     position: tuple[float, ...] = ()
@@ -352,6 +357,7 @@ class ModalState:
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR
     following: Iterator[Step] | None = None
+    machine_words: bool = False
     tool: ToolState = field(default_factory=ToolState)
 
     def copy(self) -> "ModalState":

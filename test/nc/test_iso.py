@@ -7,7 +7,7 @@ from math import ceil
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from nc_support import HERE, lines, run
+from nc_support import HERE, TOOLS, lines, run
 
 from cnc_ptp.nc.blocks import plain_block
 from cnc_ptp.nc.canonical import Dwell, LinearMove, Source
@@ -115,6 +115,37 @@ def test_the_reference_point_is_exact_whatever_the_offsets():
     blocks = run("G10 L2 P1 X0.1\nG92 X77.7\nG0 X3\nG53 G0 X12.3\nX5", dialect="iso")
     assert blocks[1].motion == LinearMove((12.3, 0.0, 0.0), True, 0.0)
     assert blocks[2].motion.target[0] == pytest.approx(5.0 - 77.7, abs=1e-9)
+
+
+WITH_G53 = (
+    "G49|G43 H0|G43 H1|G43 H2|G54|G55|G56|G57|G58|G59|G59.1|G54.1 P1|G54.1 P90|G17|G18|G19|G21|G61|G64 P1|G90|"
+    "T2|T2 M6|M8|G43 H2 G59 G19 T3"
+)
+
+
+@pytest.mark.parametrize("path", ["G0", "G1 F600"])
+@pytest.mark.parametrize("codes", WITH_G53.split("|"))
+def test_positions_of_g53_are_those_of_the_machine_with_any_code(codes, path):
+    """Whatever is in the block, in any order; behind it the codes count as without G53."""
+    setup = "".join(f"G10 L2 P{index} X{index} Y{10 * index} Z{100 * index}\n" for index in range(1, 8))
+    setup += "G92 X0.1 Z0.7\nG43 H1\nG0 X1 Y1 Z1\n"
+    options = {"dialect": "iso", "tools": TOOLS["with_t"]}
+    plain = run(f"{setup}{codes}\n{path} X3 Y4 Z5", **options)[-1].motion
+    for block in (f"G53 {codes} {path}", f"{codes} G53 {path}", f"{path} {codes} G53", f"{path} G53 {codes}"):
+        moves = [each.motion for each in run(f"{setup}{block} X2 Y-3 Z-4\nX3 Y4 Z5", **options) if each.motion]
+        assert moves[-2].target == (2.0, -3.0, -4.0)
+        assert moves[-1].target == pytest.approx(plain.target, abs=1e-9)
+
+
+def test_g53_with_one_axis_leaves_the_others_where_they_are():
+    moves = lines("G10 L2 P2 X7 Y7 Z7\nG0 X1 Y2 Z3\nG53 G55 Z-6\nG53 G54", dialect="iso")
+    assert moves[:2] == ["rapid (1, 2, 3)", "rapid (1, 2, -6)"]
+
+
+def test_t_never_selects_a_tool_length():
+    blocks = run("G43 H1 G0 Z0\nT2 Z1\nT2 M6\nZ2", dialect="iso", tools=TOOLS["with_t"])
+    assert [block.motion.target[2] for block in blocks if block.motion] == [74.75, 75.75, 76.75]
+    assert [function.letter for block in blocks for function in block.functions] == ["T", "T", "M"]
 
 
 def test_a_zero_offset_of_the_machine_is_on_at_the_start():

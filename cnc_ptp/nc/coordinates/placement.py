@@ -41,6 +41,11 @@ def refresh(channel: Channel, state: ModalState) -> None:
     state.reported = False
 
 
+def leave_frame(state: ModalState) -> None:
+    """Programmed positions are machine positions until the next `refresh`."""
+    state.frame, state.programmed = None, state.position
+
+
 def plane_axes(channel: Channel, state: ModalState, source: Source, word: str) -> tuple[int, int]:
     """Places of the two axes of the active plane. Raises ProgramError 21603 if one is missing."""
     names = PLANE_AXES[state.plane]

@@ -48,6 +48,7 @@ class Hole(NamedTuple):
 def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """Notes the numbers of the cycle; with an axis word or R it drills. The motions are in `state.following`."""
     target = motions.target_of(channel, state, block, code)
+    words = _own_words(block, code)
     name = DRILL_AXES[state.plane]
     axis = channel.axis_index.get(name)
     if axis is None:
@@ -58,8 +59,8 @@ def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> N
         numbers = Drilling(numbers.to_r, code.number, state.plane, state.programmed[axis])
     elif numbers.running != code.number:
         numbers = numbers._replace(running=code.number, q=None, p=None)
-    state.drilling = numbers = _with_words(state, block, name, numbers)
-    if target is None and "R" not in block.words:
+    state.drilling = numbers = _with_words(state, words, name, numbers)
+    if target is None and "R" not in words:
         return
     hole = _hole(state, block, code, numbers, name, axis)
     target = target or list(state.programmed)
@@ -68,12 +69,18 @@ def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> N
     work = CYCLES[code.number]
     if code.number == 86:
         _require_turning(channel, state, block, code)
-    state.following = _holes(channel, state, hole, target, step, _repeats(block, code, hole), work)
+    state.following = _holes(channel, state, hole, target, step, _repeats(block, code, words, hole), work)
 
 
-def _with_words(state: ModalState, block: NcBlock, name: str, numbers: Drilling) -> Drilling:
+def _own_words(block: NcBlock, code: GCode) -> dict[str, float]:
+    """The words of a block without those of its other codes: P of G54.1, P and Q of G64."""
+    others = [other for other in block.codes if other is not code and other.words]
+    return {word: value for word, value in block.words.items() if all(word not in other.words for other in others)}
+
+
+def _with_words(state: ModalState, words: dict[str, float], name: str, numbers: Drilling) -> Drilling:
     """The sticky numbers with those of the block."""
-    words, unit = block.words, state.coordinates.unit
+    unit = state.coordinates.unit
     if "R" in words:
         numbers = numbers._replace(r=words["R"] * unit + (0.0 if state.absolute else numbers.initial))
     if name in words and (state.absolute or numbers.r is not None):
@@ -106,9 +113,9 @@ def _hole(state: ModalState, block: NcBlock, code: GCode, numbers: Drilling, nam
     return Hole(axis, r, bottom, r if numbers.to_r else max(r, numbers.initial), q, p, state.feed)
 
 
-def _repeats(block: NcBlock, code: GCode, hole: Hole) -> int:
+def _repeats(block: NcBlock, code: GCode, words: dict[str, float], hole: Hole) -> int:
     """L (LinuxCNC) or K (Fanuc): how many holes. Raises ProgramError, also for too many motions."""
-    given = [word for word in "LK" if word in block.words]
+    given = [word for word in "LK" if word in words]
     if len(given) > 1:
         raise faults.REPEATS_TWICE.at(block.source, block.source.column("K"))
     repeats = integer(block, code, given[0], 1, MOST_REPEATS, "") if given else 1

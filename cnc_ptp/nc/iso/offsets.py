@@ -91,14 +91,13 @@ def _shift(channel: Channel, state: ModalState, added: tuple[float, ...]) -> Non
 
 
 def machine_coordinates(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G53: the axis words of its block are machine positions."""
+    """G53: the axis words of its block are machine positions, whatever other codes and tools are in it."""
     column = block.source.column(code.name)
     if state.path not in (0, 1):
         raise faults.MACHINE_PATH.at(block.source, column)
     if not state.absolute:
         raise faults.MACHINE_INCREMENTAL.at(block.source, column)
-    state.frame, state.programmed = None, state.position
-    state.following = iter(())
+    state.machine_words = True
 
 
 def path_tolerance(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:

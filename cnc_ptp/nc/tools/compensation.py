@@ -1,7 +1,8 @@
 """T and D words: which compensation data act, and the offsets that they are in the axes.
 
 The length acts in the main axis that is normal to the plane, offsets and wear in their axes. D0 is no tool. T goes to
-the PLC alone, unless P-CHAN-00014 says that it selects the data of its number.
+the PLC alone, unless P-CHAN-00014 says that it selects the data of its number. In the vocabulary iso
+G43 H selects: T calls the next tool while the last one cuts.
 """
 
 from cnc_ptp.nc.canonical import LinearMove, Source, number
@@ -24,7 +25,7 @@ def tool_words(channel: Channel, state: ModalState, block: NcBlock) -> bool:
         tool = number_function(block, "T", MAX_TOOL).number
         _require_tool(channel, block, tool)
         state.tool.t = tool
-        if channel.tools.with_t and not has_data:
+        if channel.t_selects and not has_data:
             select(channel, state, block.source, tool, "T")
             return True
     if has_data:

@@ -1,0 +1,14 @@
+; dialect iso
+; P and Q of G54.1 and G64 are no numbers of the cycle that is on.
+G10 L2 P8 X100
+G0 Z5
+G99 G82 X10 Z-4 R1 P0.5 F600
+G54.1 P2 X20
+G64 P3 X30
+P0.75 X40
+G83 G54 X50 Q3
+G64 P0.01 Q0.5 X60
+G54.1 P2 Q4 X0
+G54 G73 X70 Q5
+G82 X80 P1.5
+M30
