@@ -235,7 +235,8 @@ class Execution(Flow):
         frame.local, frame.cycle, frame.arguments = values.local, values.cycle, values.arguments
         if call.cycle:
             frame.modal = values.state.copy()
-        self.program, (self.number, self.offset) = program, place
+        self.program = program
+        self.number, self.offset = place
         self.frames.append(frame)
         self.calls = (f"{line.source.file} line {line.source.line}", *self.calls)
         values.inherited = values.cycle
