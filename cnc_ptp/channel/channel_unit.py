@@ -160,7 +160,7 @@ class ChannelUnit(Unit):
         else:
             self._program = parse_program(text, program, files=files, vocabulary=vocabulary)
         if vocabulary is not self._vocabulary:
-            self._vocabulary, self._state = vocabulary, self._check.state({}, self._links, self._shared)
+            self._vocabulary, self._state = vocabulary, self._initial_state({})
         self._library = self._program.library
         self._sequence.source = NO_SOURCE
 

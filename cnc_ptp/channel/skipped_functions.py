@@ -1,6 +1,7 @@
 """The functions of blocks that are not executed: what is left of them when the program begins behind these blocks.
 
 Of each group the last one counts: of the functions of a spindle, of T, D and H, of M functions that exclude each other.
+M06 changes to the T before it, so that these two stay together; a later T selects the next tool.
 They are output in their order in the program, so that synchronisation and couplings are as they would have been.
 """
 
@@ -22,8 +23,12 @@ from cnc_ptp.nc.canonical import (
 )
 
 Group = tuple[str, str, str]
-M_GROUPS: Final = {7: "coolant", 8: "coolant", 9: "coolant", 10: "clamp", 11: "clamp"}
+M_GROUPS: Final = {10: "clamp", 11: "clamp"}
 """M functions that exclude each other (DIN 66025-2); every other one is a group of its own."""
+TOOL_CHANGE: Final = 6
+COOLANT_OFF: Final = 9
+COOLANT: Final = (7, 8)
+"""Mist and flood may both be on; M09 switches both off."""
 TURNING: Final = (3, 4)
 
 
@@ -49,13 +54,27 @@ class SkippedFunctions:
             group = group_of(function)
             if group is None:
                 continue
+            if isinstance(function, AuxiliaryFunction) and function.letter == "M":
+                self._before_m(function)
             before = self._kept.pop(group, None)
             merged = function if before is None else combined(before.function, function)
             self._kept[group] = Kept(self._number, block, merged)
 
+    def _before_m(self, function: AuxiliaryFunction) -> None:
+        """What M06 and M09 do to the functions before them."""
+        spindle = function.spindle
+        if function.number == COOLANT_OFF:
+            for number in COOLANT:
+                self._kept.pop((f"M{number}", spindle, ""), None)
+        if function.number == TOOL_CHANGE:
+            selected = self._kept.pop(("T", "", ""), None)
+            if selected is not None:
+                self._kept.pop(("changed", spindle, ""), None)
+                self._kept["changed", spindle, ""] = selected
+
     def blocks(self) -> list[CanonicalBlock]:
         """One for each skipped block of which something is left, without motion."""
-        numbers = dict.fromkeys(kept.number for kept in self._kept.values())
+        numbers = sorted({kept.number for kept in self._kept.values()})
         of_block = [[kept for kept in self._kept.values() if kept.number == number] for number in numbers]
         return [
             CanonicalBlock(first.block.source, tuple([kept.function for kept in of]), None, "", calls=first.block.calls)

@@ -25,6 +25,7 @@ _ARGUMENTS = re.compile(r"\s*(?:\[\s*NBR\s*\]\s*)?(?:\[(.*)\])?\s*(.*)", re.ASCI
 """[NBR] says that spindles are given by number; that is recognised anyway."""
 _SLOPE = re.compile(r"TYPE\s*=\s*(\w+)(?:\s+NO_OPT\s*=\s*[01])?", re.ASCII)
 """NO_OPT limits the computation for the use of the jerk; here the jerk is always used in full."""
+_TIMER_ACTION = re.compile(r"#\s*TIMER\b\s*([^\s\[]*)", re.ASCII)
 _TIMER = re.compile(r"ID\s*=?\s*(\d{1,3})", re.ASCII)
 
 
@@ -35,6 +36,7 @@ def hash_line(line: Line, text: str, begin: int, outside: str) -> bool:
     """
     found = _COMMAND.search(outside, begin)
     if found is None:
+        _check_timer(line, outside, begin)
         return False
     name = " ".join(found[1].split())
     shown = "#" + name
@@ -55,6 +57,18 @@ def hash_line(line: Line, text: str, begin: int, outside: str) -> bool:
     command = HashCommand(name, arguments, found.start() + 1, COMMANDS[name])
     line.block = NcBlock(line.source, (), {}, command=command)
     return True
+
+
+def _check_timer(line: Line, text: str, begin: int) -> None:
+    """Raises ProgramError for a #TIMER without one of its four actions."""
+    found = _TIMER_ACTION.search(text, begin)
+    if found is None:
+        return
+    syntax = "#TIMER START [ID=1], with START, STOP, READ or CLEAR"
+    if not found[1]:
+        column = found.start() + 1
+        raise flow_faults.COMMAND_VALUE.at(line.source, column, command="#TIMER", missing="an action", syntax=syntax)
+    raise flow_faults.COMMAND_SYNTAX.at(line.source, found.start(1) + 1, word=found[1], command="#TIMER", syntax=syntax)
 
 
 def _nothing_behind(line: Line, text: str, end: int, command: str) -> None:

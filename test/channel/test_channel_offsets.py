@@ -163,6 +163,18 @@ def test_a_running_program_keeps_its_offsets(command: str) -> None:
     assert told == f"P-ERR-22004 channel channel: {command} refused: a program is running (line 1){NOTHING}"
 
 
+def test_a_load_in_another_vocabulary_keeps_clamp_position_and_offsets_for_manual_blocks() -> None:
+    at = bench().run(0.1)
+    assert at.give("channel", "set_clamp_position", index=4).accepted
+    assert at.give("channel", "set_zero_offset", index=1, axis="X", value=40).accepted
+    for dialect, x, z in (("iso", 50.5, 30.5), ("twincat", 10.5, 0.5)):  # G54 is on from the start in iso
+        assert at.give("channel", "load", program="a.nc", text="M30", dialect=dialect).accepted
+        mdi(at, "G00 X10 Z1")
+        assert (at.position("x"), at.position("z")) == (x, z), dialect
+        mdi(at, "G54 X2")
+        assert at.position("x") == 42.5, dialect
+
+
 # what programs change
 
 

@@ -353,6 +353,53 @@ def test_functions_of_different_groups_stay_in_their_order() -> None:
     ]  # fmt: skip
 
 
+T1, T2, T3 = (AuxiliaryFunction("T", number) for number in (1, 2, 3))
+M6, M7, M8, M9 = (AuxiliaryFunction("M", number) for number in (6, 7, 8, 9))
+
+
+@pytest.mark.parametrize(
+    ("program", "result"),
+    [
+        ([(T1, M6), (T2,)], [(1, (T1, M6)), (2, (T2,))]),
+        ([(T1,), (M6,), (T2,)], [(1, (T1,)), (2, (M6,)), (3, (T2,))]),
+        ([(T1,), (M8,), (M6,)], [(1, (T1,)), (2, (M8,)), (3, (M6,))]),
+        ([(T1, M6), (T2,), (T3,)], [(1, (T1, M6)), (3, (T3,))]),
+        ([(T1, M6), (T2,), (M6,), (T3,)], [(2, (T2,)), (3, (M6,)), (4, (T3,))]),
+        ([(T1, M6), (M6,)], [(1, (T1,)), (2, (M6,))]),
+        ([(M6,), (T1,)], [(1, (M6,)), (2, (T1,))]),
+        ([(T1,), (T2,)], [(2, (T2,))]),
+        ([(M7,), (M8,)], [(1, (M7,)), (2, (M8,))]),
+        ([(M8,), (M7,), (M9,)], [(3, (M9,))]),
+        ([(M8,), (M9,), (M7,)], [(2, (M9,)), (3, (M7,))]),
+        ([(AuxiliaryFunction("M", 8, "S2"),), (M9,)], [(1, (AuxiliaryFunction("M", 8, "S2"),)), (2, (M9,))]),
+    ],
+)
+def test_the_tool_in_the_spindle_and_the_next_one_and_coolant(
+    program: list[tuple[Function, ...]], result: list[tuple[int, tuple[Function, ...]]]
+) -> None:
+    assert left(*(block(number, *functions) for number, functions in enumerate(program, 1))) == result
+
+
+def test_a_start_behind_the_selection_of_the_next_tool_loads_the_one_before() -> None:
+    bench = loaded("T1 M6\nT2\nS1000 M3\nM7\nM8\nG01 X5 F600\nX6\nM30")
+    assert begin(bench, line=7)[:5] == [
+        "line 1: T1 M6",
+        "line 2: T2",
+        "line 3: S[M3 REV1000]",
+        "line 4: M7",
+        "line 5: M8",
+    ]
+    bench.run(5.0)
+    assert bench.errors() == [] and bench.position("x") == 6.0
+    blocks = [block for block in bench.blocks["channel"] if block.first_cycle >= 100]
+    out = [(request.kind, request.number) for block in blocks for request in block.requests]
+    assert [each for each in dict.fromkeys(out) if each in {("T", 1), ("T", 2), ("M", 6)}] == [
+        ("T", 1),
+        ("M", 6),
+        ("T", 2),
+    ]
+
+
 def test_couplings_and_gears_are_made_before_the_block() -> None:
     text = "S M3 S300\nX1\n#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]\nX2\nS500\nX3\nM30".replace("S M3", "M3")
     bench = loaded(text, machine=machine_of(*three()))

@@ -91,7 +91,7 @@ def test_words_of_iso_are_explained(capsys):
 BEFORE = {"$FOR": "$ENDFOR", "$IF": "$ENDIF", "$WHILE": "$ENDWHILE", "$SWITCH": "$ENDSWITCH"}
 PLACES = {"V.P.F[2][3] = [1, 2, 3]": "#VAR\n{}\n#ENDVAR", "$GOTO [END]": "{}\n[END] X5"}
 CYCLES = {path.name: path.read_text() for path in (HERE.parents[1] / "cnc_ptp" / "nc" / "cycles").glob("*.nc")}
-FILES = {"drill.nc": "M29", "pocket.nc": "M29", **CYCLES}
+FILES = {"drill.nc": "Z[@P1]\nM29", "pocket.nc": "M29", **CYCLES}
 
 
 @pytest.mark.parametrize(

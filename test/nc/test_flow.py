@@ -179,3 +179,31 @@ def test_a_backslash_in_a_comment_continues_nothing():
 def test_radius_is_read_in_inch():
     moves = [block.motion for block in run("G70 G02 X2 R1 F10\nG01 Z[V.G.R]")]
     assert moves[-1].target[2] == 25.4
+
+
+@pytest.mark.parametrize(
+    "reads",
+    [
+        "X[@gap]",
+        "$IF @ GAP == 5\n$ENDIF",
+        "#VAR\nV.L.A = @GAP\n#ENDVAR",
+        "#COMMENT BEGIN\n%no header\n#COMMENT END\nX[1 + \\\n@GAP]",
+        "$IF EXIST[@GAP]\n$ENDIF",
+        "LL CYCLE [NAME=NEXT @GAP=@GAP]",
+    ],
+)
+def test_a_subroutine_may_read_what_its_call_gives_anywhere(reads):
+    text = f"%L NEXT\nX[@GAP]\nM29\n%L SUB\n{reads}\nM29\n%MAIN\nG00\nLL CYCLE [NAME=SUB @GAP=5]\nLL CYCLE [NAME=SUB @GAP=6]\nM30"
+    assert lines(text)[-1] == "end"
+
+
+def test_a_subroutine_may_ask_for_parameters_by_their_number():
+    text = "%L SUB\n$FOR P1 = 1, 9, 1\n$IF V.G.@P[P1].VALID\nX[P1]\n$ENDIF\n$ENDFOR\nM29\n%MAIN\nG00\nLL CYCLE [NAME=SUB {}]\nM30"
+    assert lines(text.format("@P4=1 @P7=1"))[:2] == ["rapid (4, 0, 0)", "rapid (7, 0, 0)"]
+    with pytest.raises(ProgramError, match=r"P-ERR-21596 .*: SUB does not read parameter @GAP; parameters .*: @P$"):
+        run(text.format("@P4=1 @GAP=1"))
+
+
+def test_a_line_that_cannot_be_read_is_no_fault_of_its_callers():
+    text = "%L SUB\nX[@GAP] )\nM29\n%MAIN\nLL CYCLE [NAME=SUB @GAP=5]\nM30"
+    assert [error.number for error in check(text, "a.nc", AXES)] == [21007]

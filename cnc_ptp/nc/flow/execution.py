@@ -11,6 +11,7 @@ from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.calls import check_arguments
 from cnc_ptp.nc.flow.lines import Call, Flow, Line
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.flow.structures import Place, Structure
@@ -224,6 +225,9 @@ class Execution(Flow):
             limit = self.limits.call_depth
             raise faults.CALL_DEPTH.at(line.source, call.column, name=call.name, depth=depth, limit=limit)
         self._count_repeat(line)
+        program, place = self.program.called(call, line.source)
+        if call.arguments:
+            check_arguments(call, line.source, program, place)
         values = self.values
         values.source = line.source
         arguments = {name: node.scalar(values) for name, node in call.arguments.items()}
@@ -231,7 +235,7 @@ class Execution(Flow):
         frame.local, frame.cycle, frame.arguments = values.local, values.cycle, values.arguments
         if call.cycle:
             frame.modal = values.state.copy()
-        self.program, place = self.program.called(call, line.source)
+        self.program = program
         self.number, self.offset = place
         self.frames.append(frame)
         self.calls = (f"{line.source.file} line {line.source.line}", *self.calls)

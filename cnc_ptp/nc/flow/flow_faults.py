@@ -47,6 +47,7 @@ LINE_TOO_LONG = Fault(21580, "the block has {length} characters, the limit is {l
 SECTION_OPEN = Fault(21581, "{begin} of line {line} has no {end}")
 SECTION_STRAY = Fault(21582, "{end} without {begin} before it")
 ARGUMENT_TWICE = Fault(21584, "parameter {name} twice in one call")
+ARGUMENT_UNREAD = Fault(21596, "{program} does not read parameter {name}; parameters that it reads: {known}")
 CYCLE_NAME = Fault(21585, "a cycle call needs NAME=...")
 CYCLE_WORD = Fault(
     21591, "'{word}' is not available in a cycle call; there are NAME=..., @P1=..., MODAL_MOVE and MODAL_BLOCK"

@@ -62,6 +62,8 @@ class Program:
         self.library: Mapping[str, Program] = {}
         self.special: dict[int, Line] = {}
         """Lines that hold more than their text says: declarations, comments of several lines."""
+        self.arguments_read: dict[int, frozenset[str]] = {}
+        """Names of the @ parameters that a section reads, by number of its first line; found at its first call."""
         self._later: dict[int, Line] = {}
         self._read_line = read_line
 

@@ -1,3 +1,3 @@
-; P-ERR-21006 timer_action.nc line 2 column 1 '#TIMER RESET [ID=1]': command '#TIMER' is not available
-#TIMER RESET [ID=1]
+; P-ERR-21615 timer_action.nc line 2 column 8 '#TIMER STRT [ID=1]': 'STRT' is not available in #TIMER; its syntax is #TIMER START [ID=1], with START, STOP, READ or CLEAR
+#TIMER STRT [ID=1]
 M30
