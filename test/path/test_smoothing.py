@@ -15,8 +15,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.path import AxisLimits
 from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.lookahead.parts import PathPart, cells_of
-from cnc_ptp.path.lookahead.path_cell import AxisLoad, largest_square
+from cnc_ptp.path.lookahead.parts import PathPart, cell_of, cells_of
 from cnc_ptp.path.lookahead.path_profile import PathProfile, pieces_of
 from cnc_ptp.path.lookahead.smoothing import LONG_LINE, LONGEST_SPAN, Smoother, SmoothPiece
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
@@ -329,12 +328,8 @@ def node_speeds(pieces, axes=AXES) -> list[float]:
     """mm/s that each piece permits at constant velocity."""
     found = []
     for piece in pieces:
-        bounds = piece.geometry.bounds(0.0, piece.geometry.length)
-        loads = [
-            AxisLoad(*bound, 0.0, 0.0, axis.velocity, axis.acceleration, axis.jerk)
-            for bound, axis in zip(bounds, axes, strict=True)
-        ]
-        found.append(math.sqrt(largest_square(loads)))
+        part = PathPart(piece.geometry, axes, (0, 1, 2), math.inf, piece.block)
+        found.append(math.sqrt(cell_of(part, 0.0, 0.0, part.length).limit))
     return found
 
 

@@ -89,19 +89,32 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
 def loads_of(part: PathPart, bounds: Sequence[Bounds], middle: float, half: float) -> list[AxisLoad]:
     """For each axis that the path moves in a cell.
 
-    Where the sign of q1 changes in the cell, the bend counts for both signs.
+    Where the sign of q1 changes in the cell, q2 and q3 count for both signs. q3 of a cubic piece is the same
+    everywhere; of other parts only its size is known.
     """
     loads: list[AxisLoad] = []
-    for index, (_, direction, bend, _) in enumerate(part.geometry.shape(middle)):
+    for index, (_, direction, bend, twist) in enumerate(part.geometry.shape(middle)):
         first, second, third = bounds[index]
         if first == 0.0 and second == 0.0:
             continue
-        axis, spread = part.axes[index], third * half
-        if abs(direction) <= second * half:
-            bend, spread = 0.0, second
-        acceleration = min(axis.acceleration, axis.deceleration)
-        signed = bend if direction > 0.0 else -bend
-        loads.append(AxisLoad(first, second, third, signed, spread, axis.velocity, acceleration, axis.jerk))
+        sign = 1.0 if direction > 0.0 else -1.0
+        least, spread, wring = abs(direction) - second * half, third * half, 0.0
+        if least <= 0.0:
+            least, bend, spread = 0.0, 0.0, second
+        if least <= 0.0 or abs(twist) < third:
+            twist, wring = 0.0, third
+        load = AxisLoad(
+            first=first,
+            least=least,
+            second=second,
+            third=third,
+            bend=sign * bend,
+            spread=spread,
+            twist=sign * twist,
+            wring=wring,
+            limits=part.axes[index],
+        )
+        loads.append(load)
     return loads
 
 

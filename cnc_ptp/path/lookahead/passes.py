@@ -18,13 +18,19 @@ def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
     u = j·t³/6 and y = (j·t²/2)², so y = j^⅔·(6u)^(4/3)/4 and a = 2y/(3u).
     """
     length = first.length
-    bend = min(first.bending(1.0, 0.0), second.bending(1.0, 0.0))
-    square = min(square_from_rest(0.5 * bend, length), first.limit, second.limit)
+    jerk = 0.5 * bend_at(first, second, 0.0, 1.0, 0.0)
+    square = min(square_from_rest(jerk, length), first.limit, second.limit)
     square = min(square, 1.5 * length * permitted(first, second, 0.0, 0.0, braking))
     square = min(square, 1.5 * length * permitted(first, second, 0.0, square, braking))
     slope = slope_from_rest(square, length)
-    bend = min(first.bending(square, slope), second.bending(square, slope))
-    return min(square, square_from_rest(0.5 * sqrt(square) * bend, length))
+    jerk = 0.5 * sqrt(square) * bend_at(first, second, 0.0, square, -slope if braking else slope)
+    return min(square, square_from_rest(jerk, length))
+
+
+def bend_at(first: PathCell, second: PathCell, lowest: float, highest: float, slope: float) -> float:
+    """Largest rise of b in both cells, up to b = `slope`."""
+    slopes = (0.0, slope)
+    return min(first.bending(lowest, highest, slopes, True), second.bending(lowest, highest, slopes, True))
 
 
 def square_from_rest(jerk: float, distance: float) -> float:
@@ -83,14 +89,15 @@ def steepest_slope(here: PathCell, there: PathCell, square: float, slope: float,
     What is permitted depends on the velocity that is reached with it, so it is found in two steps from above.
     """
     half = 0.5 * here.length
+    sign = -1.0 if braking else 1.0
     behind = square - slope * half
-    steepest = slope + here.bending(square, abs(slope)) * width
+    steepest = slope + here.bending(square, square, (sign * slope, sign * slope), True) * width
     steepest = min(steepest, 2.0 * permitted(here, there, square, square, braking))
     ahead = min(square + steepest * half, max(here.limit, there.limit))
-    highest = max(square, behind, ahead)
-    bend = here.bending(highest, max(abs(slope), abs(steepest)))
+    lowest, highest = min(square, behind, ahead), max(square, behind, ahead)
+    bend = here.bending(max(0.0, lowest), highest, (sign * slope, sign * steepest), True)
     steepest = min(steepest, slope + bend * width)
-    return min(steepest, 2.0 * permitted(here, there, min(square, behind, ahead), highest, braking))
+    return min(steepest, 2.0 * permitted(here, there, lowest, highest, braking))
 
 
 def permitted(here: PathCell, there: PathCell, lowest: float, highest: float, braking: bool) -> float:

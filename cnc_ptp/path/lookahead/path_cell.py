@@ -16,38 +16,55 @@ from collections.abc import Sequence
 from math import inf, sqrt
 from typing import Final
 
-THIRD_SHARE: Final = 0.85
+from cnc_ptp.path.geometry import AxisLimits
+
+THIRD_SHARE: Final = 0.9
 """Largest part of an axis's jerk that q3·v³ may take."""
-CROSS_SHARE: Final = 0.6
+CROSS_SHARE: Final = 0.8
 """Largest part of an axis's jerk that 3·q2·v·a may take while the path accelerates as hard as it can."""
+USED_PART: Final = 0.999
+"""Part of what a curve leaves of the jerk that is used, because y and b are not quite known before."""
 LEAST_SHARE: Final = 0.05
 """Part of an axis's jerk that a change of the acceleration may always take; what that breaks is planned again."""
 
 
 class AxisLoad:
-    """What the path asks of one axis in a cell, and the limits of that axis.
+    """What the path asks of one axis in a cell, and the limits of that axis; q1, q2, q3 with the sign of q1.
 
-    first, second, third   largest |q1|, |q2|, |q3| in the cell
-    bend                   q2 in its middle, with the sign of q1: above 0 the axis is being accelerated
-    spread                 largest difference of q2 from that
+    least, first    smallest and largest q1
+    second, third   largest |q2|, |q3|
+    bend, twist     q2 and q3 in the middle: above 0 the axis is being accelerated
+    spread, wring   largest difference of q2 and q3 from these
     """
 
-    __slots__ = ("acceleration", "bend", "first", "jerk", "second", "spread", "third", "velocity")
+    __slots__ = (
+        "acceleration", "bend", "first", "jerk", "least", "second", "spread", "third", "twist", "velocity", "wring",
+    )  # fmt: skip
 
     def __init__(
         self,
+        least: float,
         first: float,
         second: float,
         third: float,
         bend: float,
         spread: float,
-        velocity: float,
-        acceleration: float,
-        jerk: float,
+        twist: float,
+        wring: float,
+        limits: AxisLimits,
     ) -> None:
-        self.first, self.second, self.third = first, second, third
+        self.least, self.first, self.second, self.third = least, first, second, third
         self.bend, self.spread = bend, spread
-        self.velocity, self.acceleration, self.jerk = velocity, acceleration, jerk
+        self.twist, self.wring = twist, wring
+        self.velocity, self.jerk = limits.velocity, limits.jerk
+        self.acceleration = min(limits.acceleration, limits.deceleration)
+
+    def pull(self, lowest: float, highest: float, slope: float, rising: bool) -> float:
+        """Largest 3/2·q2·b + q3·y in the cell at b = `slope`, in the direction of a rising or a falling b."""
+        sign = 1.0 if rising else -1.0
+        along = 1.5 * sign * self.bend * slope + 1.5 * self.spread * abs(slope) + self.wring * highest
+        twist = sign * self.twist
+        return along + twist * (highest if twist > 0.0 else lowest)
 
 
 class PathCell:
@@ -102,18 +119,19 @@ class PathCell:
                 least = min(least, CROSS_SHARE * load.jerk / (3.0 * load.second * speed))
         return max(least, 0.0)
 
-    def bending(self, square: float, slope: float) -> float:
-        """Largest |c| at y = `square` and |b| = `slope`."""
-        speed = sqrt(max(square, SMALLEST_SQUARE))
+    def bending(self, lowest: float, highest: float, slopes: tuple[float, float], rising: bool) -> float:
+        """Largest |c| with which b rises or falls; y is within `lowest` … `highest` and b between two `slopes`."""
+        speed = sqrt(max(highest, SMALLEST_SQUARE))
         if not self.loads:
             return 2.0 * self.jerk / speed
         least = inf
+        one, other = slopes
         for load in self.loads:
             if load.first > 0.0:
                 whole = load.jerk / speed
-                left = whole - 1.5 * load.second * slope - load.third * square
-                least = min(least, 2.0 * max(left, LEAST_SHARE * whole) / load.first)
-        return least
+                pull = max(load.pull(lowest, highest, one, rising), load.pull(lowest, highest, other, rising))
+                least = min(least, 2.0 * max(whole - pull, LEAST_SHARE * whole) / load.first)
+        return USED_PART * least
 
     def excess(self, square: float, slope: float, bend: float) -> float:
         """The largest part of a limit that y, b and c take; above 1 one of them is exceeded."""
@@ -123,9 +141,13 @@ class PathCell:
             return max(along, 0.5 * speed * abs(bend) / self.jerk)
         most = 0.0
         for load in self.loads:
-            along = abs(0.5 * load.first * slope + load.bend * square) + load.spread * square
-            jerk = 0.5 * load.first * abs(bend) + 1.5 * load.second * abs(slope) + load.third * square
-            most = max(most, load.first * speed / load.velocity, along / load.acceleration, speed * jerk / load.jerk)
+            along, curve = load.bend * square, 1.5 * load.bend * slope + load.twist * square
+            acceleration = max(abs(0.5 * load.first * slope + along), abs(0.5 * load.least * slope + along))
+            jerk = max(abs(0.5 * load.first * bend + curve), abs(0.5 * load.least * bend + curve))
+            acceleration += load.spread * square
+            jerk += 1.5 * load.spread * abs(slope) + load.wring * square
+            parts = (load.first * speed / load.velocity, acceleration / load.acceleration, speed * jerk / load.jerk)
+            most = max(most, *parts)
         return most
 
 

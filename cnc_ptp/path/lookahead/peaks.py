@@ -19,7 +19,8 @@ def bends(cells: Sequence[PathCell], places: Sequence[float], squares: Sequence[
         after = (squares[index + 1] - squares[index]) / (places[index + 1] - places[index])
         half = 0.5 * cells[index].length
         highest = squares[index] + max(0.0, after, -before) * half
-        found[index] = cells[index].bending(highest, max(abs(before), abs(after))) * cells[index].length
+        lowest = max(0.0, squares[index] + min(0.0, after, -before) * half)
+        found[index] = cells[index].bending(lowest, highest, (before, after), False) * cells[index].length
     return found
 
 

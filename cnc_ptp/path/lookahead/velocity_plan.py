@@ -23,6 +23,8 @@ EXCESS: Final = 1e-9
 """Part of a limit that counts as rounding."""
 ROOM: Final = 1e-7
 """Part of y, and of the bend, by which a moving start may miss what the path permits through rounding."""
+MARGIN: Final = 1.02
+"""Factor on y as planned before, up to which a path that slows down may still get."""
 REST_POINT: Final = 0.25
 """Part of the first cell after which the tangent at its end leaves y = 0."""
 
@@ -64,7 +66,7 @@ def plan_velocity(
         worst = max(excesses)
         if worst <= 1.0 + EXCESS:
             return VelocityPlan(cells, places, squares)
-        lower(cells, caps, squares, excesses)
+        lower(cells, caps, squares, excesses, keep=delay == 0)
     if moving or squares is None:
         return None
     while worst > 1.0 + EXCESS:
@@ -74,13 +76,21 @@ def plan_velocity(
 
 
 def caps_of(cells: Sequence[PathCell], override: float, delay: int) -> list[float]:
-    """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell."""
+    """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell.
+
+    Before cell `delay` what was planned before may be kept, though it is above the feed.
+    """
     factor = override * override
-    own = [min(cell.limit, cell.feed * factor) if index >= delay else cell.limit for index, cell in enumerate(cells)]
+    own = []
+    for index, cell in enumerate(cells):
+        feed = cell.feed * factor
+        own.append(min(cell.limit, feed if index >= delay else max(feed, MARGIN * cell.planned)))
     caps = list(own)
     for index in range(1, len(own)):
         caps[index] = min(caps[index], own[index - 1])
         caps[index - 1] = min(caps[index - 1], own[index])
+    for index in range(min(delay, len(own))):
+        caps[index] = max(caps[index], min(own[index], MARGIN * cells[index].planned))
     return caps
 
 
@@ -146,13 +156,15 @@ def excess_at_rest(cell: PathCell, square: float, slope: float) -> float:
     return cell.excess(square, slope, 4.0 * square / (9.0 * cell.length * cell.length))
 
 
-def lower(cells: Sequence[PathCell], caps: list[float], squares: Sequence[float], excesses: Sequence[float]) -> None:
-    """Lowers the limits where one was exceeded, and of the neighbours; not below what was planned there before."""
+def lower(
+    cells: Sequence[PathCell], caps: list[float], squares: Sequence[float], excesses: Sequence[float], *, keep: bool
+) -> None:
+    """Lowers the limits where one was exceeded, and of the neighbours; `keep`: not below what was planned before."""
     for index, excess in enumerate(excesses):
         if excess > 1.0 + EXCESS:
             part = excess**-0.7
             for near in range(max(index - 1, 0), min(index + 2, len(cells))):
-                caps[near] = min(caps[near], max(squares[near] * part, cells[near].planned))
+                caps[near] = min(caps[near], max(squares[near] * part, cells[near].planned if keep else 0.0))
 
 
 def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> VelocityPlan | None:
