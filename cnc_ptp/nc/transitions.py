@@ -26,6 +26,11 @@ def exact_stop(state: ModalState) -> None:
     state.transition = EXACT_STOP._replace(smoothing=state.transition.smoothing)
 
 
+def stop_always(state: ModalState) -> None:
+    """G61 of the vocabulary iso: an exact stop also where G64 Q has smoothed short blocks."""
+    state.transition = EXACT_STOP
+
+
 def through(state: ModalState) -> None:
     """G359, G260: the path continues where the direction does; a corner is passed as slowly as its kink needs."""
     state.transition = THROUGH._replace(smoothing=state.transition.smoothing)

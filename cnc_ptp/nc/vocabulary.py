@@ -63,6 +63,7 @@ _G_CODES = (
     GCode(21, "mirror", prepare=codes.mirror),
     GCode(22, "mirror", prepare=codes.mirror),
     GCode(23, "mirror", prepare=codes.mirror),
+    GCode(24, "mirror", later="mirroring of single axes"),
     GCode(33, "path", later="thread cutting"),
     GCode(40, "tool radius"),
     GCode(41, "tool radius", later="compensation of the tool radius"),

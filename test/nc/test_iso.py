@@ -56,6 +56,8 @@ def test_q_of_g64_smooths_short_blocks():
     state = ModalState()
     run("G64 P0.5 Q0.02", dialect="iso", state=state)
     assert state.transition == Transition(exact=False, contour=Contour(path_dev=0.5), smoothing=Smoothing(0.02))
+    run("G64 P0.5 Q0.02\nG61", dialect="iso", state=state)
+    assert state.transition.stops
 
 
 levels = st.integers(-9999, 9999).map(lambda value: value / 100.0)
