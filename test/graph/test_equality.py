@@ -213,6 +213,44 @@ def test_program_control_in_the_graph_equals_the_offline_run(folder, options):
     verified(folder / "j.mcap")
 
 
+LINKED = "\n".join(
+    [
+        "G00 X0 Y0",
+        "#CONTOUR MODE [DEV PATH_DEV=0.05]",
+        "G261 F6000",
+        "G01 X30",
+        "Y20",
+        "M8",
+        "G03 X20 Y30 I-10 J0",
+        "G01 X0",
+    ]
+    + [
+        "#HSC ON [BSPLINE PATH_DEV=0.005]",
+        *[f"G01 X{0.05 * n:.2f} Y{30 + (0.05 * n) ** 2 / 40:.3f}" for n in range(300)],
+    ]
+    + ["#HSC OFF", "G60 X40", "M30"]
+)
+LINKED_SCENARIO = """
+- {at: 0.35, to: channel, do: set_override, percent: 40}
+- {at: 0.7, to: channel, do: feed_hold, enabled: true}
+- {at: 1.0, to: channel, do: feed_hold, enabled: false}
+- {at: 1.2, to: channel, do: set_override, percent: 110}
+"""
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_linked_blocks_in_the_graph_equal_the_offline_run(folder, options):
+    """Corners, arcs and short blocks that the path runs through, with override and feed hold."""
+    (folder / "linked.nc").write_text(LINKED)
+    (folder / "linked.yaml").write_text(LINKED_SCENARIO)
+    job = (MILL, "--program", folder / "linked.nc", "--scenario", folder / "linked.yaml")
+    run("simulate", *job, "--record", folder / "k.mcap")
+    output = run("run", *job, *options, "--record", folder / "l.mcap").stdout
+    assert "lost 0, computed twice 0" in output
+    assert states_equal(folder / "k.mcap", folder / "l.mcap") == []
+    verified(folder / "l.mcap")
+
+
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
 def test_superpositions_on_a_path_equal_the_offline_run(folder, options):
     """The flying saw and external setpoints on top of a circle, with z as the conveyor."""
