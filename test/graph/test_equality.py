@@ -213,23 +213,21 @@ def test_program_control_in_the_graph_equals_the_offline_run(folder, options):
     verified(folder / "j.mcap")
 
 
-LINKED = "\n".join(
-    [
-        "G00 X0 Y0",
-        "#CONTOUR MODE [DEV PATH_DEV=0.05]",
-        "G261 F6000",
-        "G01 X30",
-        "Y20",
-        "M8",
-        "G03 X20 Y30 I-10 J0",
-        "G01 X0",
-    ]
-    + [
-        "#HSC ON [BSPLINE PATH_DEV=0.005]",
-        *[f"G01 X{0.05 * n:.2f} Y{30 + (0.05 * n) ** 2 / 40:.3f}" for n in range(300)],
-    ]
-    + ["#HSC OFF", "G60 X40", "M30"]
-)
+CHORDS = "\n".join(f"G01 X{0.05 * n:.2f} Y{30 + (0.05 * n) ** 2 / 40:.3f}" for n in range(300))
+LINKED = f"""G00 X0 Y0
+#CONTOUR MODE [DEV PATH_DEV=0.05]
+G261 F6000
+G01 X30
+Y20
+M8
+G03 X20 Y30 I-10 J0
+G01 X0
+#HSC ON [BSPLINE PATH_DEV=0.005]
+{CHORDS}
+#HSC OFF
+G60 X40
+M30
+"""
 LINKED_SCENARIO = """
 - {at: 0.35, to: channel, do: set_override, percent: 40}
 - {at: 0.7, to: channel, do: feed_hold, enabled: true}
