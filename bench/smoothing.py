@@ -10,13 +10,14 @@ from typing import Any
 
 from bench.figures import Effort, Figure, ShowProgress, medians_of, stopwatch
 from bench.jobs import ROOT
-from cnc_ptp.path.lookahead.path_cell import AxisLoad, largest_square
+from cnc_ptp.path import AxisLimits
+from cnc_ptp.path.lookahead.parts import PathPart, cell_of
 from cnc_ptp.path.lookahead.smoothing import Smoother, SmoothPiece
 
 POINTS = 150_000
 PATH_DEV = 0.005
 FEED = 100.0
-VELOCITY, ACCELERATION, JERK = 500.0, 1000.0, 20_000.0
+AXES = [AxisLimits(500.0, 1000.0, 1000.0, 20_000.0)] * 3
 PARTS = 8
 """Parts of a piece for each of which the largest velocity is computed."""
 
@@ -35,11 +36,11 @@ def time_at_limits(pieces: Sequence[SmoothPiece]) -> float:
     """s with the velocity that the curvature permits everywhere, at most the feed."""
     time = 0.0
     for piece in pieces:
-        length = piece.geometry.length / PARTS
-        for part in range(PARTS):
-            bounds = piece.geometry.bounds(part * length, (part + 1) * length)
-            loads = [AxisLoad(*bound, 0.0, 0.0, VELOCITY, ACCELERATION, JERK) for bound in bounds]
-            time += length / min(FEED, sqrt(largest_square(loads)))
+        part = PathPart(piece.geometry, AXES, (0, 1, 2), FEED, piece.block)
+        length = part.length / PARTS
+        for index in range(PARTS):
+            cell = cell_of(part, 0.0, index * length, (index + 1) * length)
+            time += length / min(FEED, sqrt(cell.limit))
     return time
 
 
