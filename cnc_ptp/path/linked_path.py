@@ -120,7 +120,7 @@ class LinkedPath:
             u, v, a, j = self._rows.popleft()
             begin, part = self.look_ahead.locate(u)
             states = part.geometry.evaluate(u - begin, v, a, j)
-            speed = part.geometry.speed(u - begin, part.path_axes)
+            speed = part.geometry.speed(u - begin, part.path_axes) or 1.0
             points.append((states, v * speed, max(0.0, self._ends[0] - u)))
         return points
 

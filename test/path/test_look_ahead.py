@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import random
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -14,11 +14,12 @@ from curves import CYCLE, assert_within, parts_of, run, smooth_curve, spline
 from jerk_optimum import JerkOptimum
 
 from cnc_ptp.motion import Limits, plan_rest_to_rest
-from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.geometry import AxisLimits, Line
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
-from cnc_ptp.path.lookahead.parts import graded
+from cnc_ptp.path.lookahead.parts import PathPart, graded
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import PathProfile, circular, duration_between, pieces_of
+from cnc_ptp.path.lookahead.spans import whole
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
 
 AXIS = AxisLimits(300.0, 1000.0, 1000.0, 20_000.0)
@@ -26,7 +27,7 @@ AXIS = AxisLimits(300.0, 1000.0, 1000.0, 20_000.0)
 
 def straight_cells(length: float, count: int) -> list[PathCell]:
     ends = [length * index / count for index in range(count + 1)]
-    return [PathCell(a, b, 1e4, 1e4, 1000.0, 1000.0, 20_000.0) for a, b in itertools.pairwise(ends)]
+    return [PathCell(a, b, 1e4, 1e4, 1000.0, 1000.0, 20_000.0) for a, b in pairwise(ends)]
 
 
 def planned(cells: list[PathCell]) -> PathProfile:
@@ -146,6 +147,14 @@ def test_override_to_0_and_back_at_random_moments() -> None:
         states, rows = run(parts_of(curve, [AXIS] * 3, 120.0), sorted(script))
         assert_within(states, [AXIS] * 3)
         assert np.all(np.diff(rows[:, 0]) >= -1e-9)
+
+
+def test_the_feed_is_that_of_other_axes_where_they_move_alone() -> None:
+    points = [(0.0, 0.0, 0.0, 10.0 * n) for n in range(4)]
+    lines = [Line(a, b, (0, 1, 2)) for a, b in pairwise(points)]
+    parts = [PathPart(whole(line, n), [AXIS] * 4, (0, 1, 2), 40.0, n) for n, line in enumerate(lines)]
+    _, rows = run(parts)
+    assert rows[:, 1].max() == pytest.approx(40.0)
 
 
 def test_stop_comes_to_rest_on_a_ramp() -> None:

@@ -82,7 +82,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
     if begin == 0.0 and part.entry > 0.0:
         limit = min(limit, part.entry)
     speed = max(geometry.speed(begin, part.path_axes), geometry.speed(end, part.path_axes))
-    feed = limit if part.feed == inf or speed == 0.0 else (part.feed / speed) ** 2
+    feed = limit if part.feed == inf else (part.feed / (speed or 1.0)) ** 2  # the path of other axes is their own
     return PathCell(origin + begin, origin + end, limit, feed, up, down, jerk, loads)
 
 
