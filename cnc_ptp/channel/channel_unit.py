@@ -399,6 +399,7 @@ class ChannelUnit(Unit):
         self._add(rows, points)
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
+            self._reach_offsets(cycle + len(points))
         elif len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
             self._sequence.motion_ended()
         self._warn(cycle)
@@ -411,10 +412,14 @@ class ChannelUnit(Unit):
             self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
             return True
         self._warn(cycle)
+        self._reach_offsets(cycle)
+        return goes_on
+
+    def _reach_offsets(self, cycle: int) -> None:
+        """The path has reached a block that changes them."""
         if self._sequence.offsets is not None:
             self._offsets.reach(cycle, self._sequence.source.line, self._sequence.offsets)
             self._sequence.offsets = None
-        return goes_on
 
     def _warn(self, cycle: int) -> None:
         messages, self._sequence.messages = self._sequence.messages, []

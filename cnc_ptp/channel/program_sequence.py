@@ -328,10 +328,7 @@ class ProgramSequence:
             self._await_answers()
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
-        self._block = block
-        self.source, self.calls = block.source, block.calls
-        if block.offsets is not None:
-            self.offsets = block.offsets
+        self._reach(block)
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before(cycle)
@@ -339,6 +336,13 @@ class ProgramSequence:
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
         return True
+
+    def _reach(self, block: CanonicalBlock) -> None:
+        """The block is the active one."""
+        self._block = block
+        self.source, self.calls = block.source, block.calls
+        if block.offsets is not None:
+            self.offsets = block.offsets
 
     def _functions_before(self, cycle: int) -> None:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
@@ -387,7 +391,7 @@ class ProgramSequence:
             self.stream.done += 1
             block = self._following.take()
             assert block is not None
-            self._block, self.source, self.calls = block, block.source, block.calls
+            self._reach(block)
             if self.phase is Phase.MOTION:
                 self._tell(block, cycle)
                 self._queue(self._functions.of_block(block, Moment.BEFORE))

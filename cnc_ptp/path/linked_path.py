@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from math import sqrt
 from typing import Protocol
 
 from cnc_ptp.errors import CncError
@@ -12,7 +13,7 @@ from cnc_ptp.nc.canonical import CircularMove, LinearMove
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.shape import AxisState, without_jerk
 
 Path = LinearMove | CircularMove
 
@@ -39,8 +40,8 @@ Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
-    alike = motion.full_override == following.full_override and is_rapid(motion) == is_rapid(following)
-    return alike and not motion.transition.stops
+    alike = motion.full_override == following.full_override and motion.slope == following.slope
+    return alike and is_rapid(motion) == is_rapid(following) and not motion.transition.stops
 
 
 def is_rapid(motion: Path) -> bool:
@@ -48,15 +49,24 @@ def is_rapid(motion: Path) -> bool:
     return isinstance(motion, LinearMove) and motion.rapid
 
 
+def path_velocity(states: Sequence[AxisState], axes: Sequence[int]) -> float:
+    """Velocity of the given axes together."""
+    return sqrt(sum([states[axis][1] * states[axis][1] for axis in axes]))
+
+
 class LinkedPath:
     """Runs linked motions.
 
     block   number of the active block within the path, from 0
-    feed    programmed feed of the active block, mm/s
+    feed    programmed feed of the active block, mm/s; in rapid traverse the velocity that the axes allow
     """
 
-    def __init__(self, look_ahead: LookAhead, builder: PathBuilder, source: MotionSource, make: Maker) -> None:
+    def __init__(
+        self, look_ahead: LookAhead, builder: PathBuilder, source: MotionSource, make: Maker, *, steps: bool
+    ) -> None:
+        """`steps`: the acceleration of the path may step, so no jerk is fed forward (P-AXIS-00337)."""
         self.look_ahead = look_ahead
+        self._steps = steps
         self._builder, self._source, self._make = builder, source, make
         self.block = 0
         self._blocks = 1
@@ -71,7 +81,7 @@ class LinkedPath:
     def begin(self, first: LinkedMotion, motion: Path, following: Path) -> bool:
         """Links the first two motions; False if they cannot be linked."""
         self._last = motion
-        self._feeds.append(first.feed)
+        self._feeds.append(first.shown)
         self._builder.begin()
         self._append(self._builder.add(first))
         return self._extend(following)
@@ -120,8 +130,10 @@ class LinkedPath:
             u, v, a, j = self._rows.popleft()
             begin, part = self.look_ahead.locate(u)
             states = part.geometry.evaluate(u - begin, v, a, j)
-            speed = part.geometry.speed(u - begin, part.path_axes) or 1.0
-            points.append((states, v * speed, max(0.0, self._ends[0] - u)))
+            velocity = path_velocity(states, part.path_axes) or v  # other axes that move alone have a path of their own
+            if self._steps:
+                states = without_jerk(states)
+            points.append((states, velocity, max(0.0, self._ends[0] - u)))
         return points
 
     def _block_ahead(self) -> int:
@@ -152,7 +164,7 @@ class LinkedPath:
         self._source.accept()
         self._blocks += 1
         self._last = motion
-        self._feeds.append(linked.feed)
+        self._feeds.append(linked.shown)
         self._ends.append(0.0)
         self._append(parts)
         return True

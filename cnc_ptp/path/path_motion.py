@@ -15,7 +15,7 @@ from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import JERK_LIMITED, STEPS
-from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.shape import AxisState, without_jerk
 
 CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
@@ -154,7 +154,7 @@ class PathMotion:
         plan = self._plan(motion, self.position)
         element, feed = plan.element, plan.feed
         self._set_full_override(motion.full_override)
-        if source is not None and self._link(element, motion, source):
+        if source is not None and self._link(plan, motion, source):
             return
         self._interpolator.start(element, plan.limits, feed, planner=STEPS if plan.steps else JERK_LIMITED)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
@@ -186,29 +186,28 @@ class PathMotion:
             return Line(start, motion.target, self._path_axes)
         return Arc(start, motion.target, motion.center, motion.plane, motion.radius, motion.sweep, self._path_axes)
 
-    def _link(self, element: Line | Arc, motion: Path, source: MotionSource) -> bool:
+    def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""
         following = None if motion.transition.stops else source.peek()
         if following is None:
             return False
-        first = self._linked_motion(element, motion, 0)
-        path = LinkedPath(self._look_ahead(), self._builder, source, self._make_linked)
-        if not path.begin(first, motion, following):
+        ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
+        path = LinkedPath(ahead, self._builder, source, self._make_linked, steps=plan.steps)
+        if not path.begin(self._linked_motion(plan, motion, 0), motion, following):
             return False
         self._linked, self.feed = path, path.feed
         return True
 
-    def _look_ahead(self) -> LookAhead:
-        return LookAhead(self._interpolator.override, self._interpolator.next_offset)
-
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
-        return self._linked_motion(self._make_element(start, motion), motion, block)
+        return self._linked_motion(self._plan(motion, start), motion, block)
 
-    def _linked_motion(self, element: Line | Arc, motion: Path, block: int) -> LinkedMotion:
-        limits = self._rapid_limits if is_rapid(motion) else self._feed_limits
-        if self._steps(motion):
+    def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:
+        rapid = is_rapid(motion)
+        limits = self._rapid_limits if rapid else self._feed_limits
+        if plan.steps:
             limits = [stepping(axis, self._cycle_time) for axis in limits]
-        return LinkedMotion(element, limits, math.inf if is_rapid(motion) else motion.feed, block, motion.transition)
+        feed = math.inf if rapid else motion.feed
+        return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
 
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before."""
@@ -283,13 +282,14 @@ def evaluation(element: Line | Arc, *, steps: bool) -> Evaluation:
     if not steps or isinstance(element, Line):
         return element.evaluate
 
-    def without_jerk(s: float, v: float, a: float, j: float) -> AxisStates:
-        return tuple([(p, v, a, 0.0) for p, v, a, _ in element.evaluate(s, v, a, j)])
+    def stepping_states(s: float, v: float, a: float, j: float) -> AxisStates:
+        return without_jerk(element.evaluate(s, v, a, j))
 
-    return without_jerk
+    return stepping_states
 
 
 STEP_PART = 0.1
+"""Part of a cycle in which the acceleration of a linked path with slope STEP reaches its limit."""
 
 
 def stepping(axis: AxisLimits, cycle_time: float) -> AxisLimits:

@@ -13,6 +13,11 @@ Bounds = tuple[float, float, float]
 """Largest |q1|, |q2|, |q3| of one axis over a part of the path."""
 
 
+def without_jerk(states: Sequence[AxisState]) -> tuple[AxisState, ...]:
+    """The same states with jerk 0: without a limit of the jerk none is fed forward (P-AXIS-00337)."""
+    return tuple([(p, v, a, 0.0) for p, v, a, _ in states])
+
+
 def speed_of(shape: Sequence[Shape], axes: Sequence[int]) -> float:
     """|dq/du| of the given axes: the path velocity is u' times that."""
     square = 0.0

@@ -158,3 +158,32 @@ def test_single_block_stops_at_every_end() -> None:
         places.append(path(bench)[-1][0])
         bench.give("channel", "start")
     assert places == pytest.approx([6.0, 12.0, 18.0], abs=1e-9)
+
+
+def test_rapid_traverse_shows_the_velocity_that_the_axes_allow() -> None:
+    one = MachineBench(program("G00 X60")).run()
+    linked = MachineBench(program("G359", "G00 X20", "X40", "X60")).run()
+    for bench in (one, linked):
+        feeds = {feed for feed in bench.column("channel", "programmed_feed") if feed}
+        assert feeds == {MILL.axes["x"].rapid_velocity}
+    assert max(linked.column("channel", "path_velocity")) == pytest.approx(max(one.column("channel", "path_velocity")))
+
+
+def test_slope_step_feeds_no_jerk_forward() -> None:
+    lines = ("G01 X20", "X40", "X60")
+    bench = MachineBench(program("#SLOPE [TYPE=STEP]", "G359 F6000", *lines)).run()
+    limited = MachineBench(program("G359 F6000", *lines)).run()
+    assert set(bench.column("x", "set_jerk")) == {0.0} and max(limited.column("x", "set_jerk")) > 0.0
+    assert max(bench.column("x", "set_acceleration")) == pytest.approx(MILL.axes["x"].acceleration)
+    assert np.count_nonzero(bench.column("channel", "path_velocity")) < np.count_nonzero(
+        limited.column("channel", "path_velocity")
+    )
+
+
+def test_offsets_are_reported_as_the_path_passes_their_block() -> None:
+    bench = MachineBench(program("G359 F6000", "G01 X20", "G92 X5", "X30", "X45")).run()
+    x = path(bench)[:, 0]
+    reports = [(report.cycle, report.line) for block in bench.blocks["channel"] for report in block.offsets]
+    cycle = next(cycle for cycle, line in reports if line > 3)
+    assert abs(cycle - int(np.argmax(x > 20.0))) <= 1
+    assert min(bench.column("channel", "path_velocity")[150:400]) > 0.0

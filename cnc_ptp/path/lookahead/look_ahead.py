@@ -67,7 +67,7 @@ class LookAhead:
     @property
     def wants(self) -> bool:
         """The next part should be appended: less than a window is ahead."""
-        if self.closed or sum(map(len, self._stretches)) >= MOST_CELLS:
+        if self.closed or self._stopping or sum(map(len, self._stretches)) >= MOST_CELLS:
             return False
         return self.end - self.state[0] < WINDOW * self._reach or len(self._stretches[-1]) < FEWEST_CELLS
 

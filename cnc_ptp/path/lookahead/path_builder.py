@@ -22,15 +22,25 @@ SLOWEST: Final = 1.0
 
 
 class LinkedMotion:
-    """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse)."""
+    """A motion of the path: its element, the limits of the axes and the feed (mm/s, inf in rapid traverse).
 
-    __slots__ = ("axes", "block", "feed", "span", "transition")
+    `shown`: the feed, in rapid traverse the velocity that the axes allow.
+    """
+
+    __slots__ = ("axes", "block", "feed", "shown", "span", "transition")
 
     def __init__(
-        self, element: Curve, axes: Sequence[AxisLimits], feed: float, block: int, transition: Transition
+        self,
+        element: Curve,
+        axes: Sequence[AxisLimits],
+        feed: float,
+        block: int,
+        transition: Transition,
+        shown: float = inf,
     ) -> None:
         self.span = whole(element, block)
         self.axes, self.feed, self.block = axes, feed, block
+        self.shown = shown
         self.transition = transition
 
 
