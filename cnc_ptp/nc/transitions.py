@@ -12,18 +12,19 @@ from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
-LENGTHS: Final = {"PATH_DEV": "path_dev", "PRE_DIST": "pre_dist", "POST_DIST": "post_dist"}
-"""Words in mm or inch, and what they are here."""
-OTHERS: Final = {"TRACK_DEV": "track_dev", "REMAIN_PART": "remain_part", "MAX_ANGLE": "max_angle"}
+LENGTHS: Final = ("PATH_DEV", "PRE_DIST", "POST_DIST")
+"""Words in mm or inch."""
+OTHERS: Final = ("TRACK_DEV", "REMAIN_PART", "MAX_ANGLE")
 CONTOUR: Final = "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5] or [DIST PRE_DIST=1 POST_DIST=2], ON, OFF"
 SMOOTHING: Final = "#HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF"
-OF_MODE: Final = {DEV: ("PATH_DEV",), DIST: ("PRE_DIST", "POST_DIST")}
+OF_MODE: Final = {DEV: ("PATH_DEV", *OTHERS), DIST: ("PRE_DIST", "POST_DIST", *OTHERS), "OFF": ()}
 LARGEST: Final = {"REMAIN_PART": 100.0, "MAX_ANGLE": 180.0}
 
 
 def exact_stop(state: ModalState) -> None:
     """G60, G360: the path stops at the end of each block that #HSC does not smooth."""
-    state.transition = EXACT_STOP._replace(smoothing=state.transition.smoothing)
+    smoothing = state.transition.smoothing
+    state.transition = EXACT_STOP if smoothing is None else EXACT_STOP._replace(smoothing=smoothing)
 
 
 def stop_always(state: ModalState) -> None:
@@ -60,8 +61,9 @@ class ContourMode(Statement):
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
         state = execution.values.state
         if self.mode:
-            given = {name: option(execution, line, name, node) for name, node in self.options.items()}
-            state.contour = state.contour._replace(mode=self.mode, **given)
+            given = values_of(execution, line, self.options)
+            fields = {word.lower(): value for word, value in given.items()}
+            state.contour = state.contour._replace(mode=self.mode, **fields)
         if self.switch == "OFF":
             through(state)
         elif self.switch == "ON" or state.transition.contour is not None:
@@ -80,17 +82,21 @@ class SmoothingMode(Statement):
         state = execution.values.state
         smoothing: Smoothing | None = None
         if self.options is not None:
-            given = {name: option(execution, line, name, node) for name, node in self.options.items()}
-            smoothing = Smoothing(given.get("path_dev", state.contour.path_dev), given.get("track_dev", 0.0))
+            given = values_of(execution, line, self.options)
+            smoothing = Smoothing(given["PATH_DEV"], given.get("TRACK_DEV", 0.0))
         state.transition = state.transition._replace(smoothing=smoothing)
         return None
 
 
-def option(execution: Flow, line: Line, name: str, node: Node) -> float:
-    """Value of an option, mm or deg. Raises ProgramError for one that is not above 0, or above its limit."""
+def values_of(execution: Flow, line: Line, options: dict[str, Node]) -> dict[str, float]:
+    """Values of options by their words."""
+    return {word: option(execution, line, word, node) for word, node in options.items()}
+
+
+def option(execution: Flow, line: Line, word: str, node: Node) -> float:
+    """Value of an option, mm, % or deg. Raises ProgramError for one that is not above 0, or above its limit."""
     values = execution.values
     value = values.bounded(node.value(values), node.column, "the command")
-    word = next(word for word, field in (LENGTHS | OTHERS).items() if field == name)
     if value < 0.0 or (value == 0.0 and word in LENGTHS):
         least = "above 0" if word in LENGTHS else "at least 0"
         raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value), least=least)
@@ -106,17 +112,16 @@ def read_contour_mode(line: Line, text: str, end: int, column: int) -> None:
     mode = ""
     options: dict[str, Node] = {}
     if not words.at_end and switch != "OFF":
-        mode, options = read_options(words, DEV, DIST, *LENGTHS, *OTHERS)
-        if mode == "OFF":
-            switch, mode = "OFF", ""
+        mode, options = words.bracket((DEV, DIST) if switch else (DEV, DIST, "OFF"), (*LENGTHS, *OTHERS))
+        mode = mode or DEV
     elif not switch:
         raise words.missing("values in brackets, ON or OFF")
     words.require_end()
-    for word in ("PATH_DEV", "PRE_DIST", "POST_DIST"):
-        if LENGTHS[word] in options and word not in OF_MODE.get(mode, ()):
-            raise faults.OPTION_OF_OTHER_MODE.at(
-                line.source, options[LENGTHS[word]].column, word=word, mode=mode or "OFF"
-            )
+    for word, node in options.items():
+        if word not in OF_MODE[mode]:
+            raise faults.OPTION_OF_OTHER_MODE.at(line.source, node.column, word=word, mode=mode)
+    if mode == "OFF":
+        switch, mode = "OFF", ""
     line.statement = ContourMode(column, switch, mode, options)
     line.synchronises = words.reader.synchronises
 
@@ -128,17 +133,11 @@ def read_smoothing(line: Line, text: str, end: int, column: int) -> None:
         raise words.stray() if not words.at_end else words.missing("ON or OFF")
     options: dict[str, Node] | None = None
     if switch == "ON":
-        options = {}
-        if not words.at_end:
-            _, options = read_options(words, "BSPLINE", "PATH_DEV", "TRACK_DEV")
+        if words.at_end:
+            raise words.missing("PATH_DEV")
+        _, options = words.bracket(("BSPLINE",), ("PATH_DEV", "TRACK_DEV"))
+        if "PATH_DEV" not in options:
+            raise words.missing("PATH_DEV")
     words.require_end()
     line.statement = SmoothingMode(column, options)
     line.synchronises = words.reader.synchronises
-
-
-def read_options(words: Words, *known: str) -> tuple[str, dict[str, Node]]:
-    """`[DEV PATH_DEV=0.01]`: the mode, which stands first and may be missing, and the options by their names here."""
-    fields = LENGTHS | OTHERS
-    keywords = [word for word in known if word not in fields]
-    mode, found = words.bracket([*keywords, "OFF"], [word for word in known if word in fields])
-    return mode or keywords[0], {fields[word]: node for word, node in found.items()}
