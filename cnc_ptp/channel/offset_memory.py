@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 
-from cnc_ptp.errors import CncError, Value
+from cnc_ptp.errors import CncError, Value, did_you_mean, nearest
 from cnc_ptp.nc.canonical import OffsetReport
 from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, offset_values
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, Coordinates
@@ -85,9 +84,8 @@ class OffsetMemory:
         place = self._channel.axis_index.get(axis)
         if place is None:
             known = ", ".join(self._channel.axes)
-            close = get_close_matches(axis.upper(), self._channel.axes, n=1, cutoff=0.5)
-            nearest = f", did you mean {close[0]}?" if close else ""
-            raise self._refusal(command, NO_SUCH_AXIS, f"'{axis}' is no axis of the channel ({known}){nearest}")
+            close = did_you_mean(nearest(axis.upper(), self._channel.axes, cutoff=0.5))
+            raise self._refusal(command, NO_SUCH_AXIS, f"'{axis}' is no axis of the channel ({known}){close}")
         return place
 
     def give(self, coordinates: Coordinates) -> None:

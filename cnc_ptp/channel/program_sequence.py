@@ -19,7 +19,7 @@ from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
 
 from cnc_ptp.channel.axis_homing import AxisHoming
-from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
+from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.following_blocks import LATER_WAITS, FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
@@ -93,7 +93,6 @@ class ProgramSequence:
         self._axes = axes
         self._functions = functions
         self.phase = Phase.IDLE
-        self.stream = NO_BLOCKS
         self.finished = False
         """The program has been carried out to its end."""
         self.source = NO_SOURCE
@@ -123,6 +122,11 @@ class ProgramSequence:
         self.offsets: OffsetReport | None = None
         """Offsets that count from the active block on, for the channel to publish."""
 
+    @property
+    def stream(self) -> BlockStream:
+        """The blocks of the program."""
+        return self._following.stream
+
     # from outside
 
     def begin(self, stream: BlockStream, *, program: bool) -> None:
@@ -130,7 +134,7 @@ class ProgramSequence:
         if program:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
-        self.stream, self.finished = stream, False
+        self.finished = False
         self._following.begin(stream)
         self.phase = Phase.NEXT
 

@@ -129,7 +129,7 @@ NOTHING = "; nothing was changed"
         ("set_zero_offset", {"index": 0, "axis": "X", "value": 1}, "22030 {}: index = 0 is not within 1 ... 96; G53 selects no offset (P-ZERO-00001)"),
         ("set_zero_offset", {"index": 97, "axis": "X", "value": 1}, "22030 {}: index = 97 is not within 1 ... 96"),
         ("set_zero_offset", {"index": -1, "axis": "X", "value": 1}, "22030 {}: index = -1 is not within 1 ... 96"),
-        ("set_zero_offset", {"index": 1, "axis": "XX", "value": 1}, "22031 {}: 'XX' is no axis of the channel (X, Y, Z), did you mean X?"),
+        ("set_zero_offset", {"index": 1, "axis": "XX", "value": 1}, "22031 {}: 'XX' is no axis of the channel (X, Y, Z); did you mean X?"),
         ("set_zero_offset", {"index": 1, "axis": "W", "value": 1}, "22031 {}: 'W' is no axis of the channel (X, Y, Z)"),
         ("set_zero_offset", {"index": 1, "axis": "X", "value": 214748.4}, "22032 {}: axis X: 214748 mm is not within -214748.3647 ... 214748.3647 mm"),
         ("set_zero_offset", {"index": 1, "axis": "X"}, "22001 {}: argument 'value' is missing"),

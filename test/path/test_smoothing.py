@@ -15,7 +15,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.path import AxisLimits
 from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.lookahead.parts import PathPart, cell_of, cells_of
+from cnc_ptp.path.lookahead.parts import PathPart, cells_of, whole_cell
 from cnc_ptp.path.lookahead.path_profile import PathProfile, pieces_of
 from cnc_ptp.path.lookahead.smoothing import LONG_LINE, LONGEST_SPAN, Smoother, SmoothPiece
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
@@ -329,7 +329,7 @@ def node_speeds(pieces, axes=AXES) -> list[float]:
     found = []
     for piece in pieces:
         part = PathPart(piece.geometry, axes, (0, 1, 2), math.inf, piece.block)
-        found.append(math.sqrt(cell_of(part, 0.0, 0.0, part.length).limit))
+        found.append(math.sqrt(whole_cell(part).limit))
     return found
 
 
@@ -337,7 +337,8 @@ def duration(pieces, axes=AXES) -> float:
     """s from rest to rest, by the velocity planner."""
     cells, origin = [], 0.0
     for piece in pieces:
-        cells += cells_of(PathPart(piece.geometry, axes, (0, 1, 2), piece.feed, piece.block), origin)
+        part = PathPart(piece.geometry, axes, (0, 1, 2), piece.feed, piece.block)
+        cells += cells_of(part, whole_cell(part), origin)
         origin += piece.geometry.length
     plan = plan_velocity(cells, MovingStart(0.0), 1.0)
     assert plan is not None

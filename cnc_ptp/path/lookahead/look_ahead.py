@@ -13,7 +13,7 @@ from typing import Final
 
 from cnc_ptp.motion import stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
-from cnc_ptp.path.lookahead.parts import PathPart, cell_of, cells_of
+from cnc_ptp.path.lookahead.parts import PathPart, cells_of, whole_cell
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import BETWEEN, PathPiece, PathProfile, pieces_of
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, earliest, plan_velocity, stop_soon
@@ -76,10 +76,9 @@ class LookAhead:
         self._parts.append((self.end, part))
         if part.entry <= 0.0 and self._stretches[-1]:
             self._stretches.append([])
-        stretch = self._stretches[-1]
-        stretch += cells_of(part, self.end, FEWEST_CELLS if not stretch else 1)
+        stretch, whole = self._stretches[-1], whole_cell(part)
+        stretch += cells_of(part, whole, self.end, FEWEST_CELLS if not stretch else 1)
         self.end += part.length
-        whole = cell_of(part, 0.0, 0.0, part.length)
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
 

@@ -118,12 +118,16 @@ def loads_of(part: PathPart, bounds: Sequence[Bounds], middle: float, half: floa
     return loads
 
 
-def cells_of(part: PathPart, origin: float, fewest: int = 1) -> list[PathCell]:
-    """The cells of a part, at least `fewest`; short ones at both ends of a straight part."""
+def whole_cell(part: PathPart) -> PathCell:
+    """What all of a part permits."""
+    return cell_of(part, 0.0, 0.0, part.length)
+
+
+def cells_of(part: PathPart, whole: PathCell, origin: float, fewest: int = 1) -> list[PathCell]:
+    """The cells of a part (`whole`: its whole_cell), at least `fewest`; short ones at both ends of a straight part."""
     length = part.length
-    whole = cell_of(part, 0.0, 0.0, length)
     largest = min(CELL_TIME * sqrt(min(whole.limit, whole.feed)), length / fewest)
-    turn = sqrt(sum([second * second for _, second, _ in part.geometry.bounds(0.0, length)]))
+    turn = sqrt(sum([load.second * load.second for load in whole.loads]))
     if turn > 0.0:
         count = max(1, ceil(length / min(largest, CELL_TURN / turn)))
         ends = [length * (index + 1) / count for index in range(count)]
