@@ -90,5 +90,5 @@ class FollowingBlocks:
         return block
 
 
-LATER_WAITS = (Moment.NEXT_MOTION, Moment.NEXT_CUT)
-"""Waits that hold the next motion."""
+LATER_WAITS = (Moment.AFTER, Moment.NEXT_MOTION, Moment.NEXT_CUT)
+"""Waits that hold the next motion; those that are fulfilled meanwhile cost a stop, too."""

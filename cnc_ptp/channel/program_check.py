@@ -25,7 +25,8 @@ from cnc_ptp.nc.canonical import (
     SpindleCommand,
     SpindleFunction,
 )
-from cnc_ptp.nc.coordinates.codes import initial_coordinates
+from cnc_ptp.nc.contour import path_defaults
+from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
@@ -137,6 +138,7 @@ class ProgramCheck:
             channel.offsets,
             self._soft_limits,
             channel.tool_table,
+            path_defaults(channel),
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -201,7 +203,7 @@ class ProgramCheck:
 
         `offsets`: what was changed of zero offsets, `clamp_index`: the clamp position.
         """
-        modal = ModalState(coordinates=initial_coordinates(self.nc, offsets, clamp_index))
+        modal = initial_state(self.nc, offsets, clamp_index)
         modal.spindle.gears = self.gears(feedback)
         modal.spindle.links = dict(links)
         values = Values(self.nc, modal)

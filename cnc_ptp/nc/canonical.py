@@ -13,7 +13,7 @@ functions have finished.
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from cnc_ptp.nc.contour import EXACT_STOP, Transition
+from cnc_ptp.nc.contour import THROUGH, Transition
 
 
 class Source(NamedTuple):
@@ -62,7 +62,7 @@ class LinearMove(NamedTuple):
     feed: float
     slope: str = ""
     full_override: bool = False
-    transition: Transition = EXACT_STOP
+    transition: Transition = THROUGH
 
 
 class CircularMove(NamedTuple):
@@ -81,7 +81,7 @@ class CircularMove(NamedTuple):
     feed: float
     slope: str = ""
     full_override: bool = False
-    transition: Transition = EXACT_STOP
+    transition: Transition = THROUGH
 
 
 class Dwell(NamedTuple):

@@ -113,8 +113,8 @@ def _numbers(values: tuple[float, ...]) -> str:
 
 
 def _transition(transition: Transition) -> str:
-    """Empty for an exact stop."""
-    text = "" if transition.exact else " through"
+    """Empty where the path continues."""
+    text = " exact stop" if transition.exact else ""
     if transition.contour is not None:
         contour = transition.contour
         values = [contour.path_dev] if contour.mode == DEV else [contour.pre_dist, contour.post_dist]

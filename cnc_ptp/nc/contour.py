@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from cnc_ptp.parameters import ChannelParameters
+
 DEV: Final = "DEV"
 """The distance to the programmed path is given."""
 DIST: Final = "DIST"
@@ -60,3 +62,33 @@ class Transition(NamedTuple):
 
 EXACT_STOP: Final = Transition(exact=True)
 THROUGH: Final = Transition(exact=False)
+
+
+class PathDefaults(NamedTuple):
+    """What holds at the start of a program (P-CHAN-90011 … 90015).
+
+    transition  between blocks
+    contour     what G261 means
+    smoothing   what #HSC ON means without words; None: PATH_DEV must be given
+    """
+
+    transition: Transition = THROUGH
+    contour: Contour = DEFAULT_CONTOUR
+    smoothing: Smoothing | None = None
+
+
+PATH_DEFAULTS: Final = PathDefaults()
+
+
+def path_defaults(channel: ChannelParameters) -> PathDefaults:
+    """Those of the machine file."""
+    contour = DEFAULT_CONTOUR._replace(path_dev=channel.contour_path_dev, track_dev=channel.contour_track_dev)
+    smoothing = Smoothing(channel.hsc_path_dev, channel.hsc_track_dev) if channel.hsc_path_dev else None
+    transition = EXACT_STOP if channel.transition == EXACT_STOP_CODE else THROUGH
+    if channel.transition == CONTOURING_CODE:
+        transition = THROUGH._replace(contour=contour)
+    return PathDefaults(transition, contour, smoothing)
+
+
+EXACT_STOP_CODE: Final = 60
+CONTOURING_CODE: Final = 261

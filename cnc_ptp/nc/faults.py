@@ -131,6 +131,10 @@ SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available ar
 # Transitions between blocks
 OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be {least}")
 OPTION_TOO_LARGE = Fault(21112, "{word}={value} must be at most {limit}")
+NO_TOLERANCE = Fault(
+    21114,
+    "#HSC ON without PATH_DEV, and the machine file has none (P-CHAN-90014); e.g. #HSC ON [BSPLINE PATH_DEV=0.01]",
+)
 OPTION_OF_OTHER_MODE = Fault(21113, "{word} has no meaning in mode {mode} of #CONTOUR MODE")
 
 # Spindles

@@ -17,9 +17,9 @@ from cnc_ptp.nc.canonical import (
     Timer,
     WaitForPath,
 )
-from cnc_ptp.nc.contour import EXACT_STOP
+from cnc_ptp.nc.contour import THROUGH
 from cnc_ptp.nc.controls import bracketed_controls
-from cnc_ptp.nc.coordinates.codes import initial_coordinates, select_offset
+from cnc_ptp.nc.coordinates.codes import initial_state, select_offset
 from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import leave_frame, place, refresh
 from cnc_ptp.nc.coordinates.report import offset_report
@@ -92,7 +92,7 @@ def interpret(
     table, ratio = spindle_table(spindles), centre_offset_ratio
     words, turns = program.vocabulary, frozenset(rotary)
     channel = Channel(axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools)
-    state = ModalState(coordinates=initial_coordinates(channel)) if state is None else state
+    state = initial_state(channel) if state is None else state
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
     refresh(channel, state)
@@ -220,7 +220,7 @@ def _moved(
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
-    if transition is not EXACT_STOP:
+    if transition is not THROUGH:
         motion = motion._replace(transition=transition)
     if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
         motion = motion._replace(full_override=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
-from cnc_ptp.nc.contour import DEFAULT_CONTOUR, EXACT_STOP, Contour, Transition
+from cnc_ptp.nc.contour import DEFAULT_CONTOUR, PATH_DEFAULTS, THROUGH, Contour, PathDefaults, Transition
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
@@ -264,7 +264,7 @@ class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
     `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
-    empty for none.
+    empty for none. `path`: how the path goes from block to block at the start.
     """
 
     axes: tuple[str, ...]
@@ -277,6 +277,7 @@ class Channel(NamedTuple):
     offsets: OffsetTables = NO_OFFSET_TABLES
     soft_limits: tuple[tuple[float, float], ...] = ()
     tools: ToolTable = NO_TOOLS
+    path: PathDefaults = PATH_DEFAULTS
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -353,7 +354,7 @@ class ModalState:
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING
-    transition: Transition = EXACT_STOP
+    transition: Transition = THROUGH
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR
     following: Iterator[Step] | None = None

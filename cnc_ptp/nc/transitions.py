@@ -83,7 +83,10 @@ class SmoothingMode(Statement):
         smoothing: Smoothing | None = None
         if self.options is not None:
             given = values_of(execution, line, self.options)
-            smoothing = Smoothing(given["PATH_DEV"], given.get("TRACK_DEV", 0.0))
+            default = execution.values.channel.path.smoothing or Smoothing(given.get("PATH_DEV", 0.0))
+            smoothing = Smoothing(given.get("PATH_DEV", default.path_dev), given.get("TRACK_DEV", default.track_dev))
+            if smoothing.path_dev == 0.0:
+                raise faults.NO_TOLERANCE.at(line.source, self.column)
         state.transition = state.transition._replace(smoothing=smoothing)
         return None
 
@@ -133,11 +136,7 @@ def read_smoothing(line: Line, text: str, end: int, column: int) -> None:
         raise words.stray() if not words.at_end else words.missing("ON or OFF")
     options: dict[str, Node] | None = None
     if switch == "ON":
-        if words.at_end:
-            raise words.missing("PATH_DEV")
-        _, options = words.bracket(("BSPLINE",), ("PATH_DEV", "TRACK_DEV"))
-        if "PATH_DEV" not in options:
-            raise words.missing("PATH_DEV")
+        options = {} if words.at_end else words.bracket(("BSPLINE",), ("PATH_DEV", "TRACK_DEV"))[1]
     words.require_end()
     line.statement = SmoothingMode(column, options)
     line.synchronises = words.reader.synchronises

@@ -41,7 +41,8 @@ Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
     alike = motion.full_override == following.full_override and motion.slope == following.slope
-    return alike and is_rapid(motion) == is_rapid(following) and not motion.transition.stops
+    blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
+    return alike and blended and not motion.transition.stops
 
 
 def is_rapid(motion: Path) -> bool:
@@ -160,6 +161,8 @@ class LinkedPath:
             linked = self._make(last.target, motion, self._blocks)
         except CncError:
             return False  # reported when the path gets there
+        if not self._builder.passes(linked):
+            return False
         parts = self._builder.add(linked)
         self._source.accept()
         self._blocks += 1

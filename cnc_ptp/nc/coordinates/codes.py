@@ -70,7 +70,13 @@ def default_offset(channel: Channel, changes: OffsetChanges) -> int:
     return channel.offsets.default if changes.default < 0 else changes.default
 
 
-def initial_coordinates(channel: Channel, changes: OffsetChanges = NO_CHANGES, clamp_index: int = 0) -> Coordinates:
+def initial_state(channel: Channel, changes: OffsetChanges = NO_CHANGES, clamp_index: int = 0) -> ModalState:
+    """That with which a program starts."""
+    coordinates = initial_coordinates(channel, changes, clamp_index)
+    return ModalState(coordinates=coordinates, transition=channel.path.transition, contour=channel.path.contour)
+
+
+def initial_coordinates(channel: Channel, changes: OffsetChanges, clamp_index: int) -> Coordinates:
     """Those with which a program starts."""
     coordinates = Coordinates(changes=changes, clamp_index=clamp_index)
     coordinates.clamp = channel.offsets.clamp.get(clamp_index, ())

@@ -180,6 +180,11 @@ INTERPRETER_REPEATS = "P-CHAN-90002"  # interpreter.repeats
 INTERPRETER_KNOWN_BLOCKS = "P-CHAN-90003"  # interpreter.known_blocks
 INTERPRETER_FOLDERS = "P-CHAN-90004"  # interpreter.folders
 INTERPRETER_DIALECT = "P-CHAN-90010"  # interpreter.dialect
+PROG_START_TRANSITION = "P-CHAN-90011"  # prog_start.transition
+CONTOUR_PATH_DEV = "P-CHAN-90012"  # prog_start.contour.path_dev
+CONTOUR_TRACK_DEV = "P-CHAN-90013"  # prog_start.contour.track_dev
+HSC_PATH_DEV = "P-CHAN-90014"  # prog_start.hsc.path_dev
+HSC_TRACK_DEV = "P-CHAN-90015"  # prog_start.hsc.track_dev
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

@@ -104,6 +104,16 @@ class ChannelParameters:
     """In which called programs are looked for besides that of the main program (P-CHAN-90004)."""
     dialect: str = "twincat"
     """Vocabulary of its programs: twincat or iso (P-CHAN-90010)."""
+    transition: Annotated[int, ids.PROG_START_TRANSITION] = 359
+    """G function of the transition between blocks at the start of programs."""
+    contour_path_dev: Annotated[float, ids.CONTOUR_PATH_DEV] = 1.0
+    """Of G261, mm …"""
+    contour_track_dev: Annotated[float, ids.CONTOUR_TRACK_DEV] = 0.0
+    """… and mm or deg of the other axes, 0 none."""
+    hsc_path_dev: Annotated[float, ids.HSC_PATH_DEV] = 0.0
+    """Of #HSC ON, mm, 0 none …"""
+    hsc_track_dev: Annotated[float, ids.HSC_TRACK_DEV] = 0.0
+    """… and mm or deg of the other axes, 0 none."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:

@@ -31,6 +31,9 @@ from cnc_ptp.path.shape import Shape
 Parts = tuple[float, float, float, float]
 """c1 … c4, or these times what they belong to."""
 
+Corner = tuple[Span, list[Span], Span]
+"""What is left of A, the curve, and what is left of B."""
+
 EVEN: Parts = (13.0 / 72.0, 0.00473278, 1.0 / 144.0, 0.0058)
 """dA = dB."""
 UNEVEN: Parts = (2.0 / 9.0, 0.022093, 1.0 / 144.0, 0.0058)
@@ -45,7 +48,7 @@ STEPS: Final = 8
 """Newton steps to the largest distance; the first value is at most four times that."""
 
 
-def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> tuple[Span, list[Span], Span] | None:
+def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corner | None:
     """What is left of A, the curve, and what is left of B; without a curve where nothing jumps.
 
     The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses

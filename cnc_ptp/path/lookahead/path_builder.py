@@ -12,7 +12,7 @@ from typing import Final
 
 from cnc_ptp.nc.contour import Transition
 from cnc_ptp.path.geometry import AxisLimits, Line
-from cnc_ptp.path.lookahead.corners import corner, kink_square
+from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
@@ -62,6 +62,12 @@ class PathBuilder:
         self._last, self._entry = None, inf
         self._smoother = None
 
+    def passes(self, motion: LinkedMotion) -> bool:
+        """False if the path has to stop before `motion`, whatever its velocity."""
+        if self._smoother is not None or motion.transition.smoothing is not None or self._last is None:
+            return True  # where a smooth curve begins and ends is known later; it may stop there
+        return self._join(self._last, motion)[1] > 0.0
+
     def add(self, motion: LinkedMotion) -> list[PathPart]:
         """The parts that are known once `motion` follows."""
         parts: list[PathPart] = []
@@ -107,16 +113,23 @@ class PathBuilder:
         last, self._last = self._last, motion
         if last is None:
             return []
-        contour = last.transition.contour
-        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
+        made, square = self._join(last, motion)
         if made is not None:
             before, curve, motion.span = made
             spans = [before, *curve] if before.length > 0.0 else curve
             return [self._part(last if span.block == last.block else motion, span) for span in spans]
         part = self._part(last, last.span)
-        square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
-        self._entry = square if square >= SLOWEST * SLOWEST else 0.0
+        self._entry = square
         return [part] if part.length > 0.0 else []
+
+    def _join(self, last: LinkedMotion, motion: LinkedMotion) -> tuple[Corner | None, float]:
+        """The curve between two motions, or else the y with which the kink can be passed; 0 is an exact stop."""
+        contour = last.transition.contour
+        made = None if contour is None else corner(last.span, motion.span, contour, self._path_axes)
+        if made is not None:
+            return made, inf
+        square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
+        return None, square if square >= SLOWEST * SLOWEST else 0.0
 
     def _part(self, motion: LinkedMotion, span: Span) -> PathPart:
         entry, self._entry = self._entry, inf
