@@ -251,7 +251,7 @@ class ChannelUnit(Unit):
 
     def do_single_block(self, cycle: int, *, enabled: bool, mode: str = "block") -> None:
         """Single block: the channel stops after each block, or (mode `motion`) after each motion, until `start`."""
-        self._sequence.single_block = mode if enabled else ""
+        self._sequence.set_single_block(mode if enabled else "")
 
     def do_optional_stop(self, cycle: int, *, enabled: bool) -> None:
         """Makes M01 a stop like M00 (off by default)."""
@@ -400,9 +400,11 @@ class ChannelUnit(Unit):
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
             self._reach_offsets(cycle + len(points))
+        elif self._motion.halted and self._sequence.phase is Phase.MOTION:
+            self._sequence.halted()
         elif len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
             self._sequence.motion_ended()
-        self._warn(cycle)
+        self._warn(cycle + len(points))
 
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
@@ -423,11 +425,11 @@ class ChannelUnit(Unit):
 
     def _warn(self, cycle: int) -> None:
         messages, self._sequence.messages = self._sequence.messages, []
-        for text in messages:
-            self.event(cycle, Severity.INFO, PROGRAM_MESSAGE, text, self._sequence.source.line)
+        for text, line in messages:
+            self.event(cycle, Severity.INFO, PROGRAM_MESSAGE, text, line)
         notes, self._sequence.notes = self._sequence.notes, []
-        for number, note in notes:
-            self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", self._sequence.source.line)
+        for number, note, line in notes:
+            self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", line)
 
     def _add(self, rows: CycleRows, points: Sequence[PathPoint]) -> None:
         """Adds the cycles of `points`, all of the same phase and program line."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Container
+from itertools import islice
 
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
-from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, LinearMove
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove
 from cnc_ptp.nc.faults import ProgramError
 
 
@@ -18,9 +19,9 @@ class FollowingBlocks:
     busy   the interpreter has not found the next block yet
     """
 
-    def __init__(self, functions: FunctionOutput, held: Callable[[], bool]) -> None:
-        """`held`: the path has to stop before whatever follows."""
-        self._functions, self._held = functions, held
+    def __init__(self, functions: FunctionOutput, waits: Callable[[], Container[Moment]]) -> None:
+        """`waits`: the moments before which the path has to stop."""
+        self._functions, self._waits = functions, waits
         self.stream = NO_BLOCKS
         self.busy = False
         self._active: CanonicalBlock | None = None
@@ -55,11 +56,14 @@ class FollowingBlocks:
         self.busy = False
         place = self._accepted
         before = self._ahead[place - 1] if place else self._active
-        if before is None or before.stop or self._held() or self._functions.goes_out_behind(before):
+        if before is None or before.stop or self._functions.goes_out_behind(before):
+            return None
+        waits = self._waits()
+        if any(moment in waits for moment in LATER_WAITS):
             return None
         while True:
             block = self._block(place)
-            if block is None or not self._functions.without_stop(block):
+            if block is None or not self._functions.without_stop(block) or self._synchronises(block, place, waits):
                 return None
             place += 1
             if isinstance(block.motion, (LinearMove, CircularMove)):
@@ -71,6 +75,12 @@ class FollowingBlocks:
     def accept(self) -> None:
         """The path continues with the motion that `peek` has shown."""
         self._accepted = self._shown
+
+    def _synchronises(self, block: CanonicalBlock, place: int, waits: Container[Moment]) -> bool:
+        """#EXPL SYN with something to wait for."""
+        if not any(isinstance(function, ExplicitSynchronisation) for function in block.functions):
+            return False
+        return Moment.EXPLICIT in waits or any(map(self._functions.waits_late, islice(self._ahead, place)))
 
     def _block(self, place: int) -> CanonicalBlock | None:
         if place < len(self._ahead):

@@ -22,6 +22,7 @@ from cnc_ptp.nc.canonical import (
     AxisFeedforward,
     CanonicalBlock,
     CompensationSwitch,
+    ExplicitSynchronisation,
     Function,
     GearChange,
     Message,
@@ -77,11 +78,15 @@ class FunctionOutput:
                 synchronisation = self._synchronisation(function)
                 waits = waits_until(synchronisation)
                 return goes_out(synchronisation) is Moment.BEFORE and waits in (None, Moment.EXPLICIT)
-            case Message():
+            case Message() | ExplicitSynchronisation():
                 return True
             case OrderedError():
                 return not function.severe
         return False
+
+    def waits_late(self, block: CanonicalBlock) -> bool:
+        """#EXPL SYN waits for a function of the block."""
+        return any(waits_until(self._synchronisation(function)) is Moment.EXPLICIT for function in block.functions)
 
     def goes_out_behind(self, block: CanonicalBlock) -> bool:
         """A function of the block goes out when its motion has ended, or with the measuring event."""

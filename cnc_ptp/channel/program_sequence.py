@@ -20,7 +20,7 @@ from enum import Enum, auto
 
 from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
-from cnc_ptp.channel.following_blocks import LATER_WAITS, FollowingBlocks
+from cnc_ptp.channel.following_blocks import FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
@@ -100,10 +100,10 @@ class ProgramSequence:
         self.calls: tuple[str, ...] = ()
         """From where the subroutine of the active block was called, the innermost first."""
         self.single_block = ""
-        """`block`: the program stops behind each block, `motion`: behind each motion, "": behind none."""
+        """As set_single_block has it."""
         self.optional_stop = False
         self._block: CanonicalBlock | None = None
-        self._following = FollowingBlocks(functions, self._stops_before_next)
+        self._following = FollowingBlocks(functions, self._open_waits)
         self._keep: Container[str] = ()
         self._outgoing = Outgoing()
         self._waits: list[Wait] = []
@@ -115,10 +115,10 @@ class ProgramSequence:
         """Functions of the block go out with the measuring event."""
         self.handshake = Handshake()
         self._feedback: Mapping[str, CycleBlock] = {}
-        self.notes: list[tuple[int, str]] = []
-        """Warnings for the channel to publish: number and text."""
-        self.messages: list[str] = []
-        """Messages of the program for the channel to publish."""
+        self.notes: list[tuple[int, str, int]] = []
+        """Warnings for the channel to publish: number, text and line."""
+        self.messages: list[tuple[str, int]] = []
+        """Messages of the program for the channel to publish, with their lines."""
         self.offsets: OffsetReport | None = None
         """Offsets that count from the active block on, for the channel to publish."""
 
@@ -140,7 +140,23 @@ class ProgramSequence:
 
     def resume(self) -> None:
         """Resumes after M00, M01 or in single block."""
-        self.phase = Phase.NEXT
+        if not self._motion.halted:
+            self.phase = Phase.NEXT
+            return
+        self.phase = Phase.MOTION
+        self._motion.resume()
+        if self.single_block:
+            self._motion.halt()
+
+    def set_single_block(self, mode: str) -> None:
+        """`block`: the program stops behind each block, `motion`: behind each motion, "": behind none."""
+        self.single_block = mode
+        if mode and self.phase is Phase.MOTION:
+            self._motion.halt()
+
+    def halted(self) -> None:
+        """The path has halted at the end of the active block."""
+        self.phase = Phase.STOPPED
 
     def ramp_down(self, *, keep: Container[str] = ()) -> None:
         """Aborts the program: the path comes to rest on its ramp, then the channel's spindles stop, except `keep`.
@@ -227,12 +243,13 @@ class ProgramSequence:
             self._home()
         spindles = self._functions.spindles
         ended = spindles.read(cycle, feedback)
-        self.notes += [(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues") for text in ended]
+        for text in ended:
+            self._note(COUPLING_ENDED, f"{text}, others have decoupled it; the program continues")
         runs = self.phase not in (Phase.IDLE, Phase.RAMP_DOWN)
         waited_for = self._speeds_waited_for()
         for spindle in spindles:
             if lost := spindle.lost_speed(cycle, watched=runs and spindle.node not in waited_for):
-                self.notes.append((COMMANDED_BY_OTHERS, f"{lost}; the program continues"))
+                self._note(COMMANDED_BY_OTHERS, f"{lost}; the program continues")
 
     def _holds(self, wait: Wait) -> bool:
         """The path waits for it now."""
@@ -302,7 +319,7 @@ class ProgramSequence:
         self._motion.finish()
         if self._awaits_event:
             text = "no measuring event has come in the block; its functions go out after the motion"
-            self.notes.append((NO_MEASURING_EVENT, text))
+            self._note(NO_MEASURING_EVENT, text)
             self.measuring_event()
         if self._block is not None:
             self._queue(self._functions.of_block(self._block, Moment.AFTER))
@@ -361,13 +378,13 @@ class ProgramSequence:
         """Messages and timers of the block. Raises CncError 22029 for an error that the program orders."""
         for function in block.functions:
             if isinstance(function, Message):
-                self.messages.append(function.text)
+                self.messages.append((function.text, self.source.line))
             elif isinstance(function, Timer):
                 self._timers.carry_out(function, cycle)
             elif isinstance(function, OrderedError):
                 if function.severe:
                     raise CncError(ORDERED_ERROR, function.text)
-                self.notes.append((ORDERED_ERROR, function.text))
+                self._note(ORDERED_ERROR, function.text)
 
     def _start_motion(self) -> None:
         motion = self._block.motion if self._block else None
@@ -381,9 +398,9 @@ class ProgramSequence:
         self._motion.start(motion, self._following)
         self.phase = Phase.MOTION
 
-    def _stops_before_next(self) -> bool:
-        """The path has to stop behind the active block, whatever follows."""
-        return bool(self.single_block) or any(wait.until in LATER_WAITS for wait in self._waits)
+    def _open_waits(self) -> Container[Moment]:
+        """The moments before which the path has to stop; all in single block."""
+        return list(Moment) if self.single_block else [wait.until for wait in self._waits]
 
     def pass_block(self, cycle: int) -> None:
         """The path continues in the next block without a stop; blocks without motion in between are done at once.
@@ -448,7 +465,8 @@ class ProgramSequence:
         """
         self._outgoing.commands += outgoing.commands
         self._outgoing.requests += outgoing.requests
-        self.notes += outgoing.notes
+        for number, text in outgoing.notes:
+            self._note(number, text)
         later = [wait for wait in self._waits if not self._holds(wait)]
         for newer in outgoing.expected:
             waits_too = any(wait.expected is newer for wait in outgoing.waits)
@@ -456,6 +474,9 @@ class ProgramSequence:
                 wait.renew(newer, waits_too=waits_too)
         self._add_waits(outgoing.waits)
         self.handshake.add(outgoing.requests)
+
+    def _note(self, number: int, text: str) -> None:
+        self.notes.append((number, text, self.source.line))
 
     def _add_waits(self, waits: Sequence[Wait]) -> None:
         """The list is in the order of the moments."""

@@ -117,6 +117,16 @@ class LinkedPath:
         self._begin = self._ends.popleft()
         self._feeds.popleft()
 
+    @property
+    def halted(self) -> bool:
+        """At rest at the end of the active block, until `resume`."""
+        return self.look_ahead.halted and not self._rows
+
+    def halt(self) -> None:
+        """Stops at the end of the first block at which the axes permit it."""
+        kept = self._builder.kept - self.block
+        self.look_ahead.halt([end for block, end in enumerate(self._ends) if 0.0 < end and block < kept])
+
     def follow(self, count: int, cycle_time: float) -> list[LinkedPoint]:
         """The next `count` cycles of the active block; fewer when it ends before."""
         points: list[LinkedPoint] = []

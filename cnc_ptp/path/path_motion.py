@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from cnc_ptp.motion import Limits
+from cnc_ptp.motion.limits import check_limits
 from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
@@ -132,6 +133,21 @@ class PathMotion:
         self.feed = self._linked.feed
 
     @property
+    def halted(self) -> bool:
+        """The path rests at the end of a block that it would have passed, until `resume`."""
+        return self._linked is not None and self._linked.halted
+
+    def halt(self) -> None:
+        """The path stops at the end of the active block, or of the first one at which the axes permit it."""
+        if self._linked is not None:
+            self._linked.halt()
+
+    def resume(self) -> None:
+        """Continues behind the block at whose end the path has halted."""
+        if self._linked is not None:
+            self._linked.look_ahead.resume()
+
+    @property
     def point(self) -> PathPoint:
         """The last cycle that was given out."""
         return self.states, self.velocity, self.distance_to_go
@@ -175,6 +191,7 @@ class PathMotion:
         if steps:
             axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
+        check_limits(limits)
         return Plan(element, limits, limits.velocity if rapid else motion.feed, steps)
 
     def _steps(self, motion: Path) -> bool:
@@ -199,7 +216,8 @@ class PathMotion:
         return True
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
-        return self._linked_motion(self._plan(motion, start), motion, block)
+        plan = self._plan(motion, start)
+        return self._linked_motion(plan, motion, block)
 
     def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:
         rapid = is_rapid(motion)

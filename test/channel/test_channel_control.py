@@ -87,7 +87,7 @@ def test_feed_hold_before_the_start_holds_at_the_first_motion() -> None:
 
 
 def test_feed_hold_in_the_brake_phase_lets_the_block_end_and_holds_the_next() -> None:
-    bench = running("%P\nG01 X100 F6000\nG01 X200\nM30", 1.07)
+    bench = running("%P\nG09 G01 X100 F6000\nG01 X200\nM30", 1.07)
     assert 0.0 < bench.column("channel", "path_velocity")[-1] < 100.0
     bench.give("channel", "feed_hold", enabled=True)
     bench.run(0.5)

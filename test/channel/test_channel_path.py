@@ -209,7 +209,8 @@ def test_no_axis_exceeds_its_limits_in_the_example_program(bracket: str) -> None
         assert max(map(abs, bench.column(name, "set_velocity"))) <= p.max_velocity * (1 + 1e-9)
         assert max(map(abs, bench.column(name, "set_acceleration"))) <= max(p.acceleration, p.deceleration) * (1 + 1e-6)
         assert max(map(abs, bench.column(name, "set_jerk"))) <= p.jerk * (1 + 1e-6)
-        assert_axis_smooth(bench.blocks[name], acceleration=max(p.acceleration, p.deceleration), jerk=p.jerk)
+        largest = max(p.acceleration, p.deceleration)
+        assert_axis_smooth(bench.blocks[name], acceleration=largest, jerk=p.jerk * (1 + 1e-6), kinks=True)
     block = bench.last("channel")
     assert block.blocks_done == block.blocks_total > 60
 

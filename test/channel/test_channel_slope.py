@@ -11,7 +11,7 @@ from machine_support import CYCLE_TIME, MILL, MachineBench
 from cnc_ptp.parameters import MachineParameters, load_machine
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 
-PROGRAM = "%P\nG01 G90 X30 F3000\n{slope}\nX60\nG02 X80 Y0 I10 J0\nM30"
+PROGRAM = "%P\nG60 G01 G90 X30 F3000\n{slope}\nX60\nG02 X80 Y0 I10 J0\nM30"
 
 
 def of_slope(slope: str) -> MachineParameters:

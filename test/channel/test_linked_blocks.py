@@ -37,8 +37,8 @@ def program(*lines: str) -> str:
 
 def test_a_line_in_many_blocks_takes_the_time_of_one() -> None:
     one = MachineBench(program("G01 X60 F6000")).run()
-    many = MachineBench(program("G359 F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
-    stops = MachineBench(program("F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
+    many = MachineBench(program("F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
+    stops = MachineBench(program("G60 F6000", *[f"G01 X{6 * n}" for n in range(1, 11)])).run()
     cycles = [len(bench.column("channel", "line")) for bench in (one, many, stops)]
     assert cycles[1] <= 1.02 * cycles[0] + 2 and cycles[2] > 1.8 * cycles[0]
     assert path(many)[-1] == pytest.approx((60.0, 0.0, 0.0), abs=1e-9)

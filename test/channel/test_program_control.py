@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from machine_support import CYCLE_TIME, MILL, MachineBench
+from machine_support import CYCLE_TIME, MILL, MachineBench, assert_axis_smooth
 from replay_support import bits, replay
 
 from cnc_ptp.machine.run_entries import add_manual_files, read_entries
@@ -103,7 +103,7 @@ def test_single_block_stops_behind_blocks_or_motions(mode: dict[str, str], lines
 
 
 def test_single_block_is_switched_on_and_off_in_mid_program() -> None:
-    bench = MachineBench("X10\nT1\nX20\nX30\nM30", end_when_idle=False).run(0.05)
+    bench = MachineBench("G60 X10\nT1\nX20\nX30\nM30", end_when_idle=False).run(0.05)
     assert bench.give("channel", "single_block", enabled=True, mode="motion").accepted
     bench.run(2.0)
     assert (bench.position("x"), bench.last("channel").state[-1]) == (10.0, C.STOPPED)
@@ -111,6 +111,69 @@ def test_single_block_is_switched_on_and_off_in_mid_program() -> None:
     assert bench.give("channel", "start").accepted
     bench.run(2.0)
     assert bench.position("x") == 30.0 and bench.last("channel").done
+
+
+STRAIGHT = "G01 F3000 X10\nX20\n#MSG [\"at 20\"]\nX30\nX40\nM30"
+"""One path: nothing stops between its blocks."""
+
+
+@pytest.mark.parametrize("mode", ["block", "motion"])
+def test_single_block_halts_a_path_exactly_at_the_ends_of_its_blocks(mode: str) -> None:
+    bench = MachineBench(STRAIGHT, end_when_idle=False).run(0.1)
+    assert 0.0 < bench.position("x") < 10.0
+    assert bench.give("channel", "single_block", enabled=True, mode=mode).accepted
+    bench.run(1.0)
+    for place, line in ((10.0, 1), (20.0, 2)):
+        assert bench.position("x") == pytest.approx(place, abs=1e-9)
+        assert (bench.last("channel").state[-1], bench.last("channel").line[-1]) == (C.STOPPED, line)
+        assert bench.give("channel", "start").accepted
+        bench.run(1.0)
+    if mode == "block":  # the message is a block, too
+        assert bench.give("channel", "start").accepted
+        bench.run(1.0)
+    assert [event.text for event in bench.events_of("channel")] == ["at 20"]
+    assert bench.position("x") == pytest.approx(30.0, abs=1e-9) and bench.last("channel").line[-1] == 4
+    assert bench.give("channel", "single_block", enabled=False).accepted
+    assert bench.give("channel", "start").accepted
+    bench.run(1.0)
+    assert bench.position("x") == 40.0 and bench.last("channel").done
+    axis = MILL.axes["x"]
+    assert_axis_smooth(bench.blocks["x"], acceleration=axis.deceleration, jerk=axis.jerk * (1 + 1e-6))
+
+
+def test_single_block_that_comes_too_late_for_a_block_halts_behind_the_next() -> None:
+    bench = MachineBench("G01 F6000 X100\nX110\nX200\nX300\nM30", end_when_idle=False).run(1.03)
+    assert 96.0 < bench.position("x") < 100.0
+    assert bench.give("channel", "single_block", enabled=True).accepted
+    bench.run(2.0)
+    assert bench.position("x") == pytest.approx(110.0, abs=1e-9) and bench.last("channel").state[-1] == C.STOPPED
+
+
+def test_a_path_that_has_halted_can_be_held_and_aborted() -> None:
+    bench = MachineBench(STRAIGHT, end_when_idle=False).run(0.1)
+    assert bench.give("channel", "single_block", enabled=True).accepted
+    bench.run(1.0)
+    assert bench.give("channel", "feed_hold", enabled=True).accepted
+    assert bench.give("channel", "start").accepted
+    bench.run(0.2)
+    assert bench.position("x") == pytest.approx(10.0, abs=1e-9)
+    assert bench.give("channel", "feed_hold", enabled=False).accepted
+    bench.run(1.0)
+    assert bench.position("x") == pytest.approx(20.0, abs=1e-9)
+    assert bench.give("channel", "reset").accepted
+    bench.run(0.5)
+    assert bench.position("x") == pytest.approx(20.0, abs=1e-9) and bench.last("channel").state[-1] == C.READY
+
+
+def test_single_block_at_rest_in_feed_hold_counts_from_there() -> None:
+    bench = MachineBench(STRAIGHT, end_when_idle=False).run(0.1)
+    assert bench.give("channel", "feed_hold", enabled=True).accepted
+    bench.run(0.5)
+    assert bench.position("x") < 10.0
+    assert bench.give("channel", "single_block", enabled=True).accepted
+    assert bench.give("channel", "feed_hold", enabled=False).accepted
+    bench.run(1.0)
+    assert bench.position("x") == pytest.approx(10.0, abs=1e-9) and bench.last("channel").state[-1] == C.STOPPED
 
 
 def test_a_mode_that_does_not_exist() -> None:

@@ -26,7 +26,7 @@ def test_an_actual_position_is_that_of_the_instant_at_which_the_path_stands() ->
 def test_a_program_whose_blocks_are_not_known_shows_no_total_until_its_end() -> None:
     bench = MachineBench("G00 X1\nX[V.A.ACT_POS.X + 1]\nX5\nM30").run()
     totals = [(block.blocks_done, block.blocks_total) for block in bench.blocks["channel"] if block.path_active]
-    assert all(total == done + 1 for done, total in totals[:-1])
+    assert all(done < total < 5 for done, total in totals if done < 5) and totals[0] == (0, 1)
     assert (bench.last("channel").blocks_done, bench.last("channel").blocks_total) == (5, 5)
 
 
@@ -123,7 +123,7 @@ def test_messages_and_ordered_warnings_go_out_when_the_path_reaches_them() -> No
     ]
     first, second, _ = (event.cycle for event in bench.events_of("channel"))
     positions = bench.column("x", "set_position")
-    assert positions[first] == pytest.approx(0.0, abs=1e-4) and positions[second - 1] == pytest.approx(1.0, abs=1e-6)
+    assert positions[first] == pytest.approx(0.0, abs=1e-4) and positions[second - 1] < 1.0 <= positions[second]
 
 
 def test_an_ordered_error_stops_the_program() -> None:

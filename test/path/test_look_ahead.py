@@ -82,7 +82,8 @@ def test_duration_of_a_piece(k: float) -> None:
 
 def test_cells_grow_from_both_ends() -> None:
     for length, smallest, largest in ((1.0, 0.05, 0.4), (10.0, 0.01, 0.4), (0.05, 0.0025, 0.4), (0.3, 0.5, 0.4)):
-        ends = graded(length, smallest, largest)
+        division = graded(length, smallest, largest)
+        ends = [division.end(index) for index in range(division.cells)]
         cells = np.diff([0.0, *ends])
         assert ends[-1] == length and cells.min() > 0.0 and cells.max() <= max(largest, smallest) + 1e-12
         assert cells == pytest.approx(cells[::-1])

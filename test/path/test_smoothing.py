@@ -15,7 +15,7 @@ import pytest
 from cnc_ptp.errors import CncError
 from cnc_ptp.path import AxisLimits
 from cnc_ptp.path.cubic import Cubic
-from cnc_ptp.path.lookahead.parts import PathPart, cells_of, whole_cell
+from cnc_ptp.path.lookahead.parts import PathPart, UndividedPart, division_of, whole_cell
 from cnc_ptp.path.lookahead.path_profile import PathProfile, pieces_of
 from cnc_ptp.path.lookahead.smoothing import LONG_LINE, LONGEST_SPAN, Smoother, SmoothPiece
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, plan_velocity
@@ -338,7 +338,7 @@ def duration(pieces, axes=AXES) -> float:
     cells, origin = [], 0.0
     for piece in pieces:
         part = PathPart(piece.geometry, axes, (0, 1, 2), piece.feed, piece.block)
-        cells += cells_of(part, whole_cell(part), origin)
+        cells += UndividedPart(part, origin, division_of(part, whole_cell(part))).take(10**9)
         origin += piece.geometry.length
     plan = plan_velocity(cells, MovingStart(0.0), 1.0)
     assert plan is not None

@@ -283,26 +283,39 @@ def position_after(phases: Iterable[tuple[float, float]], t: float) -> tuple[flo
 
 
 def assert_smooth(
-    p: list[float], v: list[float], a: list[float], *, acceleration: float, jerk: float, cycle_time: float = CYCLE_TIME
+    p: list[float],
+    v: list[float],
+    a: list[float],
+    *,
+    acceleration: float,
+    jerk: float,
+    cycle_time: float = CYCLE_TIME,
+    kinks: bool = False,
 ) -> None:
-    """No step: a changes by at most J·T a cycle; v and p are its integrals, as far as jerks within ±J can bend them."""
+    """No step: a changes by at most J·T a cycle; v and p are its integrals, as far as jerks within ±J can bend them.
+
+    In `kinks` that are passed the velocity steps by at most half of J·T².
+    """
     t = cycle_time
+    step = 0.75 if kinks else 0.25
     for k in range(len(p) - 1):
         assert abs(a[k]) <= acceleration * (1 + 1e-9) + 1e-6, f"acceleration {a[k]} in cycle {k}"
         assert abs(a[k + 1] - a[k]) <= jerk * t * (1 + 1e-9) + 1e-6, f"jerk in cycle {k}: a {a[k]} -> {a[k + 1]}"
         slack = 1e-9 * (1.0 + abs(v[k]))
         change = v[k + 1] - v[k] - 0.5 * t * (a[k] + a[k + 1])
-        assert abs(change) <= 0.25 * jerk * t * t * (1 + 1e-9) + slack, f"velocity in cycle {k}: {v[k]} -> {v[k + 1]}"
+        assert abs(change) <= step * jerk * t * t * (1 + 1e-9) + slack, f"velocity in cycle {k}: {v[k]} -> {v[k + 1]}"
         way = p[k + 1] - p[k] - 0.5 * t * (v[k] + v[k + 1]) + t * t / 12.0 * (a[k + 1] - a[k])
         slack = 1e-11 * (1.0 + abs(p[k]))
-        assert abs(way) <= 0.05 * jerk * t**3 + slack, f"position in cycle {k}: {p[k]} -> {p[k + 1]}"
+        assert abs(way) <= (step - 0.2) * jerk * t**3 + slack, f"position in cycle {k}: {p[k]} -> {p[k + 1]}"
 
 
-def assert_axis_smooth(bench: UnitBench | list[AxisBlock], *, acceleration: float, jerk: float) -> None:
+def assert_axis_smooth(
+    bench: UnitBench | list[AxisBlock], *, acceleration: float, jerk: float, kinks: bool = False
+) -> None:
     """`assert_smooth` for the set values of all blocks of an axis."""
     blocks = bench.blocks if isinstance(bench, UnitBench) else bench
     p, v, a = (
         [x for block in blocks for x in getattr(block, f"set_{name}")]
         for name in ("position", "velocity", "acceleration")
     )
-    assert_smooth(p, v, a, acceleration=acceleration, jerk=jerk)
+    assert_smooth(p, v, a, acceleration=acceleration, jerk=jerk, kinks=kinks)

@@ -8,12 +8,13 @@ hold and stop are plans with another feed, which counts from the first cell from
 from __future__ import annotations
 
 from collections import deque
-from math import sqrt
+from collections.abc import Sequence
+from math import inf, nextafter, sqrt
 from typing import Final
 
 from cnc_ptp.motion import stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
-from cnc_ptp.path.lookahead.parts import PathPart, cells_of, whole_cell
+from cnc_ptp.path.lookahead.parts import PathPart, UndividedPart, division_of, whole_cell
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import BETWEEN, PathPiece, PathProfile, pieces_of
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, earliest, plan_velocity, stop_soon
@@ -21,8 +22,10 @@ from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, earl
 AT_REST: Final = 1e-6
 """Override below which the path stops."""
 MOST_CELLS: Final = 4000
-"""Cells that are planned at once."""
+"""Cells that are known at once."""
 FEWEST_CELLS: Final = 3
+CELLS_AHEAD: Final = 64
+"""Cells that are known at least where parts are long, and by which they are divided."""
 WINDOW: Final = 4.0
 """What is planned at once, in stopping distances on a straight path."""
 RENEWAL: Final = 0.5
@@ -36,6 +39,7 @@ class LookAhead:
     end         u of the end of the last part
     closed      no part follows
     done        the end has been reached
+    halted      the path is at rest at the place for which `halt` was called
     remaining_time  s from the end to the cycle in which it was reached
     """
 
@@ -45,10 +49,15 @@ class LookAhead:
         self.end = 0.0
         self.closed = False
         self.done = False
+        self.halted = False
         self.remaining_time = 0.0
         self.state: MotionState = (0.0, 0.0, 0.0, 0.0)
         self._time = offset
         self._parts: deque[tuple[float, PathPart]] = deque()
+        self._undivided: deque[UndividedPart] = deque()
+        """Parts behind the cells that are known."""
+        self._halt = inf
+        """u at which the path halts."""
         self._stretches: deque[list[PathCell]] = deque([[]])
         """Cells from one exact stop to the next; of the first one from the last rest or knot on."""
         self._profile: PathProfile | None = None
@@ -67,20 +76,46 @@ class LookAhead:
     @property
     def wants(self) -> bool:
         """The next part should be appended: less than a window is ahead."""
-        if self.closed or self._stopping or sum(map(len, self._stretches)) >= MOST_CELLS:
+        if self.closed or self._stopping or self._undivided or sum(map(len, self._stretches)) >= MOST_CELLS:
             return False
         return self.end - self.state[0] < WINDOW * self._reach or len(self._stretches[-1]) < FEWEST_CELLS
+
+    @property
+    def _stretch_known(self) -> bool:
+        """All cells up to the next exact stop are known, or to the end of the parts."""
+        if len(self._stretches) > 1 or not self._undivided:
+            return True
+        waiting = self._undivided[0]
+        return not waiting.begun and (waiting.part.entry <= 0.0 or waiting.origin == self._halt)
 
     def append(self, part: PathPart) -> None:
         """The path continues with `part`: with the direction and curvature of the last one, or after an exact stop."""
         self._parts.append((self.end, part))
-        if part.entry <= 0.0 and self._stretches[-1]:
-            self._stretches.append([])
-        stretch, whole = self._stretches[-1], whole_cell(part)
-        stretch += cells_of(part, whole, self.end, FEWEST_CELLS if not stretch else 1)
+        whole = whole_cell(part)
+        begins = self.end == 0.0 or part.entry <= 0.0
+        division = division_of(part, whole, FEWEST_CELLS if begins else 1)
+        self._undivided.append(UndividedPart(part, self.end, division))
         self.end += part.length
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
+        self._divide()
+
+    def _divide(self) -> None:
+        """Cells for a window ahead."""
+        while self._undivided and self._lacks_cells():
+            waiting = self._undivided[0]
+            stops = waiting.part.entry <= 0.0 or waiting.origin == self._halt
+            if stops and not waiting.begun and self._stretches[-1]:
+                self._stretches.append([])
+            self._stretches[-1].extend(waiting.take(CELLS_AHEAD))
+            if waiting.empty:
+                self._undivided.popleft()
+
+    def _lacks_cells(self) -> bool:
+        last = self._stretches[-1]
+        if len(last) < CELLS_AHEAD and sum(map(len, self._stretches)) < CELLS_AHEAD:
+            return True
+        return not last or last[-1].end - self.state[0] < WINDOW * self._reach
 
     def locate(self, u: float) -> tuple[float, PathPart]:
         """Where the part begins that has u, and the part; parts before it are forgotten."""
@@ -94,8 +129,8 @@ class LookAhead:
         """(u, u', u'', u''') of the next cycles; fewer when the path ends before (`done`)."""
         rows: list[MotionState] = []
         if not self.done:
-            self._renew_plan()
-        while len(rows) < count and not self.done:
+            self._renew_plan(cycle_time)
+        while len(rows) < count and not self.done and not self.halted:
             time = self._time + cycle_time
             profile = self._profile
             if profile is not None and time >= profile.duration:
@@ -132,9 +167,56 @@ class LookAhead:
         """The override no longer acts: the path is at its end or in the last piece of its plan before it."""
         if self.done or self._stopping:
             return True
-        if self._profile is None or self._planned_end < self._cells[-1].end:
+        if self._profile is None or not self._stretch_known or self._planned_end < self._cells[-1].end:
             return False
         return self._profile.piece_and_next(self._time)[1] is None
+
+    # halt
+
+    def halt(self, places: Sequence[float]) -> None:
+        """Stops at the first of the places (u of ends of parts) at which the axes permit it, until `resume`."""
+        for place in places:
+            if place > self.state[0] and self._can_rest_at(place):
+                self._halt = place
+                return
+
+    def resume(self) -> None:
+        """Continues where the path has halted."""
+        if self.halted:
+            self.state = (self._halt, 0.0, 0.0, 0.0)
+        self.halted = False
+        self._halt = inf
+
+    def _can_rest_at(self, place: float) -> bool:
+        """Plans to rest there if that is possible; a place behind the cells that are known is."""
+        for index, stretch in enumerate(self._stretches):
+            if not stretch or stretch[-1].end < place:
+                continue
+            cells = [cell for cell in stretch if cell.middle < place]
+            behind = stretch[len(cells) :]
+            if index > 0 or self._profile is None or place >= self._planned_end:
+                self._stretches[index] = cells
+            elif not self._rests_at_end(cells):
+                return False
+            if behind:
+                self._stretches.insert(index + 1, behind)
+            return True
+        return True
+
+    def _rests_at_end(self, stretch: Sequence[PathCell]) -> bool:
+        """A plan from the next knot to the end of the stretch; False if there is none."""
+        knot = self._knot()
+        if knot is None or self._factor <= AT_REST:
+            return False
+        piece, following = knot
+        start, cells = self._from_knot(following, stretch)
+        if len(cells) < FEWEST_CELLS:
+            return False
+        plan = plan_velocity(cells, start, self._factor) or plan_velocity(cells, start, self._factor, len(cells))
+        if plan is None:
+            return False
+        self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
+        return True
 
     @property
     def _factor(self) -> float:
@@ -148,21 +230,30 @@ class LookAhead:
             self.done = True
             self.remaining_time = surplus
             return
+        self._divide()
         self._stretches[0] = [cell for cell in self._cells if cell.middle > self._planned_end]
         if not self._cells and len(self._stretches) > 1:
             self._stretches.popleft()
+        if self._planned_end >= self._halt:
+            self.halted = True
+            self.state = (nextafter(self._halt, 0.0), 0.0, 0.0, 0.0)  # still in the part that ends there
         self._plan_from_rest()
 
-    def _renew_plan(self) -> None:
+    def _renew_plan(self, cycle_time: float) -> None:
         """Plans over what was appended, before the end of the last plan makes the path brake."""
-        if self._profile is None:
+        if self._profile is None and self.closed and not self.halted and self._planned_end >= self.end:
+            self.done = True  # it has halted there
+            self.remaining_time = cycle_time
+        elif self._profile is None:
             self._time = min(self._time, 0.0)
             self._plan_from_rest()
-        elif self.state[0] >= self._renew and self._planned_end < self._cells[-1].end and self._factor > AT_REST:
-            self._plan_from_knot()
+        elif self.state[0] >= self._renew and self._factor > AT_REST:
+            self._divide()
+            if self._planned_end < self._cells[-1].end:
+                self._plan_from_knot()
 
     def _plan_from_rest(self) -> None:
-        if self._factor <= AT_REST or not self._cells:
+        if self._factor <= AT_REST or not self._cells or self.halted:
             return
         self._stretches[0] = enough(self._cells)
         start = MovingStart(self._cells[0].begin)
@@ -172,21 +263,29 @@ class LookAhead:
 
     def _plan_from_knot(self) -> None:
         """A new plan from the end of the active piece; the old one stays if there is none that the axes permit."""
-        profile = self._profile
-        if profile is None:
+        knot = self._knot()
+        if knot is None:
             return
-        piece, following = profile.piece_and_next(self._time)
-        if following is None or following.kind != BETWEEN:
-            return
-        start = MovingStart(following.u, following.velocity * following.velocity, 2.0 * following.acceleration)
-        ahead = [cell for cell in self._cells if cell.middle > following.u]
-        cells = [ahead[0].part(following.u, following.u), *ahead]
+        piece, following = knot
+        start, cells = self._from_knot(following, self._cells)
         if len(cells) < FEWEST_CELLS:
             return
         plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start)
-        if plan is None:
-            return
-        self._take(plan, [piece, *pieces_of(plan, start, following.begin)], ahead)
+        if plan is not None:
+            self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
+
+    def _knot(self) -> tuple[PathPiece, PathPiece] | None:
+        """The active piece and the next one; None at rest and where a plan comes to rest."""
+        if self._profile is None:
+            return None
+        piece, following = self._profile.piece_and_next(self._time)
+        return None if following is None or following.kind != BETWEEN else (piece, following)
+
+    def _from_knot(self, following: PathPiece, cells: Sequence[PathCell]) -> tuple[MovingStart, list[PathCell]]:
+        """The state at the begin of a piece, and the cells from there on, of which the first has no length."""
+        start = MovingStart(following.u, following.velocity * following.velocity, 2.0 * following.acceleration)
+        ahead = [cell for cell in cells if cell.middle > following.u]
+        return start, [cell.part(following.u, following.u) for cell in ahead[:1]] + ahead
 
     def _slow_down(self, cells: list[PathCell], start: MovingStart) -> VelocityPlan | None:
         plan = plan_velocity(cells, start, self._factor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil, inf, sqrt
-from typing import Final, Protocol
+from typing import Final, NamedTuple, Protocol
 
 from cnc_ptp.motion.limits import LARGEST_LIMIT
 from cnc_ptp.path.geometry import AxisLimits
@@ -123,27 +123,46 @@ def whole_cell(part: PathPart) -> PathCell:
     return cell_of(part, 0.0, 0.0, part.length)
 
 
-def cells_of(part: PathPart, whole: PathCell, origin: float, fewest: int = 1) -> list[PathCell]:
+class Division(NamedTuple):
+    """How a part is divided into cells: first those of `head`, then `equal` ones of the same length, then those of `tail`.
+
+    `head`, `tail`: ends of their cells, mm from the begin of the part.
+    """
+
+    head: list[float]
+    equal: int
+    begin: float
+    length: float
+    tail: list[float]
+
+    @property
+    def cells(self) -> int:
+        """All of them."""
+        return len(self.head) + self.equal + len(self.tail)
+
+    def end(self, index: int) -> float:
+        """Where a cell ends; -1 is the begin of the first one."""
+        if index < len(self.head):
+            return self.head[index] if index >= 0 else 0.0
+        index -= len(self.head)
+        if index < self.equal:
+            return self.begin + self.length * (index + 1) / self.equal
+        return self.tail[index - self.equal]
+
+
+def division_of(part: PathPart, whole: PathCell, fewest: int = 1) -> Division:
     """The cells of a part (`whole`: its whole_cell), at least `fewest`; short ones at both ends of a straight part."""
     length = part.length
     largest = min(CELL_TIME * sqrt(min(whole.limit, whole.feed)), length / fewest)
     turn = sqrt(sum([load.second * load.second for load in whole.loads]))
     if turn > 0.0:
-        count = max(1, ceil(length / min(largest, CELL_TURN / turn)))
-        ends = [length * (index + 1) / count for index in range(count)]
-    else:
-        smallest = max(length / MOST_END_CELLS, whole.jerk * FIRST_CELL_TIME**3 / 6.0)
-        ends = graded(length, min(smallest, largest), largest)
-    cells: list[PathCell] = []
-    begin = 0.0
-    for end in ends:
-        cells.append(cell_of(part, origin, begin, end))
-        begin = end
-    return cells
+        return Division([], max(1, ceil(length / min(largest, CELL_TURN / turn))), 0.0, length, [])
+    smallest = max(length / MOST_END_CELLS, whole.jerk * FIRST_CELL_TIME**3 / 6.0)
+    return graded(length, min(smallest, largest), largest)
 
 
-def graded(length: float, smallest: float, largest: float) -> list[float]:
-    """Ends of cells that grow from both ends of a part to its middle, up to the largest."""
+def graded(length: float, smallest: float, largest: float) -> Division:
+    """Cells that grow from both ends of a part to its middle, up to the largest."""
     half: list[float] = []
     place, cell = 0.0, smallest
     while place + cell < 0.5 * length and cell < largest:
@@ -152,5 +171,39 @@ def graded(length: float, smallest: float, largest: float) -> list[float]:
         cell *= GROWTH
     between = length - 2.0 * place
     count = max(1, ceil(between / min(cell, largest)))
-    middle = [place + between * (index + 1) / count for index in range(count)]
-    return half + middle + [length - place for place in reversed(half[:-1])] + ([length] if half else [])
+    tail = [length - place for place in reversed(half[:-1])] + ([length] if half else [])
+    return Division(half, count, place, between, tail)
+
+
+class UndividedPart:
+    """What is left of a part that is divided into cells as they are needed.
+
+    part, origin   the part, and u of the path at which it begins
+    """
+
+    def __init__(self, part: PathPart, origin: float, division: Division) -> None:
+        self.part, self.origin = part, origin
+        self._division = division
+        self._next = 0
+
+    @property
+    def begun(self) -> bool:
+        """Some of its cells have been taken."""
+        return self._next > 0
+
+    @property
+    def empty(self) -> bool:
+        """All of its cells have been taken."""
+        return self._next >= self._division.cells
+
+    def take(self, most: int) -> list[PathCell]:
+        """The next cells, at most so many."""
+        cells: list[PathCell] = []
+        begin = self._division.end(self._next - 1)
+        last = min(self._next + most, self._division.cells)
+        while self._next < last:
+            end = self._division.end(self._next)
+            cells.append(cell_of(self.part, self.origin, begin, end))
+            begin = end
+            self._next += 1
+        return cells

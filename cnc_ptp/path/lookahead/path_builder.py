@@ -62,6 +62,11 @@ class PathBuilder:
         self._last, self._entry = None, inf
         self._smoother = None
 
+    @property
+    def kept(self) -> float:
+        """Block of the motion that is kept back; all parts of blocks before it are known. inf without one."""
+        return inf if self._last is None else self._last.block
+
     def passes(self, motion: LinkedMotion) -> bool:
         """False if the path has to stop before `motion`, whatever its velocity."""
         if self._smoother is not None or motion.transition.smoothing is not None or self._last is None:

@@ -1,3 +1,3 @@
-; P-ERR-21616 hsc_without_values.nc line 2 column 8 '#HSC ON': #HSC without PATH_DEV; its syntax is #HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF
+; P-ERR-21114 hsc_without_values.nc line 2 column 1 '#HSC ON': #HSC ON without PATH_DEV, and the machine file has none (P-CHAN-90014); e.g. #HSC ON [BSPLINE PATH_DEV=0.01]
 #HSC ON
 M30
