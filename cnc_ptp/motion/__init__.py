@@ -8,6 +8,7 @@ from cnc_ptp.motion.limits import Limits
 from cnc_ptp.motion.profile import Profile
 from cnc_ptp.motion.ramp import stopping_distance
 from cnc_ptp.motion.rest_to_rest import plan_rest_to_rest
+from cnc_ptp.motion.sine_profile import sine_from_rest, sine_stopping_distance, sine_to_position, sine_to_rest
 from cnc_ptp.motion.step_profile import step_stopping_distance, step_to_position, step_to_velocity
 from cnc_ptp.motion.to_position import plan_to_position
 from cnc_ptp.motion.to_velocity import plan_to_velocity
@@ -20,6 +21,10 @@ __all__ = [
     "plan_rest_to_rest_batch",
     "plan_to_position",
     "plan_to_velocity",
+    "sine_from_rest",
+    "sine_stopping_distance",
+    "sine_to_position",
+    "sine_to_rest",
     "step_stopping_distance",
     "step_to_position",
     "step_to_velocity",

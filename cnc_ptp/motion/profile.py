@@ -54,6 +54,10 @@ class Profile:
         d = t - start
         return p + d * (v + d * (0.5 * a + d * (j / 6.0))), v + d * (a + d * (0.5 * j)), a + d * j, j
 
+    def settled(self, t: float) -> float:
+        """From when on another profile may continue: `t`, but for profiles whose ramps must not be broken off."""
+        return t
+
     def setpoints(self, first: int, count: int, cycle_time: float) -> Setpoints:
         """`state_at` for `count` times from first · cycle_time on, in s."""
         setpoints = Setpoints([], [], [], [])

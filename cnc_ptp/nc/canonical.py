@@ -44,9 +44,10 @@ def code_name(letter: str, number: int) -> str:
     return f"{letter}{number:02d}"
 
 
-STEP, TRAPEZ = "STEP", "TRAPEZ"
-"""Slopes (#SLOPE): the acceleration along the path steps, or is a trapezium with limited jerk."""
-SLOPES = {0: STEP, 1: TRAPEZ, 2: "SIN2", 3: "HSC"}
+STEP, TRAPEZ, SIN2 = "STEP", "TRAPEZ", "SIN2"
+"""Slopes (#SLOPE): the acceleration along the path steps, is a trapezium with limited jerk, or has sin² ramps."""
+AVAILABLE_SLOPES = (STEP, TRAPEZ, SIN2)
+SLOPES = {0: STEP, 1: TRAPEZ, 2: SIN2, 3: "HSC"}
 """The slope for each value of P-CHAN-00071."""
 
 

@@ -126,7 +126,7 @@ COMP_TWICE = Fault(21099, "COMP of axis {axis} twice in one block")
 
 # Slope
 SLOPE_UNKNOWN = Fault(21110, "slope {slope} is not known; known are: {known}")
-SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available are: STEP, TRAPEZ")
+SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available are: STEP, TRAPEZ, SIN2")
 
 # Transitions between blocks
 OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be {least}")

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 
 from cnc_ptp.nc import faults, messages, spindle_faults, spindle_links, transitions
-from cnc_ptp.nc.canonical import SLOPES, STEP, TRAPEZ, ExplicitSynchronisation, Function, Timer, WaitForPath
+from cnc_ptp.nc.canonical import AVAILABLE_SLOPES, SLOPES, ExplicitSynchronisation, Function, Timer, WaitForPath
 from cnc_ptp.nc.coordinates import commands
 from cnc_ptp.nc.expressions.nodes import SelfDefined
 from cnc_ptp.nc.expressions.readable import LAST_TIMER
@@ -179,12 +179,12 @@ def flush_continue(channel: Channel, state: ModalState, block: NcBlock, command:
 
 
 def slope(channel: Channel, state: ModalState, block: NcBlock, command: HashCommand) -> tuple[Function, ...]:
-    """#SLOPE [TYPE=STEP], [TYPE=TRAPEZ]: for the motions of the blocks after it."""
+    """#SLOPE [TYPE=STEP], [TYPE=TRAPEZ], [TYPE=SIN2]: for the motions of the blocks after it."""
     words = _SLOPE.fullmatch(",".join(command.arguments or ()))
-    available = " or ".join(f"[TYPE={name}]" for name in (STEP, TRAPEZ))
+    available = " or ".join(f"[TYPE={name}]" for name in AVAILABLE_SLOPES)
     if words is None:
         raise arguments_fault(block, command, f"{available}, or #SLOPE DEFAULT")
-    if words[1] not in (STEP, TRAPEZ):
+    if words[1] not in AVAILABLE_SLOPES:
         fault = faults.SLOPE_NOT_AVAILABLE if words[1] in SLOPES.values() else faults.SLOPE_UNKNOWN
         raise fault.at(block.source, command.column, slope=words[1], known=", ".join(SLOPES.values()))
     state.slope = words[1]

@@ -8,6 +8,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile
 from cnc_ptp.motion.limits import SMALLEST_LIMIT, check_limits
 from cnc_ptp.motion.setpoints import MotionState
+from cnc_ptp.motion.sine_profile import SineProfile
 from cnc_ptp.path.geometry import Element
 from cnc_ptp.path.planner import JERK_LIMITED, Planner
 
@@ -229,19 +230,23 @@ class PathInterpolator:
         limits = self._limits
         if self.done or limits is None or self._brakes(limits):
             return
-        now = self._now()
-        s, v, a, _ = self._profile.state_at(now)
+        now, before = self._now(), self._profile
+        begin = before.settled(now)
+        s, v, a, _ = before.state_at(begin)
         velocity = 0.0 if self._stopping else min(self._feed * self.override, limits.velocity)
         if velocity < SMALLEST_LIMIT:
             self._profile, self._reaches_end = self._planner.to_rest(s, v, a, limits), False
         else:
             limits = limits._replace(velocity=velocity)
             self._profile, self._reaches_end = self._planner.to_position(s, v, a, self._length, limits), True
-        self._offset, self._cycles = min(now, 0.0), 0
+        if begin > now and isinstance(before, SineProfile):
+            self._profile = before.continued(begin, self._profile)
+        else:
+            self._offset, self._cycles = min(now, 0.0), 0
 
     def _brakes(self, limits: Limits) -> bool:
         """True if in the last cycle given out a stop would end no earlier than the element."""
-        s, v, a, _ = self.state
+        s, v, a, _ = self._profile.state_at(self._profile.settled(self._now()))
         to_brake = self._length - s - self._planner.stopping_distance(v, a, limits)
         return self._reaches_end and to_brake <= BRAKE_ROUNDING * self._length
 

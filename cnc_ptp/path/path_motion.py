@@ -15,7 +15,7 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.planner import JERK_LIMITED, STEPS
+from cnc_ptp.path.planner import PLANNERS
 from cnc_ptp.path.shape import AxisState, without_jerk
 
 CARTESIAN = ("X", "Y", "Z")
@@ -27,12 +27,17 @@ PathPoint = tuple[AxisStates, float, float]
 
 
 class Plan(NamedTuple):
-    """How a motion is run: its element, dynamics of the path, feed (mm/s), with `steps` of the acceleration."""
+    """How a motion is run: its element, dynamics of the path, feed (mm/s), profile of the acceleration."""
 
     element: Line | Arc
     limits: Limits
     feed: float
-    steps: bool
+    slope: str
+
+    @property
+    def steps(self) -> bool:
+        """The acceleration of the path may step."""
+        return self.slope == STEP
 
 
 class PathMotion:
@@ -172,7 +177,7 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
             return
-        self._interpolator.start(element, plan.limits, feed, planner=STEPS if plan.steps else JERK_LIMITED)
+        self._interpolator.start(element, plan.limits, feed, planner=PLANNERS[plan.slope])
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
 
@@ -182,21 +187,16 @@ class PathMotion:
         if plan.element.length == 0.0:
             return 0.0
         limits = plan.limits._replace(velocity=min(plan.feed, plan.limits.velocity))
-        planner = STEPS if plan.steps else JERK_LIMITED
-        return planner.from_rest(0.0, plan.element.length, limits).duration
+        return PLANNERS[plan.slope].from_rest(0.0, plan.element.length, limits).duration
 
     def _plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
-        element, rapid, steps = self._make_element(start, motion), is_rapid(motion), self._steps(motion)
+        element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
         axis_limits = self._rapid_limits if rapid else self._feed_limits
-        if steps:
+        if slope == STEP:
             axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
         check_limits(limits)
-        return Plan(element, limits, limits.velocity if rapid else motion.feed, steps)
-
-    def _steps(self, motion: Path) -> bool:
-        """The acceleration of the path may step."""
-        return (motion.slope or self._default_slope) == STEP
+        return Plan(element, limits, limits.velocity if rapid else motion.feed, slope)
 
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):

@@ -1,4 +1,7 @@
-"""Planners of the path velocity: with limited jerk, or with steps of the acceleration (P-CHAN-00071)."""
+"""Planners of the path velocity: with limited jerk, with sine-squared ramps or with steps of the acceleration.
+
+P-CHAN-00071, #SLOPE.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,16 @@ from cnc_ptp.motion import (
     plan_rest_to_rest,
     plan_to_position,
     plan_to_velocity,
+    sine_from_rest,
+    sine_stopping_distance,
+    sine_to_position,
+    sine_to_rest,
     step_stopping_distance,
     step_to_position,
     step_to_velocity,
     stopping_distance,
 )
+from cnc_ptp.nc.canonical import SIN2, STEP, TRAPEZ
 
 
 class Planner(NamedTuple):
@@ -44,3 +52,12 @@ STEPS = Planner(
     stopping_distance=lambda v, a, limits: step_stopping_distance(v, limits.deceleration),
 )
 """The acceleration steps, so the previous one does not count."""
+SINE = Planner(
+    from_rest=sine_from_rest,
+    to_position=sine_to_position,
+    to_rest=sine_to_rest,
+    stopping_distance=sine_stopping_distance,
+)
+"""The jerk does not step, either."""
+PLANNERS = {STEP: STEPS, TRAPEZ: JERK_LIMITED, SIN2: SINE}
+"""By #SLOPE."""

@@ -19,7 +19,7 @@ from cnc_ptp.parameters.view.telegram import DriveType
 UNIT_LISTS = {"channel": ids.CHANNELS, "axis": ids.AXES, "spindle": ids.SPINDLES}
 HOMED_BY_THE_NC = (DriveType.CONVENTIONAL, DriveType.LIGHTBUS, DriveType.TERMINAL)
 """Drive types of what TF5200 spindle 2.3 calls analogue spindles: conventional, Lightbus, terminal (P-AXIS-00156)."""
-UNAVAILABLE_SLOPES = {2: "sine squared (SIN2)", 3: "HSC"}
+UNAVAILABLE_SLOPES = {3: "HSC"}
 UPPER_END = ids.GETRIEBE_MODULOO
 GEAR_RATIO = (ids.GETRIEBE_GEAR_FACT_NUM, ids.GETRIEBE_GEAR_FACT_DENOM)
 SMALL_STEP = 0.001

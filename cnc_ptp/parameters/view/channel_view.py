@@ -95,7 +95,7 @@ class ChannelParameters:
     tool_table: ToolTable = NO_TOOLS
     """Compensation data of the tools."""
     slope: str = "TRAPEZ"
-    """Of the path's acceleration, unless #SLOPE says otherwise: STEP, or TRAPEZ (P-CHAN-00071)."""
+    """Of the path's acceleration, unless #SLOPE says otherwise: STEP, TRAPEZ or SIN2 (P-CHAN-00071)."""
     offsets: OffsetTables = NO_OFFSET_TABLES
     call_depth: Annotated[int, ids.INTERPRETER_CALL_DEPTH] = 20
     repeats: Annotated[int, ids.INTERPRETER_REPEATS] = 1_000_000
@@ -133,7 +133,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         tool_records=frozenset(channel.used_indexes("wz")),
         dialect=channel.text(ids.INTERPRETER_DIALECT),
         tool_table=tool_table(channel, sets),
-        slope="TRAPEZ" if channel.number(ids.SLOPE_PROFILE) else "STEP",
+        slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),
         offsets=offset_tables(channel, len(axes)),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),

@@ -124,7 +124,7 @@ def whole_cell(part: PathPart) -> PathCell:
 
 
 class Division(NamedTuple):
-    """How a part is divided into cells: first those of `head`, then `equal` ones of the same length, then those of `tail`.
+    """How a part is divided into cells: those of `head`, then `equal` ones of the same length, then those of `tail`.
 
     `head`, `tail`: ends of their cells, mm from the begin of the part.
     """
