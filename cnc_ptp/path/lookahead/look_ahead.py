@@ -30,6 +30,8 @@ WINDOW: Final = 4.0
 """What is planned at once, in stopping distances on a straight path."""
 RENEWAL: Final = 0.5
 """Part of the planned path after which it is planned again."""
+BRAKES: Final = 0.8
+"""The path brakes for its end when the distance in which it could stop is this part of what is ahead."""
 
 
 class LookAhead:
@@ -64,6 +66,8 @@ class LookAhead:
         self._planned_end = 0.0
         self._renew = 0.0
         self._reach = 0.0
+        self._deceleration = self._jerk = 1.0
+        """Of the last part, along the path."""
         self._stopping = False
 
     # what is ahead
@@ -81,12 +85,31 @@ class LookAhead:
         return self.end - self.state[0] < WINDOW * self._reach or len(self._stretches[-1]) < FEWEST_CELLS
 
     @property
+<<<<<<< HEAD
     def _stretch_known(self) -> bool:
         """All cells up to the next exact stop are known, or to the end of the parts."""
         if len(self._stretches) > 1 or not self._undivided:
             return True
         waiting = self._undivided[0]
         return not waiting.begun and (waiting.part.entry <= 0.0 or waiting.origin == self._halt)
+=======
+    def begun(self) -> bool:
+        """There is a part."""
+        return bool(self._parts)
+
+    @property
+    def known(self) -> float:
+        """Length that is ahead."""
+        return self.end - self.state[0]
+
+    @property
+    def runs_out(self) -> bool:
+        """The path brakes, or stands, because nothing more of it is known."""
+        u, v, a, _ = self.state
+        if not self.wants or len(self._stretches) > 1 or u <= 0.0 or self._factor <= AT_REST:
+            return False
+        return stopping_distance(v, max(0.0, a), self._deceleration, self._jerk) >= BRAKES * self.known
+>>>>>>> 244c5d8 (Long programs are read, checked and interpreted while they run; a number of blocks per cycle)
 
     def append(self, part: PathPart) -> None:
         """The path continues with `part`: with the direction and curvature of the last one, or after an exact stop."""
@@ -98,6 +121,7 @@ class LookAhead:
         self.end += part.length
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
+<<<<<<< HEAD
         self._divide()
 
     def _divide(self) -> None:
@@ -116,6 +140,9 @@ class LookAhead:
         if len(last) < CELLS_AHEAD and sum(map(len, self._stretches)) < CELLS_AHEAD:
             return True
         return not last or last[-1].end - self.state[0] < WINDOW * self._reach
+=======
+        self._deceleration, self._jerk = whole.down, whole.jerk
+>>>>>>> 244c5d8 (Long programs are read, checked and interpreted while they run; a number of blocks per cycle)
 
     def locate(self, u: float) -> tuple[float, PathPart]:
         """Where the part begins that has u, and the part; parts before it are forgotten."""
