@@ -1,8 +1,8 @@
 """A program that is read while it is executed, because its text is too long to be read before it starts.
 
 It is read as far as its execution needs it: to the line that is next; to the end of a condition or loop before its
-first line; to the end of the section before a $GOTO; to a subroutine before its call. What is not executed is not
-checked.
+first line; to the end of the section before a $GOTO; to a subroutine before its call. A fault counts as soon as it has
+been read. What is not read is not checked.
 """
 
 from __future__ import annotations
@@ -13,18 +13,17 @@ from typing import Final
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.blocks import read_line
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.sections import KEPT_LATER, Program
-from cnc_ptp.nc.parser import MOST_ERRORS, NO_FILES, ProgramReader, parse_program
+from cnc_ptp.nc.parser import NO_FILES, ProgramReader, parse_program
 from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.vocabulary import TWINCAT
 
 LINES_AT_ONCE: Final = 5000
 """Lines that are read ahead before the caller has its turn again."""
-AT_END: Final = (faults.END_MISSING.number, flow_faults.NOT_CLOSED.number, flow_faults.SECTION_OPEN.number)
-"""Faults that the end of the text or of a section shows."""
+AT_END: Final = faults.END_MISSING.number
+"""The fault that counts when all lines have been executed."""
 
 
 class StreamedProgram(Program):
@@ -41,10 +40,8 @@ class StreamedProgram(Program):
         """The text has been read to its end."""
         self._leads: dict[int, Line] = {}
         """Lines with a $GOTO or a call, by number, while it is not known where it leads to."""
-        self._faults: dict[int, ProgramError] = {}
-        """By line, of those whose fault the line alone does not show."""
-        self._noted = 0
-        """Errors of the reader that are in `_faults`."""
+        self._seen = 0
+        """Errors of the reader that have counted."""
 
     @property
     def size(self) -> int:
@@ -70,36 +67,47 @@ class StreamedProgram(Program):
             self._leads[line.number] = line
 
     def line(self, number: int, offset: int) -> Line:
-        """As Program; a fault that other lines show is its error."""
+        """As Program; it is executed now."""
         found = super().line(number, offset)
         self._reached = max(self._reached, found.next_offset)
-        if found.error is None and number in self._faults:
-            found.error = self._faults[number]
         return found
 
     def ready(self, number: int) -> bool:
         """As Program: the line was read, the whole structure that it begins, and where its $GOTO or call leads to."""
-        left = LINES_AT_ONCE
-        while not self._complete and self._needs_more(number):
-            if left == 0:
+        end = self._reader.number + LINES_AT_ONCE
+        while self._inside(number):
+            if self._reader.number >= end:
                 return False
             self._step()
-            left -= 1
-        if number >= self._reader.number and len(self._reader.errors) >= MOST_ERRORS:
-            raise self._reader.errors[0]
+        self._raise_new()
+        while self._leads_on(number):
+            if self._reader.number >= end:
+                return False
+            self._step()
         return True
 
     def require_end(self) -> None:
         for error in self._reader.errors:
-            if error.number in AT_END:
+            if error.number == AT_END:
                 raise error
 
-    def _needs_more(self, number: int) -> bool:
+    def _inside(self, number: int) -> bool:
+        """The line, or the end of the structure in which it is, is still to be read."""
         reader = self._reader
-        if reader.number <= number or reader.opened is not None or reader.structures.open is not None:
-            return True
+        structures = reader.opened is not None or reader.structures.open is not None
+        return (structures or reader.number <= number) and not self._complete
+
+    def _raise_new(self) -> None:
+        """The first of the faults that were read since the last time. Raises ProgramError."""
+        new, self._seen = self._reader.errors[self._seen :], len(self._reader.errors)
+        first = min((error for error in new if error.number != AT_END), key=line_of, default=None)
+        if first is not None:
+            raise first
+
+    def _leads_on(self, number: int) -> bool:
+        """Where the $GOTO or the call of the line leads to is still to be read."""
         line = self._leads.get(number)
-        if line is None:
+        if line is None or self._complete:
             return False
         if line.call is not None and line.call.local and not self._has(line.call.name.upper()):
             return True
@@ -119,10 +127,11 @@ class StreamedProgram(Program):
         if not reader.goes_on:
             self._complete = True
             reader.finish()
-        for error in reader.errors[self._noted :]:
-            if error.number != faults.END_MISSING.number:
-                self._faults.setdefault(error.line, error)
-        self._noted = len(reader.errors)
+
+
+def line_of(error: ProgramError) -> int:
+    """Its line."""
+    return error.line
 
 
 def stream_program(
