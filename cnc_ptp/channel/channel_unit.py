@@ -598,8 +598,9 @@ class ChannelUnit(Unit):
         elif known >= 0.0 and self._sequence.awaits_blocks:
             self._runs_out = True
             line = self._sequence.source.line
-            reason = f"{known:.3g} mm of it are known, {self._parameters.blocks_per_cycle} blocks come in a cycle"
-            text = f"the path is slower in line {line}: {reason} (P-CHAN-90006)"
+            blocks = self._parameters.blocks_per_cycle
+            reason = f"blocks for {known:.3g} mm are known, P-CHAN-90006 gives {blocks} in a cycle"
+            text = f"the path is slower in line {line}: {reason}"
             self.event(cycle, Severity.WARNING, INTERPRETER_SLOW, f"channel {self.name}: {text}", line)
 
     @property

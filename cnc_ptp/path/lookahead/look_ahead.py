@@ -85,14 +85,14 @@ class LookAhead:
         return self.end - self.state[0] < WINDOW * self._reach or len(self._stretches[-1]) < FEWEST_CELLS
 
     @property
-<<<<<<< HEAD
     def _stretch_known(self) -> bool:
         """All cells up to the next exact stop are known, or to the end of the parts."""
         if len(self._stretches) > 1 or not self._undivided:
             return True
         waiting = self._undivided[0]
         return not waiting.begun and (waiting.part.entry <= 0.0 or waiting.origin == self._halt)
-=======
+
+    @property
     def begun(self) -> bool:
         """There is a part."""
         return bool(self._parts)
@@ -106,10 +106,9 @@ class LookAhead:
     def runs_out(self) -> bool:
         """The path brakes, or stands, because nothing more of it is known."""
         u, v, a, _ = self.state
-        if not self.wants or len(self._stretches) > 1 or u <= 0.0 or self._factor <= AT_REST:
+        if not self.wants or len(self._stretches) > 1 or self._halt < inf or u <= 0.0 or self._factor <= AT_REST:
             return False
         return stopping_distance(v, max(0.0, a), self._deceleration, self._jerk) >= BRAKES * self.known
->>>>>>> 244c5d8 (Long programs are read, checked and interpreted while they run; a number of blocks per cycle)
 
     def append(self, part: PathPart) -> None:
         """The path continues with `part`: with the direction and curvature of the last one, or after an exact stop."""
@@ -121,7 +120,7 @@ class LookAhead:
         self.end += part.length
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
-<<<<<<< HEAD
+        self._deceleration, self._jerk = whole.down, whole.jerk
         self._divide()
 
     def _divide(self) -> None:
@@ -140,9 +139,6 @@ class LookAhead:
         if len(last) < CELLS_AHEAD and sum(map(len, self._stretches)) < CELLS_AHEAD:
             return True
         return not last or last[-1].end - self.state[0] < WINDOW * self._reach
-=======
-        self._deceleration, self._jerk = whole.down, whole.jerk
->>>>>>> 244c5d8 (Long programs are read, checked and interpreted while they run; a number of blocks per cycle)
 
     def locate(self, u: float) -> tuple[float, PathPart]:
         """Where the part begins that has u, and the part; parts before it are forgotten."""
