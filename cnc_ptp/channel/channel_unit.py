@@ -124,7 +124,7 @@ class ChannelUnit(Unit):
         self._held: Sequence[str] = ()
         """What the program waited for because of override 0, in the previous block."""
         self._error_id = 0
-        self._runs_out = False
+        self.runs_out = False
         """The path is slower because the interpreter does not keep up, and a warning was given."""
         self._apply_override()
 
@@ -207,6 +207,9 @@ class ChannelUnit(Unit):
         position = self._motion.position
         self._begin(cycle, "start", self._program, self._initial_state(self._feedback), begin)
         self._sequence.end_couplings()
+        if self._program.streamed:
+            size = f"more than {self._parameters.checked_text} characters (P-CHAN-90005)"
+            self.event(cycle, Severity.INFO, START_STEP, f"the program has {size}: it is checked while it runs")
         for step in () if begin is None else begin.lines(self._check.axis_names, position):
             self.event(cycle, Severity.INFO, START_STEP, step)
 
@@ -327,7 +330,9 @@ class ChannelUnit(Unit):
         rows = CycleRows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
-        if self._sequence.phase not in (Phase.IDLE, Phase.RAMP_DOWN):
+        if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
+            self.runs_out = False
+        else:
             self._sequence.stream.look_ahead()
             self._watch_interpreter(first_cycle)
         self._axes.give(rows.axes[count - 1], on_path=on_path)
@@ -518,7 +523,6 @@ class ChannelUnit(Unit):
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
-        self._runs_out = False
         self._offsets.begin(cycle, before.modal.coordinates)
         self._progress = ProgramProgress(times, program.size)
         self._sequence.begin(stream, program=command == "start")
@@ -593,10 +597,10 @@ class ChannelUnit(Unit):
     def _watch_interpreter(self, cycle: int) -> None:
         """A warning when the path becomes slower because too few blocks are known; another one after it was full."""
         stream, known = self._sequence.stream, self._motion.runs_out
-        if self._runs_out:
-            self._runs_out = stream.fill < ENOUGH
+        if self.runs_out:
+            self.runs_out = stream.fill < ENOUGH
         elif known >= 0.0 and self._sequence.awaits_blocks:
-            self._runs_out = True
+            self.runs_out = True
             line = self._sequence.source.line
             blocks = self._parameters.blocks_per_cycle
             reason = f"blocks for {known:.3g} mm are known, P-CHAN-90006 gives {blocks} in a cycle"

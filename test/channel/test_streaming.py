@@ -278,7 +278,11 @@ def test_a_start_at_a_block_reads_as_far_as_that_block() -> None:
     assert bench.give("channel", "start", block_number=30).accepted
     bench.run(1.0)
     told = [event.text for event in bench.all_events if event.error_id == 22045]
-    assert told == ["G00: X 0 to 2", "continues with line 3 'N30 X3'"]
+    assert told == [
+        "the program has more than 0 characters (P-CHAN-90005): it is checked while it runs",
+        "G00: X 0 to 2",
+        "continues with line 3 'N30 X3'",
+    ]
     assert bench.position("x") == 3.0 and len(bench.errors()) == 1
 
 
