@@ -119,7 +119,7 @@ class BlockStream:
                 self._places.append(self._place())
 
     def finish_block(self) -> None:
-        """The path is through with a block."""
+        """A block has been carried out."""
         self.done += 1
         if self._places:
             self.read = self._places.popleft()
