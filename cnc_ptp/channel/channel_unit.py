@@ -26,6 +26,7 @@ from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.expressions.values import Variable
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Pairs, Vocabulary
@@ -55,6 +56,10 @@ SPINDLE_REFUSED = 22018
 NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
+INTERPRETER_SLOW = 22036
+
+ENOUGH = 0.5
+"""Fill of the buffer of blocks at which the interpreter has kept up again."""
 
 C = ChannelStateCode
 
@@ -119,6 +124,8 @@ class ChannelUnit(Unit):
         self._held: Sequence[str] = ()
         """What the program waited for because of override 0, in the previous block."""
         self._error_id = 0
+        self.runs_out = False
+        """The path is slower because the interpreter does not keep up, and a warning was given."""
         self._apply_override()
 
     def _initial_state(self, feedback: Mapping[str, CycleBlock]) -> ProgramState:
@@ -126,8 +133,13 @@ class ChannelUnit(Unit):
         return self._check.state(feedback, self._links, self._shared, self._offsets.changes, self._offsets.clamp_index)
 
     def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> None:
-        """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
-        parsed = parse_program(text, program, files=files, vocabulary=self._vocabulary_of(dialect))
+        """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError.
+
+        A program that is read while it runs has nothing to be prepared but the first look at it.
+        """
+        parsed = self._check.parse(text, program, files, dialect)
+        if parsed.streamed:
+            return
         state = self._initial_state(self._feedback)
         before = state.copy()
         start = self._motion.position
@@ -158,7 +170,7 @@ class ChannelUnit(Unit):
         if prepared is not None and prepared.is_of(text, files, program, vocabulary):
             self._program = prepared.program
         else:
-            self._program = parse_program(text, program, files=files, vocabulary=vocabulary)
+            self._program = self._check.parse(text, program, files, dialect)
         if vocabulary is not self._vocabulary:
             self._vocabulary, self._state = vocabulary, self._initial_state({})
         self._library = self._program.library
@@ -195,6 +207,9 @@ class ChannelUnit(Unit):
         position = self._motion.position
         self._begin(cycle, "start", self._program, self._initial_state(self._feedback), begin)
         self._sequence.end_couplings()
+        if self._program.streamed:
+            size = f"more than {self._parameters.checked_text} characters (P-CHAN-90005)"
+            self.event(cycle, Severity.INFO, START_STEP, f"the program has {size}: it is checked while it runs")
         for step in () if begin is None else begin.lines(self._check.axis_names, position):
             self.event(cycle, Severity.INFO, START_STEP, step)
 
@@ -307,6 +322,7 @@ class ChannelUnit(Unit):
         row more than the block has leads to the next one.
         """
         first_cycle, count = tick
+        self._sequence.stream.begin_cycles(count)
         self._read_feedback(first_cycle, inputs)
         self._watch_handshake(first_cycle)
         outgoing = self._sequence.take_outgoing(first_cycle)
@@ -314,6 +330,11 @@ class ChannelUnit(Unit):
         rows = CycleRows()
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
+        if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
+            self.runs_out = False
+        else:
+            self._sequence.stream.look_ahead()
+            self._watch_interpreter(first_cycle)
         self._axes.give(rows.axes[count - 1], on_path=on_path)
         self._element_begins = begins_element(*rows.distance_to_go[count - 1 :])
         self._update_progress()
@@ -333,6 +354,8 @@ class ChannelUnit(Unit):
             return
         in_file = self._program is not None and sequence.source.file == self._program.file
         line = sequence.source.line if in_file else 0
+        if self._program is not None and self._program.streamed:
+            line = sequence.stream.read + 1
         self._progress.update(sequence.stream.done, self._motion, line, begun=sequence.motion_begun)
 
     @property
@@ -409,6 +432,9 @@ class ChannelUnit(Unit):
     def _go_on(self, first_cycle: int, cycle: int) -> bool:
         try:
             goes_on = self._sequence.go_on(first_cycle, cycle)
+        except ProgramError as error:
+            self._fail_before(cycle, error)
+            return True
         except CncError as error:
             source = self._sequence.source
             self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
@@ -492,12 +518,13 @@ class ChannelUnit(Unit):
             state = before
             again = None if begin is None else begin.again()
             blocks = self._check.running(program, start, state, unreferenced, again)
-            stream = BlockStream(blocks, known.total, state.values)
+            place = program.place if program.streamed else None
+            stream = BlockStream(blocks, known.total, state.values, self._parameters.blocks_per_cycle, place)
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
         self._offsets.begin(cycle, before.modal.coordinates)
-        self._progress = ProgramProgress(times, program.lines)
+        self._progress = ProgramProgress(times, program.size)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True
 
@@ -567,6 +594,24 @@ class ChannelUnit(Unit):
         held = self._sequence.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0
         return held and self._override_percent == 0.0 and not self._feed_hold
 
+    def _watch_interpreter(self, cycle: int) -> None:
+        """A warning when the path becomes slower because too few blocks are known; another one after it was full."""
+        stream, known = self._sequence.stream, self._motion.runs_out
+        if self.runs_out:
+            self.runs_out = stream.fill < ENOUGH
+        elif known >= 0.0 and self._sequence.awaits_blocks:
+            self.runs_out = True
+            line = self._sequence.source.line
+            blocks = self._parameters.blocks_per_cycle
+            reason = f"blocks for {known:.3g} mm are known, P-CHAN-90006 gives {blocks} in a cycle"
+            text = f"the path is slower in line {line}: {reason}"
+            self.event(cycle, Severity.WARNING, INTERPRETER_SLOW, f"channel {self.name}: {text}", line)
+
+    @property
+    def blocks_ahead(self) -> tuple[float, float]:
+        """How full the buffer of interpreted blocks is (0 … 1), and the length of the path that is known, mm."""
+        return self._sequence.stream.fill, self._motion.path_ahead
+
     def _check_member(self, first_cycle: int, node: str, block: CycleBlock) -> None:
         """Axes and spindles must be without error, and axes on the path that the previous block gave them."""
         if not isinstance(block, (AxisBlock, SpindleBlock)):
@@ -609,6 +654,15 @@ class ChannelUnit(Unit):
         line = 0 if idle else self._sequence.source.line
         self._error_id = error_id
         self.event(cycle, Severity.ERROR, error_id, f"channel {self.name}: {reason}; {effect}", line)
+        self._sequence.ramp_down()
+
+    def _fail_before(self, cycle: int, error: ProgramError) -> None:
+        """Error reaction to a block that is not executed: all before it has been done, and the path stands."""
+        line, text = self._sequence.source.line, self._sequence.source.text.strip()
+        where = f"the path stands behind line {line} '{text}'" if line else "nothing has moved"
+        self._error_id = error.number
+        reason = f"{error.message}; {where} and the program is aborted"
+        self.event(cycle, Severity.ERROR, error.number, f"channel {self.name}: {reason}", error.line)
         self._sequence.ramp_down()
 
     def _require_idle(self, command: str) -> None:

@@ -9,7 +9,7 @@ from itertools import islice
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
-from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Motion
 from cnc_ptp.nc.faults import ProgramError
 
 
@@ -71,6 +71,12 @@ class FollowingBlocks:
                 return block.motion
             if block.motion is not None or block.stop:
                 return None
+
+    def awaits_next(self, motion: Motion | None) -> bool:
+        """The path may continue behind `motion`, but with what is not known yet."""
+        if not isinstance(motion, (LinearMove, CircularMove)) or motion.transition.stops:
+            return False
+        return self.peek() is None and self.busy
 
     def accept(self) -> None:
         """The path continues with the motion that `peek` has shown."""

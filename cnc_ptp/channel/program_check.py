@@ -33,8 +33,9 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret
-from cnc_ptp.nc.parser import NO_FILES, parse_all
+from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
@@ -220,6 +221,12 @@ class ProgramCheck:
                 reported[spindle.key] = block.gear[-1]
         return reported
 
+    def parse(self, text: str, file: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> Program:
+        """A program that is loaded; beyond P-CHAN-90005 it is read while it runs. Raises its first syntax error."""
+        vocabulary = self.vocabulary if dialect is None else VOCABULARIES[dialect]
+        read = stream_program if len(text) > self._channel.checked_text else parse_program
+        return read(text, file, files=files, vocabulary=vocabulary)
+
     def blocks(self, program: Program, start: Sequence[float]) -> list[CanonicalBlock]:
         """The blocks of a program that is started from the initial state, as far as they are known before it runs."""
         return self.known_ahead(program, start, self.state({}, {}, {})).blocks
@@ -242,15 +249,20 @@ class ProgramCheck:
     ) -> KnownBlocks:
         """Interprets a program from `start` (mm, in the channel's order of axes) before anything moves.
 
-        All of it, up to a homing or a line that reads what only the run knows; `begin`: not from its beginning.
+        All of it, up to a homing or a line that reads what only the run knows; `begin`: not from its beginning. Of a
+        program that is read while it runs nothing but the way to `begin`.
         `unreferenced`: nodes of axes without soft limits, which it must not move before it homes them if that is
         `required` (P-MACH-00061). Raises ProgramError and the errors of ProgramStart; then `state` is void.
         """
         blocks: list[CanonicalBlock] = []
         total = 0
+        if program.streamed and begin is None:
+            return KnownBlocks(blocks, False, None)
         for block in self.running(program, start, state, unreferenced, begin, required=required):
             if block is BUSY:
                 continue
+            if program.streamed:
+                return KnownBlocks(blocks, False, None)
             total += 1
             if len(blocks) < self._channel.known_blocks:
                 blocks.append(block)

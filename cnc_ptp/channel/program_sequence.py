@@ -8,7 +8,7 @@
 | MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
 | HOMING | G74: the axes are off the path and home themselves | WAIT_AFTER |
 | WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
-| WAIT_END | a program without M30: the path waits for all that is still pending | IDLE |
+| WAIT_END | no M30, or a fault in the next block: the path waits for all that is pending | IDLE, RAMP_DOWN |
 | STOPPED | M00, M01, single block: `resume` continues | NEXT |
 | RAMP_DOWN | the program was aborted, the path stops on its ramp | IDLE |
 """
@@ -41,6 +41,7 @@ from cnc_ptp.nc.canonical import (
     Timer,
     WaitForPath,
 )
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
 from cnc_ptp.protocol.notes import ORDERED_ERROR
@@ -113,6 +114,10 @@ class ProgramSequence:
         """The moments that have come: the path waits for the functions of these moments."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
+        self._fault: ProgramError | None = None
+        """Of the next block."""
+        self._fault_found = -1
+        """The cycle block in which it was found: its functions go out with the next one."""
         self.handshake = Handshake()
         self._feedback: Mapping[str, CycleBlock] = {}
         self.notes: list[tuple[int, str, int]] = []
@@ -135,6 +140,7 @@ class ProgramSequence:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
         self.finished = False
+        self._fault = None
         self._following.begin(stream)
         self.phase = Phase.NEXT
 
@@ -283,7 +289,7 @@ class ProgramSequence:
     def go_on(self, first_cycle: int, cycle: int) -> bool:
         """One step forward between motions at `cycle` of the block; False when the path has to wait.
 
-        Raises CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
+        Raises ProgramError of the next block, CncError of PathMotion.start, and 22019 and 22021 of Wait.fulfilled.
         """
         if self.phase is Phase.NEXT:
             return self._begin_block(first_cycle, cycle)
@@ -298,9 +304,9 @@ class ProgramSequence:
         if self.phase is Phase.WAIT_GEAR:
             self._functions_before(cycle)
         elif self.phase is Phase.WAIT_BEFORE:
-            self._start_motion()
+            return self._start_motion()
         elif self.phase is Phase.WAIT_END:
-            self._finish()
+            return self._finish_if_good(first_cycle)
         else:
             self._end_block(first_cycle)
         return True
@@ -336,13 +342,20 @@ class ProgramSequence:
             self._add_waits([Wait(Moment.AFTER, expected, sent_cycle=cycle) for cycle in spindle.answers()])
 
     def _begin_block(self, first_cycle: int, cycle: int) -> bool:
-        """False while the interpreter computes, and behind a wait for the path. Raises ProgramError."""
+        """False while the interpreter computes, and behind a wait for the path.
+
+        A fault counts when all that precedes it has been done.
+        """
         if first_cycle == self._waited_at:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
             actual = actual_positions(self._feedback, self._axes)
             self.stream.give(actual, self._motion.position, self._timers.read)
-        block = self._following.take()
+        block: CanonicalBlock | None = None
+        try:
+            block = self._following.take()
+        except ProgramError as fault:
+            self._fault, self._fault_found = fault, first_cycle
         if block is BUSY:
             return False
         if block is None:
@@ -386,17 +399,20 @@ class ProgramSequence:
                     raise CncError(ORDERED_ERROR, function.text)
                 self._note(ORDERED_ERROR, function.text)
 
-    def _start_motion(self) -> None:
+    def _start_motion(self) -> bool:
+        """False while the interpreter computes the block with which it is linked."""
         motion = self._block.motion if self._block else None
         if motion is None:
             self.motion_ended()
-            return
-        if isinstance(motion, HomeAxes):
+        elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
-            return
-        self._motion.start(motion, self._following)
-        self.phase = Phase.MOTION
+        elif self._following.awaits_next(motion):
+            return False
+        else:
+            self._motion.start(motion, self._following)
+            self.phase = Phase.MOTION
+        return True
 
     def _open_waits(self) -> Container[Moment]:
         """The moments before which the path has to stop; all in single block."""
@@ -409,7 +425,7 @@ class ProgramSequence:
         """
         moves = False
         while not moves:
-            self.stream.done += 1
+            self.stream.finish_block()
             block = self._following.take()
             assert block is not None
             self._reach(block)
@@ -421,7 +437,7 @@ class ProgramSequence:
 
     def _end_block(self, first_cycle: int) -> None:
         stop = self._block.stop if self._block else ""
-        self.stream.done += 1
+        self.stream.finish_block()
         if self._block is not None and any(isinstance(function, WaitForPath) for function in self._block.functions):
             self._waited_at = first_cycle
         if stop == "end":
@@ -439,9 +455,23 @@ class ProgramSequence:
         return self.single_block != "" and (moved or not by_motion) and self.stream.done < self.stream.total
 
     @property
+    def awaits_blocks(self) -> bool:
+        """The path would go on if the interpreter knew how."""
+        return self._following.busy
+
+    @property
     def motion_begun(self) -> bool:
         """The motion of the block that is not through yet is active, or has finished."""
         return self.phase in (Phase.MOTION, Phase.WAIT_AFTER)
+
+    def _finish_if_good(self, first_cycle: int) -> bool:
+        """False while functions before a fault are still to go out. Raises ProgramError."""
+        if self._fault is None:
+            self._finish()
+            return True
+        if first_cycle > self._fault_found:
+            raise self._fault
+        return False
 
     def _finish(self) -> None:
         """The program has been carried out to its end."""

@@ -11,8 +11,7 @@ from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.machine.program_files import called_programs, folder_of, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
-from cnc_ptp.nc.parser import NO_FILES, parse_program
-from cnc_ptp.nc.vocabularies import VOCABULARIES
+from cnc_ptp.nc.parser import NO_FILES
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
 from cnc_ptp.protocol.blocks import Command
@@ -67,13 +66,12 @@ def check_program(
     dialect: str | None = None,
     begin: StartPoint | None = None,
 ) -> None:
-    """Interprets a program for the first channel as started from the start positions.
+    """Interprets a program for the first channel as started from the start positions, unless it is read as it runs.
 
     Raises ProgramError, CncError 26112 and the errors of ProgramStart.
     """
     check = ProgramCheck.of_first_channel(machine, file)
-    vocabulary = check.vocabulary if dialect is None else VOCABULARIES[dialect]
-    parsed = parse_program(text, file, files=files, vocabulary=vocabulary)
+    parsed = check.parse(text, file, files, dialect)
     start = None if begin is None else ProgramStart(begin, parsed)
     check.known_ahead(parsed, check.start, check.state({}, {}, {}), start)
 

@@ -130,6 +130,7 @@ SLOPE_NOT_AVAILABLE = Fault(21111, "slope {slope} is not available; available ar
 
 # Transitions between blocks
 OPTION_TOO_SMALL = Fault(120129, "{word}={value} must be {least}")
+NOTHING_TO_SMOOTH = Fault(21629, "#HSC smooths the path of axes, but the channel has none")
 OPTION_TOO_LARGE = Fault(21112, "{word}={value} must be at most {limit}")
 NO_TOLERANCE = Fault(
     21114,

@@ -89,12 +89,12 @@ def parse_text(
     with paused_collector():
         for each in (program, *called.values()):
             each.library = known
-            errors += _Reader(each, mdi=mdi, called=each is not program).read()
+            errors += ProgramReader(each, mdi=mdi, called=each is not program).read()
     return program, errors
 
 
-class _Reader:
-    """Reads all lines once: errors, sections, labels, structures."""
+class ProgramReader:
+    """Reads all lines once, one after the other: errors, sections, labels, structures."""
 
     def __init__(self, program: Program, *, mdi: bool, called: bool) -> None:
         """`called`: its main part is a subroutine of other programs."""
@@ -112,20 +112,30 @@ class _Reader:
         self.declarations: Declarations | None = None
         self.opened: Line | None = None
         """Line of #VAR or #COMMENT BEGIN until its end."""
+        self.number, self.offset = 1, 0
+        """Of the next line."""
 
     def read(self) -> list[ProgramError]:
         """All errors of the file, one per line."""
-        number, offset = 1, 0
-        program = self.program
-        while offset >= 0 and len(self.errors) < MOST_ERRORS and not self.closed:
-            line = read_line(program.file, program.text, number, offset, program.vocabulary)
-            if self.opened is None:
-                self._line(line, offset)
-            else:
-                self._inside(line)
-            program.lines = number
-            number, offset = line.next_number, line.next_offset
+        while self.goes_on:
+            self.step()
         return self.finish()
+
+    @property
+    def goes_on(self) -> bool:
+        """There is a next line."""
+        return self.offset >= 0 and len(self.errors) < MOST_ERRORS and not self.closed
+
+    def step(self) -> None:
+        """Reads the next line."""
+        program, number, offset = self.program, self.number, self.offset
+        line = read_line(program.file, program.text, number, offset, program.vocabulary)
+        self.number, self.offset = line.next_number, line.next_offset
+        if self.opened is None:
+            self._line(line, offset)
+        else:
+            self._inside(line)
+        program.lines = number
 
     def _line(self, line: Line, offset: int) -> None:
         program = self.program

@@ -12,6 +12,11 @@ class ProgramText:
     def __init__(self, text: str) -> None:
         self._text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
 
+    @property
+    def size(self) -> int:
+        """Its characters."""
+        return len(self._text)
+
     def line_at(self, offset: int) -> tuple[str, int]:
         """The line that begins at an offset, and the offset of the next one, END behind the last line."""
         end = self._text.find("\n", offset)

@@ -82,6 +82,8 @@ class SmoothingMode(Statement):
         state = execution.values.state
         smoothing: Smoothing | None = None
         if self.options is not None:
+            if not execution.values.channel.axes:
+                raise faults.NOTHING_TO_SMOOTH.at(line.source, self.column)
             given = values_of(execution, line, self.options)
             default = execution.values.channel.path.smoothing or Smoothing(given.get("PATH_DEV", 0.0))
             smoothing = Smoothing(given.get("PATH_DEV", default.path_dev), given.get("TRACK_DEV", default.track_dev))

@@ -82,6 +82,9 @@ class LinkedPath:
     def begin(self, first: LinkedMotion, motion: Path, following: Path) -> bool:
         """Links the first two motions; False if they cannot be linked."""
         self._last = motion
+        start = first.span.element.evaluate(0.0, 0.0, 0.0, 0.0)
+        self._at_start = tuple([(position, 0.0, 0.0, 0.0) for position, _, _, _ in start])
+        """Of the axes, while too little of the path is known for its first part."""
         self._feeds.append(first.shown)
         self._builder.begin()
         self._append(self._builder.add(first))
@@ -139,6 +142,9 @@ class LinkedPath:
             if self.passes:
                 break
             u, v, a, j = self._rows.popleft()
+            if not self.look_ahead.begun:
+                points.append((self._at_start, 0.0, 0.0))
+                continue
             begin, part = self.look_ahead.locate(u)
             states = part.geometry.evaluate(u - begin, v, a, j)
             velocity = path_velocity(states, part.path_axes) or v  # other axes that move alone have a path of their own
@@ -148,7 +154,7 @@ class LinkedPath:
         return points
 
     def _block_ahead(self) -> int:
-        if self._rows:
+        if self._rows and self.look_ahead.begun:
             return self.look_ahead.locate(self._rows[0][0])[1].block
         return self._blocks - 1 if self.look_ahead.done else self.block
 

@@ -115,6 +115,17 @@ class PathMotion:
         return self.on_path and self._interpolator.override == 0.0
 
     @property
+    def runs_out(self) -> float:
+        """Length of the path, mm, that is known while it brakes because no more is; -1.0 while it does not."""
+        ahead = None if self._linked is None else self._linked.look_ahead
+        return ahead.known if ahead is not None and ahead.runs_out else -1.0
+
+    @property
+    def path_ahead(self) -> float:
+        """Length of the path, mm, that the look-ahead knows."""
+        return self.distance_to_go if self._linked is None else self._linked.look_ahead.known
+
+    @property
     def can_be_held(self) -> bool:
         """An element is active that a feed hold would stop before its end."""
         if self._linked is not None:

@@ -7,17 +7,11 @@ import random
 
 import numpy as np
 import pytest
-from machine_support import CYCLE_TIME, MILL, MachineBench, assert_smooth
+from machine_support import CYCLE_TIME, MILL, MachineBench
+from machine_support import assert_axes_smooth as smooth
 from shapely import LineString, Point
 
 AXES = ("x", "y", "z")
-
-
-def smooth(bench: MachineBench) -> None:
-    for name in AXES:
-        axis = MILL.axes[name]
-        columns = [bench.column(name, f"set_{what}") for what in ("position", "velocity", "acceleration")]
-        assert_smooth(*columns, acceleration=max(axis.acceleration, axis.deceleration), jerk=axis.jerk * (1.0 + 1e-6))
 
 
 def path(bench: MachineBench) -> np.ndarray:

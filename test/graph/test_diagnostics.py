@@ -133,6 +133,27 @@ def test_a_spindle_and_a_channel_say_what_they_do():
     assert channel.status()[:2] == (DiagnosticStatus.OK, "Idle")
 
 
+def test_a_channel_shows_how_many_blocks_it_has_ahead(tmp_path):
+    """100 blocks come in a block of 10 cycles; of a known program all are there."""
+    path = tmp_path / "m.yaml"
+    limits = "interpreter: {checked_text: 1000, blocks_per_cycle: 1}"
+    path.write_text(MILL.read_text().replace("    spdl_anzahl: 1\n", f"    spdl_anzahl: 1\n    {limits}\n"))
+    channel = Watched(path, "channel")
+    lines = "\n".join(f"G01 X{0.02 * n:.2f}" for n in range(1, 2000))
+    channel.command("load", program="a.nc", text=f"G359 F6000\n{lines}\nM30")
+    channel.command("start")
+    channel.run(30)
+    level, message, values = channel.status()
+    reason = "the path is slower because the interpreter does not keep up"
+    assert (level, message) == (DiagnosticStatus.WARN, reason)
+    assert values["buffer of interpreted blocks, least [%]"] == 0.0 and 0.0 < values["path that is known [mm]"] < 5.0
+    channel.command("reset")
+    channel.run(30)
+    assert channel.status()[0] == DiagnosticStatus.OK
+    channel.run(1)
+    assert channel.status()[2]["path that is known [mm]"] == 0.0
+
+
 @pytest.mark.parametrize(
     ("fields", "result"),
     [

@@ -249,6 +249,49 @@ def test_linked_blocks_in_the_graph_equal_the_offline_run(folder, options):
     verified(folder / "l.mcap")
 
 
+STREAMED = "    interpreter: {checked_text: 1000, blocks_per_cycle: 1}\n"
+"""Blocks of 0.02 mm: 20 mm/s."""
+CALLS = """%L UP
+G91 Y0.5
+G90
+M29
+"""
+SHORT = "G359 F6000\n" + "\n".join(f"G01 X{0.02 * n:.2f}" for n in range(600))
+BEHIND = """LL UP
+$FOR P1 = 0, 3, 1
+G01 X[40 - P1]
+$ENDFOR
+P2 = V.A.ACT_POS.X
+G01 X[P2 / 100]
+M8
+M30
+"""
+
+
+@pytest.mark.parametrize("bad", [False, True], ids=["good", "bad"])
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_a_program_that_is_read_while_it_runs_equals_the_offline_run(folder, options, bad):
+    """Too few blocks for the feed, override and feed hold, a subroutine, a loop, an actual position; or a fault."""
+    machine = folder / "streamed.yaml"
+    machine.write_text(MILL.read_text().replace("    spdl_anzahl: 1\n", "    spdl_anzahl: 1\n" + STREAMED))
+    fault = "M9\nG01 X0 Y1000\n" if bad else ""
+    (folder / "streamed.nc").write_text(f"{CALLS}%MAIN\n{SHORT}\n{LINKED.replace('M30', fault + BEHIND)}")
+    (folder / "linked.yaml").write_text(LINKED_SCENARIO)
+    job = (machine, "--program", folder / "streamed.nc", "--scenario", folder / "linked.yaml")
+    expect = 1 if bad else 0
+    told = run("simulate", *job, "--record", folder / "m.mcap", expect=expect)
+    output = run("run", *job, *options, "--record", folder / "n.mcap", expect=expect)
+    assert "lost 0, computed twice 0" in output.stdout
+    for text in (told.stdout, output.stdout):
+        assert "more than 1000 characters (P-CHAN-90005): it is checked while it runs" in text
+        assert text.count("P-WARN-22036 channel channel: the path is slower in line ") == 1
+    assert states_equal(folder / "m.mcap", folder / "n.mcap") == []
+    verified(folder / "n.mcap")
+    reason = "'G01 X0 Y1000': axis Y: 1000 mm lies beyond the positive soft limit"
+    for result in (told, output):
+        assert (reason in result.stdout + result.stderr) == bad
+
+
 @pytest.mark.parametrize("options", [[], ["--composed", "--free-run"]], ids=str)
 def test_superpositions_on_a_path_equal_the_offline_run(folder, options):
     """The flying saw and external setpoints on top of a circle, with z as the conveyor."""

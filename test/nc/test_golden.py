@@ -1,9 +1,8 @@
 """Good programs against their golden canonical streams, bad ones against the exact error text in their first line."""
 
 import pytest
-from nc_support import HERE, machine, tools, vocabulary_of
+from nc_support import HERE, files_of, machine, tools, vocabulary_of
 
-from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc import faults, spindle_faults
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.coordinates import coordinate_faults
@@ -13,7 +12,6 @@ from cnc_ptp.nc.flow import flow_faults
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.iso import iso_faults
-from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.tools import tool_faults
 
@@ -30,13 +28,6 @@ def faults_of(part) -> list[Fault]:
 
 PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
-
-
-def files_of(text: str) -> dict[str, str]:
-    """Programs that a text calls: of the test's own library, or of those that ship; none in the vocabulary iso."""
-    if vocabulary_of(text) is ISO:
-        return {}
-    return called_programs(text, [str(HERE / "library")])
 
 
 def stream(text: str, file: str) -> list[str]:

@@ -183,6 +183,9 @@ ZERO = "zero list, P-ZERO-0000"
         ("interpreter.call_depth: 101", "25008 m.yaml:5:29: channel list, P-CHAN-90001 interpreter.call_depth of /ch: value 101 is above the maximum 100"),
         ("interpreter.repeats: 0", "25008 m.yaml:5:26: channel list, P-CHAN-90002 interpreter.repeats of /ch: value 0 is below the minimum 1"),
         ("interpreter.known_blocks: 1000001", "25008 m.yaml:5:31: channel list, P-CHAN-90003 interpreter.known_blocks of /ch: value 1000001 is above the maximum 1000000"),
+        ("interpreter.checked_text: -1", "25008 m.yaml:5:31: channel list, P-CHAN-90005 interpreter.checked_text of /ch: value -1 is below the minimum 0"),
+        ("interpreter.blocks_per_cycle: 0", "25008 m.yaml:5:35: channel list, P-CHAN-90006 interpreter.blocks_per_cycle of /ch: value 0 is below the minimum 1"),
+        ("interpreter.blocks_per_cycle: 1001", "25008 m.yaml:5:35: channel list, P-CHAN-90006 interpreter.blocks_per_cycle of /ch: value 1001 is above the maximum 1000"),
         ("interpreter.folders: cycles", "25007 m.yaml:5:26: channel list, P-CHAN-90004 interpreter.folders of /ch: value 'cycles' is text, a list of names is needed"),
     ],
 )  # fmt: skip
@@ -193,8 +196,10 @@ def test_errors_of_the_machine_file(line: str, error: str) -> None:
 
 
 def test_folders_are_relative_to_the_machine_file(tmp_path: Path) -> None:
-    text = machine("interpreter: {folders: [cycles, ../shared], call_depth: 3, repeats: 10, known_blocks: 5}")
+    limits = "call_depth: 3, repeats: 10, known_blocks: 5, checked_text: 0, blocks_per_cycle: 7"
+    text = machine(f"interpreter: {{folders: [cycles, ../shared], {limits}}}")
     (tmp_path / "m.yaml").write_text(text)
     channel = read_machine(tmp_path / "m.yaml").channels["ch"]
     assert channel.folders == (f"{tmp_path}/cycles", f"{tmp_path}/../shared")
     assert (channel.call_depth, channel.repeats, channel.known_blocks) == (3, 10, 5)
+    assert (channel.checked_text, channel.blocks_per_cycle) == (0, 7)

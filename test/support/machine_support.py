@@ -309,6 +309,15 @@ def assert_smooth(
         assert abs(way) <= (step - 0.2) * jerk * t**3 + slack, f"position in cycle {k}: {p[k]} -> {p[k + 1]}"
 
 
+def assert_axes_smooth(bench: MachineBench) -> None:
+    """`assert_smooth` for the axes of the channel, with their own limits."""
+    for axis in bench.machine.channels["channel"].axes:
+        parameters = bench.machine.axes[axis.node]
+        columns = [bench.column(axis.node, f"set_{what}") for what in ("position", "velocity", "acceleration")]
+        largest = max(parameters.acceleration, parameters.deceleration)
+        assert_smooth(*columns, acceleration=largest, jerk=parameters.jerk * (1.0 + 1e-6))
+
+
 def assert_axis_smooth(
     bench: UnitBench | list[AxisBlock], *, acceleration: float, jerk: float, kinks: bool = False
 ) -> None:

@@ -3,9 +3,11 @@
 from pathlib import Path
 from typing import Any
 
+from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.canonical import CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.interpreter import interpret
+from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Pair, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
@@ -91,6 +93,13 @@ def tools(text: str) -> ToolTable:
         if line.startswith("; tools"):
             return TOOLS[line.split()[2]]
     return NO_TOOLS
+
+
+def files_of(text: str) -> dict[str, str]:
+    """Programs that a text calls: of the test's own library, or of those that ship; none in the vocabulary iso."""
+    if vocabulary_of(text) is ISO:
+        return {}
+    return called_programs(text, [str(HERE / "library")])
 
 
 def machine(text: str) -> tuple[tuple[str, ...], tuple[str, ...] | SpindleTable]:

@@ -123,6 +123,8 @@ class Execution(Flow):
             if self.offset < 0:
                 self._end_of_section()
                 continue
+            if self.program.streamed and not self.program.ready(self.number):
+                return COMPUTES
             line = self.program.line(self.number, self.offset)
             if line.header:
                 self._end_of_section()
@@ -187,6 +189,7 @@ class Execution(Flow):
         if self.frames:
             self._return()
         else:
+            self.program.require_end()
             self.ended = True
 
     # jumps

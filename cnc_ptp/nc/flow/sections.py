@@ -49,7 +49,10 @@ class Program:
     targets         where the $GOTO of a line leads to, or why it leads nowhere
     library         the other files that it may call, by upper-case name
     lines           number of its last line
+    streamed        it is read while it is executed (StreamedProgram)
     """
+
+    streamed = False
 
     def __init__(self, file: str, text: ProgramText, read_line: ReadLine, vocabulary: Vocabulary) -> None:
         self.file, self.text, self.vocabulary = file, text, vocabulary
@@ -70,6 +73,22 @@ class Program:
     @property
     def name(self) -> str:
         return self.main.name
+
+    @property
+    def size(self) -> int:
+        """Of which its progress is a share: lines, or characters if it is read while it is executed."""
+        return self.lines
+
+    def place(self) -> int:
+        """How much of it has been executed, in parts of `size`; 0 if it does not count that."""
+        return 0
+
+    def ready(self, number: int) -> bool:
+        """Whether all is known that line `number` needs to be executed; else ask again. Raises ProgramError."""
+        return True
+
+    def require_end(self) -> None:
+        """The main program has come to its last line. Raises ProgramError if M30 is missing."""
 
     def keep(self, line: Line) -> None:
         """Notes a line, as long as there is room for it."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
+from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.nodes.unit.lateness import Lateness
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, Event, PlcBlock, Severity, SpindleBlock
@@ -33,6 +34,7 @@ class UnitDiagnostics:
         self._following_error = 0.0
         self._lag_share = 0.0
         self._latest_ms = 0.0
+        self._least_fill = 1.0
         self.lateness = Lateness()
         self.lost_blocks = 0
 
@@ -40,6 +42,8 @@ class UnitDiagnostics:
         """The block that was computed last."""
         self._block = block
         self._blocks += 1
+        if isinstance(self._unit, ChannelUnit):
+            self._least_fill = min(self._least_fill, self._unit.blocks_ahead[0])
         errors: list[float] = []
         if isinstance(block, AxisBlock):
             errors = block.following_error
@@ -66,6 +70,7 @@ class UnitDiagnostics:
         message = "; ".join(text for _, text in findings) or self._state()
         values = [KeyValue(key=key, value=value) for key, value in self._values(came_twice).items()]
         self._latest_ms = self._lag_share = 0.0
+        self._least_fill = 1.0
         return DiagnosticStatus(
             name=self._unit.name, level=level, hardware_id="cnc_ptp", message=message, values=values
         )
@@ -85,6 +90,8 @@ class UnitDiagnostics:
             yield DiagnosticStatus.ERROR, f"{came_twice} blocks came twice"
         if self._lag_share >= NEAR_LIMIT:
             yield DiagnosticStatus.WARN, f"following error at {self._lag_share * 100.0:.0f} % of its limit"
+        if isinstance(self._unit, ChannelUnit) and self._unit.runs_out:
+            yield DiagnosticStatus.WARN, "the path is slower because the interpreter does not keep up"
         if self._latest_ms > self._block_ms:
             yield DiagnosticStatus.WARN, f"a block came {self._latest_ms:.1f} ms late, it takes {self._block_ms:g} ms"
 
@@ -114,4 +121,7 @@ class UnitDiagnostics:
         if isinstance(self._block, (AxisBlock, SpindleBlock)):
             values[figures.following_error(self._length_unit)] = str(self._following_error)
             values[figures.LAG_OF_LIMIT] = f"{self._lag_share * 100.0:.1f}"
+        if isinstance(self._unit, ChannelUnit):
+            values[figures.BUFFER_FILL] = f"{self._least_fill * 100.0:.0f}"
+            values[figures.PATH_AHEAD] = f"{self._unit.blocks_ahead[1]:.3f}"
         return values

@@ -100,6 +100,8 @@ class ChannelParameters:
     call_depth: Annotated[int, ids.INTERPRETER_CALL_DEPTH] = 20
     repeats: Annotated[int, ids.INTERPRETER_REPEATS] = 1_000_000
     known_blocks: Annotated[int, ids.INTERPRETER_KNOWN_BLOCKS] = 100_000
+    checked_text: Annotated[int, ids.INTERPRETER_CHECKED_TEXT] = 10_000_000
+    blocks_per_cycle: Annotated[int, ids.INTERPRETER_BLOCKS_PER_CYCLE] = 10
     folders: tuple[str, ...] = ()
     """In which called programs are looked for besides that of the main program (P-CHAN-90004)."""
     dialect: str = "twincat"

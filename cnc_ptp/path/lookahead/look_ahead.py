@@ -30,6 +30,8 @@ WINDOW: Final = 4.0
 """What is planned at once, in stopping distances on a straight path."""
 RENEWAL: Final = 0.5
 """Part of the planned path after which it is planned again."""
+BRAKES: Final = 0.8
+"""The path brakes for its end when the distance in which it could stop is this part of what is ahead."""
 
 
 class LookAhead:
@@ -64,6 +66,8 @@ class LookAhead:
         self._planned_end = 0.0
         self._renew = 0.0
         self._reach = 0.0
+        self._deceleration = self._jerk = 1.0
+        """Of the last part, along the path."""
         self._stopping = False
 
     # what is ahead
@@ -88,6 +92,24 @@ class LookAhead:
         waiting = self._undivided[0]
         return not waiting.begun and (waiting.part.entry <= 0.0 or waiting.origin == self._halt)
 
+    @property
+    def begun(self) -> bool:
+        """There is a part."""
+        return bool(self._parts)
+
+    @property
+    def known(self) -> float:
+        """Length that is ahead."""
+        return self.end - self.state[0]
+
+    @property
+    def runs_out(self) -> bool:
+        """The path brakes, or stands, because nothing more of it is known."""
+        u, v, a, _ = self.state
+        if not self.wants or len(self._stretches) > 1 or self._halt < inf or u <= 0.0 or self._factor <= AT_REST:
+            return False
+        return stopping_distance(v, max(0.0, a), self._deceleration, self._jerk) >= BRAKES * self.known
+
     def append(self, part: PathPart) -> None:
         """The path continues with `part`: with the direction and curvature of the last one, or after an exact stop."""
         self._parts.append((self.end, part))
@@ -98,6 +120,7 @@ class LookAhead:
         self.end += part.length
         speed = sqrt(min(whole.limit, whole.feed))
         self._reach = max(self._reach, stopping_distance(speed, 0.0, whole.down, whole.jerk))
+        self._deceleration, self._jerk = whole.down, whole.jerk
         self._divide()
 
     def _divide(self) -> None:

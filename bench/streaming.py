@@ -1,0 +1,73 @@
+"""`python -m bench.streaming BLOCKS`: a channel runs a program of many short blocks that it reads as it runs.
+
+Prints the resident size in MB before the load, with the loaded text, the largest of the run at each tenth of it, and
+the blocks per second. The text alone is 20 bytes per block; what is beyond it must not grow.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from cnc_ptp.channel.channel_unit import ChannelUnit
+from cnc_ptp.machine.runner import UnitRunner
+from cnc_ptp.machine.wiring import build_unit
+from cnc_ptp.parameters import read_machine
+from cnc_ptp.protocol.blocks import Command, CycleTick
+
+MACHINE = Path(__file__).parents[1] / "config" / "mill.yaml"
+COUNT = 100
+"""Cycles of a block."""
+
+
+def program(blocks: int) -> str:
+    """Chords of 0.05 mm on a wave of 40 mm, to and fro along X."""
+    lines = [f"X{0.05 * abs(n % 4000 - 2000):.3f} Y{(n % 80 - 40) ** 2 / 1600:.4f}" for n in range(8000)]
+    repeats, rest = divmod(blocks, len(lines))
+    body = "\n".join(lines)
+    return "\n".join(
+        ["G01 F6000", "#HSC ON [BSPLINE PATH_DEV=0.01]", *[body] * repeats, "\n".join(lines[:rest]), "#HSC OFF", "M30"]
+    )
+
+
+def resident(what: str) -> float:
+    """VmRSS or VmHWM of this process, MB."""
+    found = re.search(rf"{what}:\s+(\d+) kB", Path("/proc/self/status").read_text())
+    return int(found[1]) / 1000.0 if found else 0.0
+
+
+def main(blocks: int) -> None:
+    machine = read_machine(MACHINE)
+    channel = replace(machine.channels["channel"], checked_text=0)
+    unit = build_unit(replace(machine, channels={"channel": channel}), "channel")
+    assert isinstance(unit, ChannelUnit)
+    runner = UnitRunner(unit, watchdog_cycles=10**12)
+    print(f"before the load {resident('VmRSS'):.0f} MB")
+    runner.command(Command("channel", "load", {"program": "big.nc", "text": program(blocks)}))
+    unit.take_records()
+    assert runner.command(Command("channel", "start", {})).accepted
+    print(f"with the text {resident('VmRSS'):.0f} MB, largest {resident('VmHWM'):.0f} MB")
+    begin, tenth, cycle = time.perf_counter(), 0, 0
+    while True:
+        block = runner.compute(CycleTick(cycle, COUNT), {})
+        cycle += COUNT
+        unit.take_events()
+        unit.take_records()
+        if 10 * block.blocks_done >= (tenth + 1) * blocks or block.done:
+            tenth += 1
+            seconds = time.perf_counter() - begin
+            print(
+                f"{block.blocks_done} blocks: {resident('VmRSS'):.1f} MB, {block.blocks_done / seconds:.0f} blocks/s,"
+                f" progress {100.0 * block.progress:.1f} %",
+                flush=True,
+            )
+        if block.done:
+            assert block.error_id[-1] == 0
+            return
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]))
