@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import inf, tau
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,18 +224,24 @@ class PathChecker:
         return part, np.linalg.norm(apart - part[:, None] * line, axis=1), length
 
     def _project_arc(self, s: Segment, points: Array) -> tuple[Array, Array, float]:
-        """The nearest of many places, then Newton's method."""
+        """The nearest of many places, and both ends (which may be one place); from each by Newton's method."""
         coarse = np.linspace(0.0, 1.0, 17 + int(abs(s.sweep) * 12))
         places = self._arc(s, coarse)[0]
-        part = coarse[np.argmin(np.linalg.norm(points[:, None, self.path] - places[None], axis=2), axis=1)]
+        nearest = coarse[np.argmin(np.linalg.norm(points[:, None, self.path] - places[None], axis=2), axis=1)]
+        length = float(np.linalg.norm(self._arc(s, nearest[:1])[1][0]))
+        found = [self._newton(s, points, start) for start in (nearest, 0.0 * nearest, 0.0 * nearest + 1.0)]
+        parts, distances = np.array([part for part, _ in found]), np.array([distance for _, distance in found])
+        best = np.argmin(distances, axis=0)
+        return *[np.take_along_axis(each, best[None], axis=0)[0] for each in (parts, distances)], length
+
+    def _newton(self, s: Segment, points: Array, part: Array) -> tuple[Array, Array]:
         for _ in range(6):
             q, q1, q2 = self._arc(s, part)
             apart = q - points[:, self.path]
             slope = (apart * q1).sum(axis=1)
             bend = (q1 * q1).sum(axis=1) + (apart * q2).sum(axis=1)
             part = np.clip(part - slope / np.where(bend > 0.0, bend, np.inf), 0.0, 1.0)
-        q, q1, _ = self._arc(s, part)
-        return part, np.linalg.norm(q - points[:, self.path], axis=1), float(np.linalg.norm(q1[0]))
+        return part, np.linalg.norm(self._arc(s, part)[0] - points[:, self.path], axis=1)
 
     def _arc(self, s: Segment, part: Array) -> tuple[Array, Array, Array]:
         """q, q1, q2 of the path axes by the part of an arc."""
@@ -319,7 +325,3 @@ class PathChecker:
                 rest = p - np.where(j != 0.0, a * a * a / (6.0 * j * j), 0.0)
         return bool(np.abs(rest - place).max() <= EXACT)
 
-
-def full_turn(sweep: float) -> float:
-    """An arc from a point to itself is a circle."""
-    return sweep if sweep != 0.0 else tau

@@ -105,7 +105,7 @@ class RandomProgram:
     # lines
 
     def new_feed(self) -> None:
-        self.feed = round(10 ** self.draw.uniform(2.3, 4.3), 1)
+        self.feed = round(10 ** self.draw.uniform(2.8, 4.3), 1)
         self.lines.append(f"F{self.feed}")
 
     def chapter(self) -> None:
@@ -177,7 +177,7 @@ class RandomProgram:
             if draw.random() < 0.5:
                 behind = before
             words = f"DIST PRE_DIST={before} POST_DIST={behind}"
-            dev = 0.445 * max(before, behind)
+            dev = max(before, behind)
         words += f" TRACK_DEV={track}" if track is not None else ""
         words += f" REMAIN_PART={draw.choice((0, 20, 90))}" if draw.random() < 0.3 else ""
         words += f" MAX_ANGLE={draw.choice((20, 100, 180))}" if draw.random() < 0.2 else ""

@@ -32,7 +32,7 @@ class Geometry(Protocol):
 
     def bounds(self, begin: float, end: float) -> list[Bounds]: ...
 
-    def speed(self, u: float, axes: Sequence[int]) -> float: ...
+    def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float: ...
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]: ...
 
@@ -81,7 +81,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
         limit = min(limit, largest_square(loads))
     if begin == 0.0 and part.entry > 0.0:
         limit = min(limit, part.entry)
-    speed = max(geometry.speed(begin, part.path_axes), geometry.speed(end, part.path_axes))
+    speed = geometry.largest_speed(begin, end, part.path_axes)
     feed = limit if part.feed == inf else (part.feed / (speed or 1.0)) ** 2  # the path of other axes is their own
     return PathCell(origin + begin, origin + end, limit, feed, up, down, jerk, loads)
 
