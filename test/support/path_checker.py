@@ -27,6 +27,8 @@ EXACT = 1e-9
 """mm."""
 ROUNDING = 2e-8
 """mm; programmed numbers have nine digits behind the point, an arc may miss its target by their rounding."""
+SHORTEST = 2e-3
+"""mm; a stop between two shorter segments may lie between cycles of which neither belongs to its ramps."""
 WINDOW = 64
 """Segments and samples that are compared at once."""
 
@@ -65,6 +67,11 @@ class Segment:
     everywhere: float = 0.0
     track_everywhere: float = 0.0
     stop: bool = False
+
+    @property
+    def length(self) -> float:
+        """About: at least the largest way of an axis."""
+        return float(np.abs(self.end - self.start).max()) + (SHORTEST if self.arc else 0.0)
 
     @property
     def arc(self) -> bool:
@@ -296,15 +303,17 @@ class PathChecker:
         begin = 0
         for k, (s, following) in enumerate(pairwise([*self.segments, self.segments[-1]])):
             reach = s.deviation + max(s.everywhere, following.everywhere) + ROUNDING
-            begin = self._pass(k, s, reach, run, step, begin, found)
+            begin = self._pass(k, s, following, reach, run, step, begin, found)
 
-    def _pass(self, k: int, s: Segment, reach: float, run: Run, step: Array, begin: int, found: Findings) -> int:
+    def _pass(
+        self, k: int, s: Segment, following: Segment, reach: float, run: Run, step: Array, begin: int, found: Findings
+    ) -> int:
         at = begin
         while at < len(step):
             part = slice(at, at + 4 * WINDOW)
             apart = np.linalg.norm((run.position[part] - s.end)[:, self.path], axis=1)
             near = apart <= reach * (1.0 + 1e-9) + step[part] * 1.01
-            if s.stop:
+            if s.stop and max(s.length, following.length) > SHORTEST:
                 near &= [self._rests(run, n, s.end) for n in range(at, at + len(apart))]
             if near.any():
                 return at + int(np.argmax(near))

@@ -145,6 +145,8 @@ class Division(NamedTuple):
         if index < len(self.head):
             return self.head[index] if index >= 0 else 0.0
         index -= len(self.head)
+        if index + 1 == self.equal:
+            return self.begin + self.length  # without rounding: it may be the end of the part
         if index < self.equal:
             return self.begin + self.length * (index + 1) / self.equal
         return self.tail[index - self.equal]
