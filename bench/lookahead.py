@@ -99,12 +99,12 @@ def figures(effort: Effort, show: ShowProgress) -> Iterator[Figure]:
     yield Figure("velocity reached of what feed and axes permit, mean", share * limits, "%", goal=90.0)
     long, short = cost(points), cost(points[:FEW])
     yield Figure("blocks planned and run", 1.0 / long, "blocks/s", goal=20_000.0)
-    yield Figure(f"cost of a block among {len(points):,} over {FEW:,}", long / short, "", goal=1.2, at_most=True)
+    yield Figure(f"cost of a block among {len(points):,} over {FEW:,}", long / short, "×", goal=1.2, at_most=True)
     length = sum([motion.span.length for motion in motions(gentle())])
     straight = plan_rest_to_rest(0.0, length, Limits(FEED, 1000.0, 1000.0, 20_000.0)).duration
     seconds = run(gentle())
     yield Figure("3,000 blocks of 0.05 mm at F6000", seconds, "s", goal=1.9, at_most=True)
-    yield Figure("the same over one straight block", seconds / straight, "", goal=1.1, at_most=True)
+    yield Figure("the same over one straight block", seconds / straight, "×", goal=1.1, at_most=True)
     many = effort.scaled(MANY)
     show(f"{many:,} blocks")
     done = subprocess.run(

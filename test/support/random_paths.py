@@ -41,7 +41,7 @@ MACHINE = """
         achse: {"0": {bezeichnung: X, log_achs_nr: 1}, "1": {bezeichnung: "Y", log_achs_nr: 2}, "2": {bezeichnung: Z, log_achs_nr: 3}, "3": {bezeichnung: A, log_achs_nr: 4}}
     m_synch: {"60": MOS, "61": MVS_SVS, "62": MVS_SNS, "63": MNS_SNS, "64": MVS_SLP, "65": NO_SYNCH}
     max_vb_override: 1500
-""" + "".join(  # noqa: ISC003
+""" + "".join(
     AXIS.format(name=name, number=n + 1, kind="ACHSTYP_ROTATOR" if name == "a" else "ACHSTYP_TRANSLATOR")
     for n, name in enumerate(NAMES)
 )
@@ -111,7 +111,9 @@ class RandomProgram:
     def chapter(self) -> None:
         draw = self.draw
         self.transition()
-        kind = draw.choice(("lines", "lines", "lines", "mixed", "mixed", "short", "smooth", "tiny", "rapid", "called", "loop"))
+        kind = draw.choice(
+            ("lines", "lines", "lines", "mixed", "mixed", "short", "smooth", "tiny", "rapid", "called", "loop")
+        )
         if kind == "smooth":
             self.smooth()
         elif kind == "called":
@@ -336,7 +338,5 @@ class RandomProgram:
 
 def run_of(bench: MachineBench, override: float = 1.0) -> Run:
     names = ("position", "velocity", "acceleration", "jerk")
-    columns = [
-        np.column_stack([bench.column(axis, f"set_{name}") for axis in bench.machine.axes]) for name in names
-    ]
+    columns = [np.column_stack([bench.column(axis, f"set_{name}") for axis in bench.machine.axes]) for name in names]
     return Run(*columns, override=override)
