@@ -23,6 +23,7 @@ TOPICS = (
     "motion",
     "control",
     "smoothing",
+    "lookahead",
     "recording",
     "offline",
     "graph",

@@ -16,7 +16,8 @@ class Contour(NamedTuple):
     """Words of #CONTOUR MODE; those of the TwinCAT CNC programming manual with its defaults.
 
     path_dev     PATH_DEV: largest distance of the path axes to the programmed path, mm; in DEV
-    track_dev    TRACK_DEV: largest deviation of each other axis, mm or deg; 0 none is given
+    track_dev    TRACK_DEV: largest deviation of each other axis, mm or deg; 0 none is given:
+                 a corner in which one of them has a kink gets no curve
     pre_dist     PRE_DIST: mm of path length before the corner at which the path is left; in DIST
     post_dist    POST_DIST: mm behind the corner at which it is met again; in DIST
     remain_part  REMAIN_PART: % of a block that its two corners leave as they are

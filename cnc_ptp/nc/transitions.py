@@ -14,6 +14,8 @@ from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
 LENGTHS: Final = ("PATH_DEV", "PRE_DIST", "POST_DIST")
 """Words in mm or inch."""
+TOLERANCES: Final = (*LENGTHS, "TRACK_DEV")
+"""Words that must be above 0."""
 OTHERS: Final = ("TRACK_DEV", "REMAIN_PART", "MAX_ANGLE")
 CONTOUR: Final = "#CONTOUR MODE [DEV PATH_DEV=0.01 TRACK_DEV=5] or [DIST PRE_DIST=1 POST_DIST=2], ON, OFF"
 SMOOTHING: Final = "#HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF"
@@ -102,8 +104,8 @@ def option(execution: Flow, line: Line, word: str, node: Node) -> float:
     """Value of an option, mm, % or deg. Raises ProgramError for one that is not above 0, or above its limit."""
     values = execution.values
     value = values.bounded(node.value(values), node.column, "the command")
-    if value < 0.0 or (value == 0.0 and word in LENGTHS):
-        least = "above 0" if word in LENGTHS else "at least 0"
+    if value < 0.0 or (value == 0.0 and word in TOLERANCES):
+        least = "above 0" if word in TOLERANCES else "at least 0"
         raise faults.OPTION_TOO_SMALL.at(line.source, node.column, word=word, value=number(value), least=least)
     limit = LARGEST.get(word, value)
     if value > limit:

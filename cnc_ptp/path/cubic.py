@@ -7,8 +7,12 @@ each other with continuous q1 and q2, so the acceleration of the axes is continu
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from cnc_ptp.path.shape import AxisState, Bounds, Shape, speed_of
+
+FALSE_POSITIONS: Final = 3
+"""Steps to the largest speed within a cell; what remains is below 1e-8 of it."""
 
 
 class Cubic:
@@ -55,3 +59,25 @@ class Cubic:
     def speed(self, u: float, axes: Sequence[int]) -> float:
         """|dq/du| of the given axes: the path velocity is u' times that."""
         return speed_of(self.shape(u), axes)
+
+    def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float:
+        """Largest |dq/du| of the given axes from u = `begin` to `end`, which are near each other.
+
+        Its square has the slope 2·q1·q2; where that falls through 0, regula falsi finds the place.
+        """
+        low, high = begin, end
+        rising, falling = self._slope(low, axes), self._slope(high, axes)
+        if rising <= 0.0 or falling >= 0.0:
+            return max(self.speed(begin, axes), self.speed(end, axes))
+        for _ in range(FALSE_POSITIONS):
+            place = low + (high - low) * rising / (rising - falling)
+            slope = self._slope(place, axes)
+            if slope > 0.0:
+                low, rising = place, slope
+            else:
+                high, falling = place, slope
+        return self.speed(low + (high - low) * rising / (rising - falling), axes)
+
+    def _slope(self, u: float, axes: Sequence[int]) -> float:
+        shape = self.shape(u)
+        return sum([shape[axis][1] * shape[axis][2] for axis in axes])

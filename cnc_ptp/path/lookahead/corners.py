@@ -52,17 +52,18 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     """What is left of A, the curve, and what is left of B; without a curve where nothing jumps.
 
     The first piece belongs to the block of A, the others to that of B. None if there can be no curve: the path reverses
-    or rests on one side, a block is too short, the angle is above MAX_ANGLE, or only axes beside those of the path have
-    a kink and there is no TRACK_DEV.
+    or rests on one side, a block is too short, the angle is above MAX_ANGLE, or an axis beside those of the path has a
+    kink and there is no TRACK_DEV.
     """
     end, start = a.shape(a.length), b.shape(0.0)
-    kinks = direction_jumps(end, start)
-    if not any(kinks) and not any(curvature_jumps(end, start)):
+    kinks, jumps = direction_jumps(end, start), curvature_jumps(end, start)
+    if not any(kinks) and not any(jumps):
         return a, [], b
     angle = angle_between(end, start, path_axes)
     if angle > SHARPEST_DEG or (0.0 < contour.max_angle < angle and both_lines(a, b)):
         return None
-    if contour.track_dev <= 0.0 and any(kinks) and not any(kinks[axis] for axis in path_axes):
+    others = [axis for axis in range(len(end)) if axis not in path_axes]
+    if contour.track_dev <= 0.0 and any([kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others]):
         return None
     before, after = distances(a, b, contour, path_axes, end, start)
     if min(before, after) < LEAST_DISTANCE:
@@ -78,14 +79,16 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
 def kink_square(a: Span, b: Span, limits: Sequence[AxisLimits], cycle_time: float) -> float:
     """Largest y = u'² at which the corner from A to B can be passed as it is; inf where nothing jumps.
 
-    A jump of the velocity of an axis within one cycle T takes the jerk Δv/T², one of its acceleration Δa/T. Each of the
-    two may take half the jerk of the axis: |Δq1|·u' <= J·T²/2, |Δq2|·u'² <= J·T/2.
+    A jump of the velocity of an axis within one cycle T takes the jerk Δv/T² and the acceleration Δv/T, one of its
+    acceleration the jerk Δa/T. Each of the two may take half the jerk of the axis: |Δq1|·u' <= J·T²/2,
+    |Δq2|·u'² <= J·T/2; and half its acceleration: |Δq1|·u' <= A·T/2.
     """
     end, start = a.shape(a.length), b.shape(0.0)
     square = inf
     for kink, bend, axis in zip(direction_jumps(end, start), curvature_jumps(end, start), limits, strict=True):
         if kink:
-            velocity = 0.5 * axis.jerk * cycle_time * cycle_time / kink
+            strength = min(axis.jerk * cycle_time, axis.acceleration, axis.deceleration)
+            velocity = 0.5 * strength * cycle_time / kink
             square = min(square, velocity * velocity)
         if bend:
             square = min(square, 0.5 * axis.jerk * cycle_time / bend)

@@ -273,6 +273,7 @@ class LookAhead:
         elif self.state[0] >= self._renew and self._factor > AT_REST:
             self._divide()
             if self._planned_end < self._cells[-1].end:
+                self._renew += 0.5 * (self._planned_end - self._renew)  # if there is no plan from here, again later
                 self._plan_from_knot()
 
     def _plan_from_rest(self) -> None:

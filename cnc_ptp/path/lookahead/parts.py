@@ -32,7 +32,7 @@ class Geometry(Protocol):
 
     def bounds(self, begin: float, end: float) -> list[Bounds]: ...
 
-    def speed(self, u: float, axes: Sequence[int]) -> float: ...
+    def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float: ...
 
     def evaluate(self, u: float, v: float, a: float, j: float) -> tuple[AxisState, ...]: ...
 
@@ -81,7 +81,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
         limit = min(limit, largest_square(loads))
     if begin == 0.0 and part.entry > 0.0:
         limit = min(limit, part.entry)
-    speed = max(geometry.speed(begin, part.path_axes), geometry.speed(end, part.path_axes))
+    speed = geometry.largest_speed(begin, end, part.path_axes)
     feed = limit if part.feed == inf else (part.feed / (speed or 1.0)) ** 2  # the path of other axes is their own
     return PathCell(origin + begin, origin + end, limit, feed, up, down, jerk, loads)
 
@@ -145,6 +145,8 @@ class Division(NamedTuple):
         if index < len(self.head):
             return self.head[index] if index >= 0 else 0.0
         index -= len(self.head)
+        if index + 1 == self.equal:
+            return self.begin + self.length  # without rounding: it may be the end of the part
         if index < self.equal:
             return self.begin + self.length * (index + 1) / self.equal
         return self.tail[index - self.equal]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import cbrt, sqrt
 
-from cnc_ptp.path.lookahead.path_cell import PathCell
+from cnc_ptp.path.lookahead.path_cell import SMALLEST_SQUARE, PathCell
 
 
 def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
@@ -21,6 +21,8 @@ def from_rest(first: PathCell, second: PathCell, *, braking: bool) -> float:
     jerk = 0.5 * bend_at(first, second, 0.0, 1.0, 0.0)
     square = min(square_from_rest(jerk, length), first.limit, second.limit)
     square = min(square, 1.5 * length * permitted(first, second, 0.0, 0.0, braking))
+    while square > SMALLEST_SQUARE and 3.0 * length * permitted(first, second, 0.0, square, braking) < square:
+        square *= 0.5  # what a tight curve needs of the acceleration grows with y
     square = min(square, 1.5 * length * permitted(first, second, 0.0, square, braking))
     slope = slope_from_rest(square, length)
     jerk = 0.5 * sqrt(square) * bend_at(first, second, 0.0, square, -slope if braking else slope)

@@ -47,6 +47,13 @@ class Span:
         """|dq/du| of the given axes: the path velocity is u' times that."""
         return self.element.speed(self.place(u), axes)
 
+    def largest_speed(self, begin: float, end: float, axes: Sequence[int]) -> float:
+        """Largest |dq/du| of the given axes from u = `begin` to `end`; the same everywhere on lines and arcs."""
+        element = self.element
+        if isinstance(element, Cubic):
+            return element.largest_speed(self.place(begin), self.place(end), axes)
+        return self.speed(begin, axes)
+
 
 def whole(element: Curve, block: int) -> Span:
     """All of an element."""

@@ -14,13 +14,15 @@ from cnc_ptp.path.lookahead.passes import one_pass
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.peaks import bends, round_peaks
 
-ROUNDS: Final = 8
+ROUNDS: Final = 16
 """Plans with lower limits where one was exceeded, before the whole plan is slowed down."""
 ROUNDINGS: Final = 3
 """Peaks are rounded with the bend that the velocities of the rounding before permit: too strongly at first, then not
 enough, then from velocities that are a little too high, which is never too little."""
 EXCESS: Final = 1e-9
 """Part of a limit that counts as rounding."""
+BELOW: Final = 1e-7
+"""Part of a limit by which a lowered plan aims below it: without it the last rounds only come nearer and nearer."""
 ROOM: Final = 1e-7
 """Part of y, and of the bend, by which a moving start may miss what the path permits through rounding."""
 MARGIN: Final = 1.02
@@ -162,7 +164,7 @@ def lower(
     """Lowers the limits where one was exceeded, and of the neighbours; `keep`: not below what was planned before."""
     for index, excess in enumerate(excesses):
         if excess > 1.0 + EXCESS:
-            part = excess**-0.7
+            part = (excess + BELOW) ** -0.7
             for near in range(max(index - 1, 0), min(index + 2, len(cells))):
                 caps[near] = min(caps[near], max(squares[near] * part, cells[near].planned if keep else 0.0))
 

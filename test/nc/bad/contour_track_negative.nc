@@ -1,3 +1,3 @@
-; P-ERR-120129 contour_track_negative.nc line 2 column 43 '#CONTOUR MODE [DEV PATH_DEV=0.1 TRACK_DEV=-5]': TRACK_DEV=-5 must be at least 0
+; P-ERR-120129 contour_track_negative.nc line 2 column 43 '#CONTOUR MODE [DEV PATH_DEV=0.1 TRACK_DEV=-5]': TRACK_DEV=-5 must be above 0
 #CONTOUR MODE [DEV PATH_DEV=0.1 TRACK_DEV=-5]
 M30
