@@ -34,6 +34,22 @@ class Plan(NamedTuple):
     feed: float
     steps: bool
 
+    @property
+    def planner(self) -> Planner:
+        return STEPS if self.steps else JERK_LIMITED
+
+    @property
+    def velocity(self) -> float:
+        """At override 100 %, mm/s."""
+        return min(self.feed, self.limits.velocity)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest with override 100 %."""
+        if self.element.length == 0.0:
+            return 0.0
+        return self.planner.from_rest(0.0, self.element.length, self.limits._replace(velocity=self.velocity)).duration
+
 
 class PathMotion:
     """Runs the motions of canonical blocks; between them the axes are at rest.
@@ -172,18 +188,23 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
             return
-        self._interpolator.start(element, plan.limits, feed, planner=STEPS if plan.steps else JERK_LIMITED)
+        self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
 
-    def duration(self, motion: Path, start: tuple[float, ...]) -> float:
-        """Seconds that a motion from `start` takes from rest to rest with override 100 %. Raises as `start`."""
+    def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource) -> list[float]:
+        """Seconds of a motion from `start`, at rest, and of those that are linked to it, with override 100 %.
+
+        Raises as `start`.
+        """
         plan = self._plan(motion, start)
-        if plan.element.length == 0.0:
-            return 0.0
-        limits = plan.limits._replace(velocity=min(plan.feed, plan.limits.velocity))
-        planner = STEPS if plan.steps else JERK_LIMITED
-        return planner.from_rest(0.0, plan.element.length, limits).duration
+        path = self._make_path(plan, motion, source, LookAhead(1.0, 0.0), new_builder(self._builder))
+        return [plan.duration] if path is None else path.durations()
+
+    def duration_at_feed(self, motion: Path, start: tuple[float, ...]) -> float:
+        """Seconds of a motion from `start` at its feed, or the velocity that the axes permit. Raises as `start`."""
+        plan = self._plan(motion, start)
+        return plan.element.length / plan.velocity if plan.element.length > 0.0 else 0.0
 
     def _plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
         element, rapid, steps = self._make_element(start, motion), is_rapid(motion), self._steps(motion)
