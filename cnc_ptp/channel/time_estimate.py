@@ -13,6 +13,7 @@ from typing import Final
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.following_blocks import FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.waits import Moment
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove
 from cnc_ptp.path.path_motion import PathMotion
@@ -32,7 +33,7 @@ class TimeEstimate:
 
     def __init__(self, path: PathMotion, functions: FunctionOutput) -> None:
         self._path = path
-        self._following = FollowingBlocks(functions, never)
+        self._following = FollowingBlocks(functions, no_waits)
 
     def seconds(self, blocks: Sequence[CanonicalBlock], start: Sequence[float]) -> list[float]:
         """Of each block in turn, motions and dwells; they begin at `start` (mm, deg).
@@ -112,9 +113,9 @@ class TimeEstimate:
             return 0.0
 
 
-def never() -> bool:
-    """No stop but those of the program."""
-    return False
+def no_waits() -> tuple[Moment, ...]:
+    """The path stops where the program wants it."""
+    return ()
 
 
 def places_of(blocks: Sequence[CanonicalBlock], start: tuple[float, ...]) -> list[tuple[float, ...]]:

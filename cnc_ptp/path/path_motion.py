@@ -15,7 +15,7 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.planner import JERK_LIMITED, STEPS
+from cnc_ptp.path.planner import JERK_LIMITED, STEPS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
 
 CARTESIAN = ("X", "Y", "Z")
@@ -69,7 +69,6 @@ class PathMotion:
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
-        self._builder = PathBuilder(sorted(self._path_axes), cycle_time)
         self._override = 1.0
         self._held = False
         self._full_override = False
@@ -138,6 +137,11 @@ class PathMotion:
         return self._linked.look_ahead.stopped if self._linked is not None else self._interpolator.stopped
 
     @property
+    def runs_through(self) -> bool:
+        """The path goes through several blocks."""
+        return self._linked is not None
+
+    @property
     def passes(self) -> bool:
         """The active block is finished; the path continues in the next one without a stop."""
         return self._linked is not None and self._linked.passes
@@ -198,7 +202,7 @@ class PathMotion:
         Raises as `start`.
         """
         plan = self._plan(motion, start)
-        path = self._make_path(plan, motion, source, LookAhead(1.0, 0.0), new_builder(self._builder))
+        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0))
         return [plan.duration] if path is None else path.durations()
 
     def duration_at_feed(self, motion: Path, start: tuple[float, ...]) -> float:
@@ -226,15 +230,20 @@ class PathMotion:
 
     def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""
-        following = None if motion.transition.stops else source.peek()
-        if following is None:
-            return False
         ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
-        path = LinkedPath(ahead, self._builder, source, self._make_linked, steps=plan.steps)
-        if not path.begin(self._linked_motion(plan, motion, 0), motion, following):
+        path = self._linked_path(plan, motion, source, ahead)
+        if path is None:
             return False
         self._linked, self.feed = path, path.feed
         return True
+
+    def _linked_path(self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead) -> LinkedPath | None:
+        following = None if motion.transition.stops else source.peek()
+        if following is None:
+            return None
+        builder = PathBuilder(sorted(self._path_axes), self._cycle_time)
+        path = LinkedPath(ahead, builder, source, self._make_linked, steps=plan.steps)
+        return path if path.begin(self._linked_motion(plan, motion, 0), motion, following) else None
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self._plan(motion, start)
