@@ -18,7 +18,7 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove
 from cnc_ptp.path.path_motion import PathMotion
 
-BUDGET: Final = 10_000.0
+BUDGET: Final = 40_000.0
 """Cost of what is planned, in blocks."""
 COST_PER_SECOND: Final = 250.0
 """Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 4 ms."""
