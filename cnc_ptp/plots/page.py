@@ -1,4 +1,4 @@
-"""Parts of a page: head, sections, cards, tables. It is one file with everything in it, to be opened without a network."""
+"""Parts of a page: head, sections, cards, tables. It is one file, to be opened without a network."""
 
 from __future__ import annotations
 
