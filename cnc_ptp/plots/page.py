@@ -11,7 +11,18 @@ from plotly.offline import get_plotlyjs
 from cnc_ptp.plots.colours import BLUE, EDGE, INK, RED, SOFT
 
 MOST_ROWS = 1000
-NUMBERS = ("time in s", "cycle", "line", "messages", "from s", "to s")  # columns of numbers
+NUMBERS = (
+    "time in s",
+    "cycle",
+    "line",
+    "messages",
+    "from s",
+    "to s",
+    "N",
+    "length in mm",
+    "F in mm/min",
+    "reached in mm/min",
+)  # columns of numbers
 CONFIG = {
     "displaylogo": False,
     "responsive": True,

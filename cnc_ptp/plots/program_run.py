@@ -213,6 +213,8 @@ def passes(channel: Records, length: Floats, cycle_time: float, blocks: Sequence
     texts = BlockTexts(blocks)
     found = []
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        if line[begin] == 0:
+            continue  # the program has not reached its first block
         found.append(
             BlockPass(
                 begin=begin,
