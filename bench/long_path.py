@@ -1,4 +1,4 @@
-"""`python -m bench.long_path BLOCKS`: so many short blocks are planned and run; prints the largest resident size in MiB."""
+"""`python -m bench.long_path BLOCKS`: so many short blocks are planned and run; prints the largest resident size, MiB."""
 
 from __future__ import annotations
 

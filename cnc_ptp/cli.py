@@ -298,22 +298,58 @@ def report_command(**options: Any) -> None:
     sys.exit(report(**options))
 
 
+def program_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Options of a plot that are for an NC program alone."""
+    for option in (
+        click.option("--override", type=POSITIVE, help="Override of the path in %; default: 100."),
+        DIALECT,
+        click.option("--colour", type=click.Choice(("feed", "acceleration", "block")), help="Of the path; or feed."),
+        click.option(
+            "--machine", type=click.Path(dir_okay=False), help="FILE is an NC program: run it on this machine."
+        ),
+    ):
+        function = option(function)
+    return function
+
+
 @main.command("plot")
-@RECORDING
+@click.argument("recording", type=click.Path(dir_okay=False), metavar="FILE")
 @click.argument("more_topics", metavar="[TOPIC]...", nargs=-1)
 @click.option("--topics", callback=words, multiple=True, help="Fields to draw: x/set_velocity s/actual_speed_rpm")
 @part_options
+@program_options
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help=".svg, .png or .html; RECORDING.svg without it.")
 def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **options: Any) -> None:
-    """Draw a recording over time, in the style of the documentation.
+    """Draw a recording over time, or the path of an NC program.
 
-    A TOPIC is a unit and a field of its state, x/set_velocity, or a field of all units that move, following_error.
-    Without one each axis that moves is drawn with position, velocity, acceleration and following error, each spindle
-    with its speed.
+    Of a recording, a TOPIC is a unit and a field of its state, x/set_velocity, or a field of all units that move,
+    following_error. Without one each axis that moves is drawn with position, velocity, acceleration and following
+    error, each spindle with its speed.
+
+    With --machine FILE is an NC program. It is run offline and becomes an HTML page: the path in space, programmed and
+    run; velocity, acceleration and jerk over time and over the path; a table of its blocks.
     """
+    of_program = {name: options.pop(name) for name in ("machine", "colour", "dialect", "override")}
+    of_recording: dict[str, Any] = {"topics": (*topics, *(word for text in more_topics for word in split(text)))}
+    of_recording |= {name: options.pop(name) for name in ("begin", "end", "axes")}
+    if of_program["machine"] is not None:
+        require_none(of_recording, "is of a recording; with --machine an NC program is drawn")
+        from cnc_ptp.commands.look.program_plot import plot_program
+
+        given = {name: value for name, value in of_program.items() if value is not None}
+        sys.exit(plot_program(options["recording"], output=options["output"], **given))
+    require_none(of_program, "needs --machine: it is of an NC program")
     from cnc_ptp.commands.look.plot import plot
 
-    sys.exit(plot(topics=(*topics, *(word for text in more_topics for word in split(text))), **options))
+    sys.exit(plot(**options, **of_recording))
+
+
+def require_none(options: dict[str, Any], why: str) -> None:
+    """Raises UsageError for an option that was given."""
+    names = {"begin": "--from", "end": "--to", "topics": "TOPIC"}
+    for name, value in options.items():
+        if value not in (None, ()):
+            raise click.UsageError(f"{names.get(name, f'--{name}')} {why}; nothing was drawn")
 
 
 @main.command("params")

@@ -15,6 +15,7 @@ pictures again. In curves over time, thin dark lines are set values and broad li
 """
 SUBJECTS = {
     "ptp": "[PTP axis functions](ptp.md)",
+    "path": "[The path](path.md)",
     "slave": "[Slave axes](slaves.md)",
     "control": "[Position control](control.md)",
     "spindle": "[Spindles](spindles.md)",

@@ -8,8 +8,10 @@ from matplotlib.figure import Figure
 
 from figures import (
     circle,
+    corners,
     friction_curve,
     gear_ranges,
+    over_path,
     picture,
     spindle_and_path,
     spindle_curve,
@@ -28,6 +30,8 @@ KINDS: Mapping[str, Callable[[FigureScenario, FigureRun], Figure]] = {
     "spindle_states": spindle_states.draw,
     "spindle_and_path": spindle_and_path.draw,
     "gear_ranges": gear_ranges.draw,
+    "over_path": over_path.draw,
+    "corners": corners.draw,
 }
 
 

@@ -21,6 +21,7 @@ from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, Program
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.channel.program_times import NO_TIMES, ProgramProgress, block_times
 from cnc_ptp.channel.program_view import ProgramView
+from cnc_ptp.channel.time_estimate import TimeEstimate
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
@@ -95,6 +96,7 @@ class ChannelUnit(Unit):
         absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
         homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
         self._sequence = ProgramSequence(self._motion, functions, nodes, homing, Timers(cycle_time))
+        self._estimate = TimeEstimate(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
         self._vocabulary = self._check.vocabulary
@@ -144,7 +146,7 @@ class ChannelUnit(Unit):
         before = state.copy()
         start = self._motion.position
         known = self._check.known_ahead(parsed, start, state)
-        times = block_times(self._motion, known.blocks, start, known.total)
+        times = block_times(self._estimate, known.blocks, start, known.total)
         skip = self._check.block_skip
         self._prepared = PreparedProgram(text, dict(files), parsed, start, before, state, known, times, skip)
 
@@ -512,7 +514,7 @@ class ChannelUnit(Unit):
             known, state, times = ready.known, ready.at_end, ready.times
         else:
             known = self._check.known_blocks(program, start, state, unreferenced, begin)
-            times = block_times(self._motion, known.blocks, start, known.total)
+            times = block_times(self._estimate, known.blocks, start, known.total)
         stream = BlockStream.of(known.blocks)
         if not known.complete:
             state = before

@@ -1,7 +1,6 @@
 """Times of a program that is known before it runs: how far it is, and how long it will still take.
 
-`block_times` is the one place that knows how long the motions of a program take. Motions and dwells count; how long
-spindles and the PLC let the path wait is not known before.
+Motions and dwells count (`TimeEstimate`); how long spindles and the PLC let the path wait is not known before.
 """
 
 from __future__ import annotations
@@ -9,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove
+from cnc_ptp.channel.time_estimate import TimeEstimate
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove
 from cnc_ptp.path.path_motion import PathMotion
 
 NOT_KNOWN: Final = -1.0
@@ -40,36 +39,16 @@ class BlockTimes:
 
 
 def block_times(
-    path: PathMotion, blocks: Sequence[CanonicalBlock], start: Sequence[float], total: int | None
+    estimate: TimeEstimate, blocks: Sequence[CanonicalBlock], start: Sequence[float], total: int | None
 ) -> BlockTimes:
-    """Times of blocks that begin at `start` (mm, deg): each motion from rest to rest, as `path` would plan it.
-
-    A motion that cannot be planned takes no time: it is a fault when the path reaches it.
-    """
+    """Times of blocks that begin at `start` (mm, deg)."""
     of_motion, of_dwell = [0.0], [0.0]
-    durations: list[tuple[float, float]] = []
-    position = tuple(start)
-    for block in blocks:
+    for block, seconds in zip(reversed(blocks), reversed(estimate.seconds(blocks, start)), strict=True):
         motion = block.motion
-        if isinstance(motion, Dwell):
-            durations.append((0.0, motion.seconds))
-        elif isinstance(motion, (LinearMove, CircularMove)):
-            seconds = _duration(path, motion, position)
-            durations.append((0.0, seconds) if motion.full_override else (seconds, 0.0))
-            position = motion.target
-        else:
-            durations.append((0.0, 0.0))
-    for moving, dwelling in reversed(durations):
-        of_motion.append(of_motion[-1] + moving)
-        of_dwell.append(of_dwell[-1] + dwelling)
+        scaled = isinstance(motion, (LinearMove, CircularMove)) and not motion.full_override
+        of_motion.append(of_motion[-1] + (seconds if scaled else 0.0))
+        of_dwell.append(of_dwell[-1] + (0.0 if scaled else seconds))
     return BlockTimes(of_motion[::-1], of_dwell[::-1], total)
-
-
-def _duration(path: PathMotion, motion: LinearMove | CircularMove, start: tuple[float, ...]) -> float:
-    try:
-        return path.duration(motion, start)
-    except CncError:
-        return 0.0
 
 
 NO_TIMES: Final = BlockTimes([0.0], [0.0], 0)
@@ -91,7 +70,9 @@ class ProgramProgress:
     def __init__(self, times: BlockTimes, lines: int) -> None:
         """`lines` of the program's file."""
         self._times, self._lines = times, lines
-        self.now = Progress(0.0, 0.0)
+        self.now = Progress(0.0, NOT_KNOWN)
+        self._override = -1.0
+        """That of the last update."""
 
     def end(self, *, finished: bool) -> None:
         """The program has been carried out, or was aborted where it was."""
@@ -105,15 +86,28 @@ class ProgramProgress:
             return
         motion, dwell = self._times.left(blocks_done + begun)
         before, dwell_before = self._times.left(blocks_done)
-        active = ((before + dwell_before) - (motion + dwell)) * path.part_to_go
+        active, active_dwell = (before - motion) * path.part_to_go, (dwell_before - dwell) * path.part_to_go
         whole = self._times.left(0)
         total = whole[0] + whole[1]
         blocks = blocks_done / max(1, self._times.total)
-        share = 1.0 - (motion + dwell + active) / total if total > 0.0 else blocks
-        self.now = Progress(min(1.0, max(0.0, share)), _time_left(motion, dwell, path))
+        share = 1.0 - (motion + dwell + active + active_dwell) / total if total > 0.0 else blocks
+        if path.runs_through:
+            time_left = _at_override(motion + active, path.override, dwell + active_dwell)
+        elif path.time_to_go < 0.0:
+            time_left = NOT_KNOWN
+        else:
+            time_left = _at_override(motion, path.override, dwell + path.time_to_go)
+        self.now = Progress(min(1.0, max(self.now.share, share)), self._less(time_left, path.override))
+
+    def _less(self, time_left: float, override: float) -> float:
+        """At the same override no more than before: where the path goes on, the end of the active block may move."""
+        before = self.now.time_left
+        same, self._override = override == self._override, override
+        return min(before, time_left) if same and min(before, time_left) >= 0.0 else time_left
 
 
-def _time_left(motion: float, dwell: float, path: PathMotion) -> float:
-    if path.time_to_go < 0.0 or (motion > 0.0 and path.override == 0.0):
-        return NOT_KNOWN
-    return path.time_to_go + dwell + (motion / path.override if motion > 0.0 else 0.0)
+def _at_override(motion: float, override: float, fixed: float) -> float:
+    """Seconds for a motion at an override, with what it has no effect on."""
+    if motion <= 0.0:
+        return fixed
+    return motion / override + fixed if override > 0.0 else NOT_KNOWN

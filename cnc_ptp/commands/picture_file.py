@@ -13,7 +13,7 @@ from cnc_ptp.commands.output_file import check_output
 from cnc_ptp.commissioning.faults import BAD_OUTPUT
 from cnc_ptp.errors import CncError
 from cnc_ptp.plots.colours import BLUE, GREEN, RED, YELLOW
-from cnc_ptp.plots.report import CONFIG, page_head
+from cnc_ptp.plots.page import page_head, plot_div
 from cnc_ptp.plots.svg import svg_text
 
 KINDS = ("svg", "png", "html")
@@ -46,8 +46,7 @@ def picture_bytes(drawing: Figure, kind: str, *, title: str) -> bytes:
 def plot_page(plot: go.Figure, lines: Sequence[str]) -> str:
     """One self-contained HTML page: title (the first of `lines`), plot, and the other lines as a table of text."""
     table = escape("\n".join(lines[1:]))
-    drawn = plot.to_html(full_html=False, include_plotlyjs=False, config=CONFIG, div_id="plot")
     return (
         f"{page_head(lines[0])}<main>\n"
-        f"<section>{drawn}</section><section><pre>{table}</pre></section></main></body></html>\n"
+        f"<section>{plot_div(plot, 'plot')}</section><section><pre>{table}</pre></section></main></body></html>\n"
     )

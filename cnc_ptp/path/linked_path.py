@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from math import sqrt
-from typing import Protocol
+from typing import Final, Protocol
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.setpoints import MotionState
@@ -36,6 +36,10 @@ LinkedPoint = tuple[tuple[AxisState, ...], float, float]
 """States of the axes, path velocity (mm/s), distance to the end of the block (mm)."""
 Maker = Callable[[tuple[float, ...], Path, int], LinkedMotion]
 """Makes an element of the position at which a motion begins, the motion and the number of its block."""
+
+
+LONG_CYCLE: Final = 0.01
+"""s from one look at the path to the next where only its time counts."""
 
 
 def can_follow(motion: Path, following: Path) -> bool:
@@ -152,6 +156,30 @@ class LinkedPath:
                 states = without_jerk(states)
             points.append((states, velocity, max(0.0, self._ends[0] - u)))
         return points
+
+    def durations(self) -> list[float]:
+        """Seconds that each block takes; the path is run through for that, without giving out its states."""
+        ends: list[float] = []
+        time = before = 0.0
+        while not self.look_ahead.done:
+            self._fill()
+            rows = self.look_ahead.step(1, LONG_CYCLE)
+            u, step = (
+                (rows[0][0], LONG_CYCLE)
+                if rows
+                else (
+                    self.look_ahead.end,
+                    LONG_CYCLE - self.look_ahead.remaining_time,
+                )
+            )
+            block = self.look_ahead.locate(u)[1].block if rows else self._blocks - 1
+            while self.block < block:
+                part = (self._ends[0] - before) / (u - before) if u > before else 1.0
+                ends.append(time + step * min(1.0, max(0.0, part)))
+                self.pass_block()
+            time, before = time + step, u
+        ends.append(time)
+        return [max(0.0, end - begin) for begin, end in zip([0.0, *ends], ends, strict=False)]
 
     def _block_ahead(self) -> int:
         if self._rows and self.look_ahead.begun:

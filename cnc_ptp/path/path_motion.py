@@ -15,7 +15,7 @@ from cnc_ptp.path.interpolator import PathInterpolator
 from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
-from cnc_ptp.path.planner import PLANNERS
+from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
 
 CARTESIAN = ("X", "Y", "Z")
@@ -39,6 +39,22 @@ class Plan(NamedTuple):
         """The acceleration of the path may step."""
         return self.slope == STEP
 
+    @property
+    def planner(self) -> Planner:
+        return PLANNERS[self.slope]
+
+    @property
+    def velocity(self) -> float:
+        """At override 100 %, mm/s."""
+        return min(self.feed, self.limits.velocity)
+
+    @property
+    def duration(self) -> float:
+        """Seconds from rest to rest with override 100 %."""
+        if self.element.length == 0.0:
+            return 0.0
+        return self.planner.from_rest(0.0, self.element.length, self.limits._replace(velocity=self.velocity)).duration
+
 
 class PathMotion:
     """Runs the motions of canonical blocks; between them the axes are at rest.
@@ -58,7 +74,6 @@ class PathMotion:
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
-        self._builder = PathBuilder(sorted(self._path_axes), cycle_time)
         self._override = 1.0
         self._held = False
         self._full_override = False
@@ -138,6 +153,11 @@ class PathMotion:
         return self._linked.look_ahead.stopped if self._linked is not None else self._interpolator.stopped
 
     @property
+    def runs_through(self) -> bool:
+        """The path goes through several blocks."""
+        return self._linked is not None
+
+    @property
     def passes(self) -> bool:
         """The active block is finished; the path continues in the next one without a stop."""
         return self._linked is not None and self._linked.passes
@@ -188,17 +208,23 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
             return
-        self._interpolator.start(element, plan.limits, feed, planner=PLANNERS[plan.slope])
+        self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
 
-    def duration(self, motion: Path, start: tuple[float, ...]) -> float:
-        """Seconds that a motion from `start` takes from rest to rest with override 100 %. Raises as `start`."""
+    def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource) -> list[float]:
+        """Seconds of a motion from `start`, at rest, and of those that are linked to it, with override 100 %.
+
+        Raises as `start`.
+        """
         plan = self._plan(motion, start)
-        if plan.element.length == 0.0:
-            return 0.0
-        limits = plan.limits._replace(velocity=min(plan.feed, plan.limits.velocity))
-        return PLANNERS[plan.slope].from_rest(0.0, plan.element.length, limits).duration
+        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0))
+        return [plan.duration] if path is None else path.durations()
+
+    def duration_at_feed(self, motion: Path, start: tuple[float, ...]) -> float:
+        """Seconds of a motion from `start` at its feed, or the velocity that the axes permit. Raises as `start`."""
+        plan = self._plan(motion, start)
+        return plan.element.length / plan.velocity if plan.element.length > 0.0 else 0.0
 
     def _plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
         element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
@@ -216,15 +242,20 @@ class PathMotion:
 
     def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""
-        following = None if motion.transition.stops else source.peek()
-        if following is None:
-            return False
         ahead = LookAhead(self._interpolator.override, self._interpolator.next_offset)
-        path = LinkedPath(ahead, self._builder, source, self._make_linked, steps=plan.steps)
-        if not path.begin(self._linked_motion(plan, motion, 0), motion, following):
+        path = self._linked_path(plan, motion, source, ahead)
+        if path is None:
             return False
         self._linked, self.feed = path, path.feed
         return True
+
+    def _linked_path(self, plan: Plan, motion: Path, source: MotionSource, ahead: LookAhead) -> LinkedPath | None:
+        following = None if motion.transition.stops else source.peek()
+        if following is None:
+            return None
+        builder = PathBuilder(sorted(self._path_axes), self._cycle_time)
+        path = LinkedPath(ahead, builder, source, self._make_linked, steps=plan.steps)
+        return path if path.begin(self._linked_motion(plan, motion, 0), motion, following) else None
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
         plan = self._plan(motion, start)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
 from html import escape
 from typing import Any
@@ -19,9 +18,9 @@ from cnc_ptp.protocol.blocks import CommandRecord, Severity
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.recording.columns import packed
 from cnc_ptp.recording.command_words import command_words, shortened
-from cnc_ptp.recording.decimate import line_points, path_points
+from cnc_ptp.recording.decimate import line_points
 from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, SPINDLE_STATE, Recorded
-from cnc_ptp.recording.rows import OTHER, SET, PlotRow, standing
+from cnc_ptp.recording.rows import OTHER, SET, PlotRow
 from cnc_ptp.recording.statistics import axis_units
 from cnc_ptp.wire.layout import Records
 
@@ -76,7 +75,7 @@ def rows_figure(recorded: Recorded, rows: Sequence[PlotRow]) -> go.Figure:
     for number, row in enumerate(rows, start=2):
         _add_lines(figure, recorded, row, number, serial)
         serial += len(row.lines)
-    _style(figure, height + TOP + BOTTOM)
+    style(figure, height + TOP + BOTTOM)
     figure.update_layout(
         margin={"l": 86, "r": 24, "t": TOP, "b": BOTTOM}, hovermode="closest", barmode="overlay", bargap=0.25
     )
@@ -124,8 +123,8 @@ def _add_lines(figure: go.Figure, recorded: Recorded, row: PlotRow, number: int,
         cycles, values = line_points(line.rows["cycle"], line.rows[line.field])
         figure.add_trace(
             go.Scatter(
-                x=_compact(cycles * (recorded.cycle_time_ns * 1e-9), precise=recorded.last_cycle > 2_000_000),
-                y=_compact(values * line.factor, precise=row.title in PRECISE),
+                x=compact(cycles * (recorded.cycle_time_ns * 1e-9), precise=recorded.last_cycle > 2_000_000),
+                y=compact(values * line.factor, precise=row.title in PRECISE),
                 mode="lines",
                 name=escape(line.name),
                 legendgroup=line.name,
@@ -164,7 +163,7 @@ def _mark_commands(figure: go.Figure, recorded: Recorded) -> None:
     figure.update_layout(shapes=[{**shape, "layer": "below"} for shape in shapes])
 
 
-def _compact(values: npt.NDArray[np.float64], *, precise: bool) -> npt.NDArray[Any]:
+def compact(values: npt.NDArray[np.float64], *, precise: bool) -> npt.NDArray[Any]:
     """Seven digits are enough for the eye."""
     return values if precise else values.astype(np.float32)
 
@@ -280,111 +279,8 @@ def _add_commands(figure: go.Figure, recorded: Recorded) -> None:
     )
 
 
-def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
-    """The axes of the path plot: x, y, z if they move, otherwise the first three linear axes that do."""
-    still = standing(recorded)
-    axes = recorded.of_type(AXIS_STATE)
-    names = [name for name in axes if units.get(name, "mm") == "mm" and name not in still]
-    spatial = [name for name in names if name in ("x", "y", "z")]
-    spatial.sort()
-    return spatial if len(spatial) >= 2 else names[:3]
-
-
-def path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
-    """The actual path in the plane of the first two axes and, with a third axis, in space; coloured by feed.
-
-    None if no channel moves along a path.
-    """
-    axes = path_axes(recorded, units)
-    on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())
-    if len(axes) < 2 or not on_path:
-        return []
-    path = _path(recorded, axes)
-    figures = [_plane_figure(path, axes)]
-    if len(axes) > 2:
-        figures.append(_space_figure(path, axes))
-    return figures
-
-
-@dataclass
-class Path:
-    """Points of the actual path: coordinates (axes, n), feed in mm/min (n,), time in s (n,)."""
-
-    points: npt.NDArray[np.float64]
-    feed: npt.NDArray[np.float64]
-    time: npt.NDArray[np.float64]
-
-
-def _path(recorded: Recorded, axes: list[str]) -> Path:
-    states = [recorded.of_type(AXIS_STATE)[name] for name in axes]
-    length = min(len(rows) for rows in states)
-    columns = [rows["actual_position"][:length] for rows in states]
-    velocity = np.stack([rows["actual_velocity"][:length] for rows in states])
-    chosen = path_points(columns)
-    feed = np.sqrt((velocity[:, chosen] ** 2).sum(axis=0)) * 60.0
-    points = np.stack([column[chosen] for column in columns])
-    return Path(points, feed, recorded.seconds(states[0]["cycle"][chosen]))
-
-
-def _hover(axes: list[str]) -> str:
-    places = "<br>".join(f"{escape(axis.upper())} %{{{place}:.3f}}" for axis, place in zip(axes, "xyz", strict=False))
-    return f"{places}<br>%{{customdata:.3f}} s<br>%{{marker.color:.0f}} mm/min<extra></extra>"
-
-
-def _plane_figure(path: Path, axes: list[str]) -> go.Figure:
-    x, y = (_compact(path.points[index], precise=False) for index in (0, 1))
-    line = go.Scatter(x=x, y=y, mode="lines", line={"color": FAINT, "width": 1}, hoverinfo="skip")
-    marks = go.Scatter(
-        x=x,
-        y=y,
-        mode="markers",
-        customdata=_compact(path.time, precise=False),
-        marker={
-            "color": _compact(path.feed, precise=False),
-            "colorscale": "Turbo",
-            "cmin": 0.0,
-            "size": 4,
-            "colorbar": {"title": {"text": "feed<br>mm/min"}, "thickness": 12, "outlinewidth": 0, "tickformat": ",.0f"},
-        },
-        hovertemplate=_hover(axes[:2]),
-    )
-    figure = go.Figure([line, marks])
-    _style(figure, 520)
-    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
-    figure.update_xaxes(title_text=f"{escape(axes[0].upper())} in mm")
-    figure.update_yaxes(title_text=f"{escape(axes[1].upper())} in mm", scaleanchor="x", scaleratio=1)
-    return figure
-
-
-def _space_figure(path: Path, axes: list[str]) -> go.Figure:
-    x, y, z = (_compact(path.points[index], precise=False) for index in (0, 1, 2))
-    line = go.Scatter3d(
-        x=x,
-        y=y,
-        z=z,
-        mode="lines",
-        customdata=_compact(path.time, precise=False),
-        line={"color": _compact(path.feed, precise=False), "colorscale": "Turbo", "cmin": 0.0, "width": 4},
-        hovertemplate=_hover(axes).replace("marker.color", "line.color"),
-    )
-    figure = go.Figure([line])
-    _style(figure, 520)
-    sides = {
-        f"{place}axis": {
-            "title": {"text": f"{escape(axis.upper())} in mm"},
-            "backgroundcolor": "white",
-            "gridcolor": GRID,
-        }
-        for axis, place in zip(axes, "xyz", strict=False)
-    }
-    camera = {"eye": {"x": -1.1, "y": -1.7, "z": 1.1}}
-    figure.update_layout(
-        margin={"l": 0, "r": 0, "t": 0, "b": 0}, scene={"aspectmode": "data", "camera": camera, **sides}
-    )
-    return figure
-
-
-def _style(figure: go.Figure, height: int) -> None:
+def style(figure: go.Figure, height: int) -> None:
+    """What all figures of a page have in common."""
     figure.update_layout(
         template="plotly_white",
         height=height,

@@ -9,8 +9,9 @@ import pytest
 from recording_support import MACHINE, smooth_run, time_figure
 
 from cnc_ptp.parameters import load_machine
+from cnc_ptp.plots.path_figures import actual_path_figures, path_axes
 from cnc_ptp.plots.report import report_page
-from cnc_ptp.plots.report_figures import path_axes, path_figures, state_bands
+from cnc_ptp.plots.report_figures import state_bands
 from cnc_ptp.protocol.axis_states import AxisStateCode
 from cnc_ptp.protocol.blocks import CommandRecord, Event
 from cnc_ptp.recording import statistics
@@ -185,7 +186,7 @@ def test_torque_units_come_from_the_machine_file(recorded):
 
 
 def test_path_is_drawn_in_the_plane_and_in_space(recorded):
-    plane, space = path_figures(recorded, {})
+    plane, space = actual_path_figures(recorded, {})
     assert [trace.type for trace in plane.data] == ["scatter", "scatter"]
     assert [trace.type for trace in space.data] == ["scatter3d"]
     radius = np.hypot(plane.data[1].x, plane.data[1].y)
@@ -195,7 +196,7 @@ def test_path_is_drawn_in_the_plane_and_in_space(recorded):
 @pytest.mark.parametrize(("axes", "count"), [((), 0), (("x",), 0), (("x", "y"), 1), (("u", "v", "w"), 2)])
 def test_path_needs_two_axes(tmp_path, axes, count):
     smooth_run(tmp_path / "run.mcap", 0.1, axes=axes)
-    assert len(path_figures(read_recording(tmp_path / "run.mcap"), {})) == count
+    assert len(actual_path_figures(read_recording(tmp_path / "run.mcap"), {})) == count
 
 
 def test_state_bands(recorded):

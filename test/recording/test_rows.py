@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from recording_support import smooth_run, time_figure
 
 from cnc_ptp.plots.colours import BY_AXIS, DARK, INK, RED
+from cnc_ptp.plots.path_figures import actual_path_figures
 from cnc_ptp.plots.report import report_page
-from cnc_ptp.plots.report_figures import colour_of, path_figures
+from cnc_ptp.plots.report_figures import colour_of
 from cnc_ptp.protocol.blocks import CommandRecord
 from cnc_ptp.recording.columns import STEPS, packed
 from cnc_ptp.recording.command_words import argument_words, brief, command_words
@@ -81,15 +82,15 @@ def test_weight_of_the_feedforward_is_shown_where_it_acts(recorded):
 
 
 def test_space_is_drawn_only_where_there_is_a_path_in_it(recorded):
-    assert len(path_figures(recorded, {})) == 2
-    assert len(path_figures(still(recorded, "z"), {})) == 1
-    assert path_figures(still(recorded, "y"), {}) == []
+    assert len(actual_path_figures(recorded, {})) == 2
+    assert len(actual_path_figures(still(recorded, "z"), {})) == 1
+    assert actual_path_figures(still(recorded, "y"), {}) == []
 
 
 def test_no_path_without_a_channel_that_moves_along_one(recorded):
     rows = recorded.states["/channel/state"] = recorded.states["/channel/state"].copy()
     rows["path_velocity"] = 0.0
-    assert path_figures(recorded, {}) == []
+    assert actual_path_figures(recorded, {}) == []
 
 
 def test_commands_are_marked_in_all_plots(recorded):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
@@ -20,7 +21,7 @@ from cnc_ptp.machine.offline import OfflineMachine, Outputs
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import Entry
-from cnc_ptp.protocol.blocks import PlcBlock
+from cnc_ptp.protocol.blocks import CommandRecord, Event, PlcBlock
 from cnc_ptp.protocol.notes import Note
 from cnc_ptp.protocol.unit import PLC
 from cnc_ptp.recording.writer import Recording
@@ -30,10 +31,12 @@ Columns = Mapping[str, npt.NDArray[np.float64]]
 
 @dataclass
 class Trial:
-    """A run: its columns by unit and field (one value per cycle), and its notes."""
+    """A run: its columns by unit and field (one value per cycle), its notes, and all commands and events."""
 
     columns: dict[str, Columns] = field(default_factory=dict)
     result: Result = field(default_factory=Result)
+    records: list[CommandRecord] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
 
     @property
     def refusals(self) -> list[Note]:
@@ -70,7 +73,7 @@ def run_trial(
     """
     units = build_units(machine, scenario=job)
     offline = OfflineMachine(machine, units)
-    kept: dict[str, dict[str, list[float]]] = {unit: defaultdict(list) for unit in fields}
+    kept: dict[str, dict[str, array[float]]] = {unit: defaultdict(new_column) for unit in fields}
     trial = Trial()
     recording = Recording(record, machine_text, 0, machine.cycle_time_us * 1000) if record else None
     cycles = round(seconds * 1e6 / machine.cycle_time_us)
@@ -78,6 +81,9 @@ def run_trial(
         for outputs in offline.run():
             trial.result.add(outputs)
             _keep(kept, fields, outputs)
+            for output in outputs.values():
+                trial.records += output.records
+                trial.events += output.events
             progress.show(outputs)
             if recording is not None:
                 write(recording, outputs)
@@ -91,12 +97,16 @@ def run_trial(
     return trial
 
 
-def _keep(kept: dict[str, dict[str, list[float]]], fields: Mapping[str, Iterable[str]], outputs: Outputs) -> None:
+def new_column() -> array[float]:
+    return array("d")
+
+
+def _keep(kept: dict[str, dict[str, array[float]]], fields: Mapping[str, Iterable[str]], outputs: Outputs) -> None:
     for unit, names in fields.items():
         block, columns = outputs[unit].block, kept[unit]
         for name in names:
-            columns[name] += getattr(block, name)
-        columns["cycle"] += range(block.first_cycle, block.first_cycle + block.count)
+            columns[name].extend(getattr(block, name))
+        columns["cycle"].extend(range(block.first_cycle, block.first_cycle + block.count))
 
 
 class TrialProgress:

@@ -1,0 +1,153 @@
+"""How long each block of a program takes at override 100 %, found before it runs.
+
+The path is run in thought, with the look-ahead of the run. Of a program that would take too much computing for that,
+windows are run; the blocks between them take as much longer than at their feed as those of the window before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from typing import Final
+
+from cnc_ptp.channel.block_stream import BlockStream
+from cnc_ptp.channel.following_blocks import FollowingBlocks
+from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.waits import Moment
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove
+from cnc_ptp.path.path_motion import PathMotion
+
+BUDGET: Final = 40_000.0
+"""Cost of what is planned, in blocks."""
+COST_PER_SECOND: Final = 250.0
+"""Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 4 ms."""
+WINDOW: Final = 1_000.0
+"""Cost of a window."""
+EDGE: Final = 0.15
+"""Part of a window at either end that does not count: the path sets out from rest there, and stops."""
+
+
+class TimeEstimate:
+    """Times of blocks, as `path` would run them; `functions` say where it stops."""
+
+    def __init__(self, path: PathMotion, functions: FunctionOutput) -> None:
+        self._path = path
+        self._following = FollowingBlocks(functions, no_waits)
+
+    def seconds(self, blocks: Sequence[CanonicalBlock], start: Sequence[float]) -> list[float]:
+        """Of each block in turn, motions and dwells; they begin at `start` (mm, deg).
+
+        A motion that cannot be planned takes no time: it is a fault when the path reaches it.
+        """
+        places = places_of(blocks, tuple(start))
+        nominal = [self._at_feed(block, place) for block, place in zip(blocks, places, strict=True)]
+        costs = [cost(block, seconds) for block, seconds in zip(blocks, nominal, strict=True)]
+        every = ceil(sum(costs) / BUDGET)
+        if every <= 1:
+            return self._planned(blocks, places)
+        return self._sampled(blocks, places, nominal, costs, every)
+
+    def _sampled(
+        self,
+        blocks: Sequence[CanonicalBlock],
+        places: Sequence[tuple[float, ...]],
+        nominal: Sequence[float],
+        costs: Sequence[float],
+        every: int,
+    ) -> list[float]:
+        """One window of `every` is planned."""
+        seconds: list[float] = []
+        factor, number = 1.0, 0
+        while len(seconds) < len(blocks):
+            begin = len(seconds)
+            end = end_of_window(costs, begin)
+            if number % every == 0:
+                planned = self._planned(blocks[begin:end], places[begin:end])
+                factor = lengthening(blocks[begin:end], planned, nominal[begin:end], factor)
+            for index in range(begin, end):
+                moves = isinstance(blocks[index].motion, (LinearMove, CircularMove))
+                seconds.append(nominal[index] * factor if moves else nominal[index])
+            number += 1
+        return seconds
+
+    def _planned(self, blocks: Sequence[CanonicalBlock], places: Sequence[tuple[float, ...]]) -> list[float]:
+        """Of blocks that begin at rest, and behind which the path stops."""
+        seconds: list[float] = []
+        self._following.begin(BlockStream.of(blocks))
+        while (block := self._following.take()) is not None:
+            motion = block.motion
+            if isinstance(motion, (LinearMove, CircularMove)):
+                seconds += self._of_path(motion, places[len(seconds)])
+            else:
+                seconds.append(motion.seconds if isinstance(motion, Dwell) else 0.0)
+        return seconds
+
+    def _of_path(self, motion: LinearMove | CircularMove, start: tuple[float, ...]) -> list[float]:
+        """Of a motion and of the blocks behind it up to the next stop."""
+        try:
+            first, *others = self._path.durations(motion, start, self._following)
+        except CncError:
+            return [0.0]
+        seconds = [first]
+        for duration in others:
+            while True:
+                block = self._following.take()
+                assert block is not None
+                if block.motion is not None:
+                    break
+                seconds.append(0.0)
+            seconds.append(duration)
+        return seconds
+
+    def _at_feed(self, block: CanonicalBlock, start: tuple[float, ...]) -> float:
+        """Seconds at the feed of the block, or of its dwell."""
+        motion = block.motion
+        if isinstance(motion, Dwell):
+            return motion.seconds
+        if not isinstance(motion, (LinearMove, CircularMove)):
+            return 0.0
+        try:
+            return self._path.duration_at_feed(motion, start)
+        except CncError:
+            return 0.0
+
+
+def no_waits() -> tuple[Moment, ...]:
+    """The path stops where the program wants it."""
+    return ()
+
+
+def places_of(blocks: Sequence[CanonicalBlock], start: tuple[float, ...]) -> list[tuple[float, ...]]:
+    """Where each block begins."""
+    places: list[tuple[float, ...]] = []
+    for block in blocks:
+        places.append(start)
+        if isinstance(block.motion, (LinearMove, CircularMove)):
+            start = block.motion.target
+    return places
+
+
+def cost(block: CanonicalBlock, seconds: float) -> float:
+    """Of planning a block, in blocks."""
+    return 1.0 + COST_PER_SECOND * seconds if isinstance(block.motion, (LinearMove, CircularMove)) else 0.0
+
+
+def end_of_window(costs: Sequence[float], begin: int) -> int:
+    """Behind the last block of the window that begins with block `begin`."""
+    total, end = 0.0, begin
+    while end < len(costs) and total < WINDOW:
+        total += costs[end]
+        end += 1
+    return end
+
+
+def lengthening(
+    blocks: Sequence[CanonicalBlock], planned: Sequence[float], nominal: Sequence[float], otherwise: float
+) -> float:
+    """How much longer the motions of a window take than at their feed; its edges do not count."""
+    moves = [n for n, block in enumerate(blocks) if isinstance(block.motion, (LinearMove, CircularMove))]
+    edge = int(EDGE * len(moves))
+    counted = moves[edge : len(moves) - edge]
+    at_feed = sum([nominal[n] for n in counted])
+    return sum([planned[n] for n in counted]) / at_feed if at_feed > 0.0 else otherwise

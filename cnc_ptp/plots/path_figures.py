@@ -1,0 +1,178 @@
+"""The path of a run in the plane and in space: the actual one, or the set values against the program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import plotly.graph_objects as go
+
+from cnc_ptp.plots.colours import FAINT, GRID, RED
+from cnc_ptp.plots.report_figures import compact, style
+from cnc_ptp.recording.decimate import path_points
+from cnc_ptp.recording.reader import AXIS_STATE, CHANNEL_STATE, Recorded
+from cnc_ptp.recording.rows import axis_label, standing
+
+Floats = npt.NDArray[np.float64]
+HEIGHT = 520
+
+
+@dataclass(frozen=True, slots=True)
+class Colouring:
+    """What the colour of a path shows: values (n,) of its points, with a title and a unit."""
+
+    title: str
+    unit: str
+    values: Floats
+
+    @property
+    def bar(self) -> dict[str, Any]:
+        title = "<br>".join(filter(None, (self.title, self.unit)))
+        return {"title": {"text": title}, "thickness": 12, "outlinewidth": 0, "tickformat": ",.0f"}
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """Points of a path: coordinates (axes, n), time in s (n,), colourings; `programmed`: (axes, m), the program's path.
+
+    The first colouring is shown first.
+    """
+
+    points: Floats
+    time: Floats
+    colourings: Sequence[Colouring]
+    programmed: Floats | None = None
+
+
+def path_axes(recorded: Recorded, units: Mapping[str, str]) -> list[str]:
+    """The axes of the path plot: x, y, z if they move, otherwise the first three linear axes that do."""
+    still = standing(recorded)
+    axes = recorded.of_type(AXIS_STATE)
+    names = [name for name in axes if units.get(name, "mm") == "mm" and name not in still]
+    spatial = [name for name in names if name in ("x", "y", "z")]
+    spatial.sort()
+    return spatial if len(spatial) >= 2 else names[:3]
+
+
+def actual_path_figures(recorded: Recorded, units: Mapping[str, str]) -> list[go.Figure]:
+    """The actual path, coloured by feed. None if no channel moves along a path."""
+    axes = path_axes(recorded, units)
+    on_path = any(np.any(rows["path_velocity"]) for rows in recorded.of_type(CHANNEL_STATE).values())
+    return path_figures(_actual_path(recorded, axes), axes) if len(axes) >= 2 and on_path else []
+
+
+def _actual_path(recorded: Recorded, axes: Sequence[str]) -> Path:
+    states = [recorded.of_type(AXIS_STATE)[name] for name in axes]
+    length = min(len(rows) for rows in states)
+    columns = [rows["actual_position"][:length] for rows in states]
+    velocity = np.stack([rows["actual_velocity"][:length] for rows in states])
+    chosen = path_points(columns)
+    feed = np.sqrt((velocity[:, chosen] ** 2).sum(axis=0)) * 60.0
+    points = np.stack([column[chosen] for column in columns])
+    return Path(points, recorded.seconds(states[0]["cycle"][chosen]), [Colouring("feed", "mm/min", feed)])
+
+
+def path_figures(path: Path, axes: Sequence[str]) -> list[go.Figure]:
+    """The path in the plane of its first two axes and, with a third one, in space."""
+    figures = [_plane_figure(path, axes)]
+    if len(axes) > 2:
+        figures.append(_space_figure(path, axes))
+    return figures
+
+
+def _hover(axes: Sequence[str], colour: str, unit: str) -> str:
+    places = "<br>".join(
+        f"{escape(axis_label(axis))} %{{{place}:.3f}}" for axis, place in zip(axes, "xyz", strict=False)
+    )
+    return f"{places}<br>%{{customdata:.3f}} s<br>%{{{colour}:.0f}} {unit}<extra></extra>"
+
+
+def _coordinates(points: Floats, axes: int, *, precise: bool) -> dict[str, npt.NDArray[Any]]:
+    return {place: compact(points[index], precise=precise) for index, place in enumerate("xyz"[:axes])}
+
+
+def _plane_figure(path: Path, axes: Sequence[str]) -> go.Figure:
+    colouring, precise = path.colourings[0], path.programmed is not None
+    run = _coordinates(path.points, 2, precise=precise)
+    line = go.Scatter(**run, mode="lines", line={"color": FAINT, "width": 1}, hoverinfo="skip", name="run")
+    marks = go.Scatter(
+        **run,
+        mode="markers",
+        name="run",
+        customdata=compact(path.time, precise=False),
+        marker={"color": compact(colouring.values, precise=False), "size": 4, **_scale(colouring)},
+        hovertemplate=_hover(axes[:2], "marker.color", colouring.unit),
+    )
+    figure = go.Figure([line, marks])
+    if path.programmed is not None:
+        figure.add_trace(go.Scatter(**_coordinates(path.programmed, 2, precise=True), **PROGRAMMED))
+    style(figure, HEIGHT)
+    figure.update_layout(showlegend=False, margin={"l": 70, "r": 10, "t": 20, "b": 50}, hovermode="closest")
+    figure.update_xaxes(title_text=f"{escape(axis_label(axes[0]))} in mm")
+    figure.update_yaxes(title_text=f"{escape(axis_label(axes[1]))} in mm", scaleanchor="x", scaleratio=1)
+    _add_choice(figure, path, 1, "marker", axes[:2])
+    return figure
+
+
+def _space_figure(path: Path, axes: Sequence[str]) -> go.Figure:
+    colouring, precise = path.colourings[0], path.programmed is not None
+    line = go.Scatter3d(
+        **_coordinates(path.points, 3, precise=precise),
+        mode="lines",
+        name="run",
+        customdata=compact(path.time, precise=False),
+        line={"color": compact(colouring.values, precise=False), "width": 4, **_scale(colouring, bar=precise)},
+        hovertemplate=_hover(axes, "line.color", colouring.unit),
+    )
+    figure = go.Figure([line])
+    if path.programmed is not None:
+        figure.add_trace(go.Scatter3d(**_coordinates(path.programmed, 3, precise=True), **PROGRAMMED))
+    style(figure, HEIGHT)
+    sides = {
+        f"{place}axis": {
+            "title": {"text": f"{escape(axis_label(axis))} in mm"},
+            "backgroundcolor": "white",
+            "gridcolor": GRID,
+        }
+        for axis, place in zip(axes, "xyz", strict=False)
+    }
+    camera = {"eye": {"x": -1.1, "y": -1.7, "z": 1.1}}
+    figure.update_layout(
+        showlegend=False,
+        margin={"l": 0, "r": 0, "t": 0, "b": 0},
+        scene={"aspectmode": "data", "camera": camera, **sides},
+    )
+    _add_choice(figure, path, 0, "line", axes)
+    return figure
+
+
+PROGRAMMED: dict[str, Any] = {
+    "mode": "lines",
+    "name": "programmed",
+    "line": {"color": RED.set, "width": 1.2},
+    "hovertemplate": "programmed<extra></extra>",
+}
+
+
+def _scale(colouring: Colouring, *, bar: bool = True) -> dict[str, Any]:
+    scale: dict[str, Any] = {"colorscale": "Turbo", "cmin": 0.0, "cmax": max(float(colouring.values.max()), 1e-9)}
+    return {**scale, "colorbar": colouring.bar, "showscale": True} if bar else scale
+
+
+def _add_choice(figure: go.Figure, path: Path, trace: int, kind: str, axes: Sequence[str]) -> None:
+    """A button for each colouring, if there are several."""
+    if len(path.colourings) < 2:
+        return
+    buttons = []
+    for colouring in path.colourings:
+        given = {"color": compact(colouring.values, precise=False), **_scale(colouring)}
+        changes = {f"{kind}.{name}": [value] for name, value in given.items() if name not in ("colorscale", "cmin")}
+        changes["hovertemplate"] = [_hover(axes, f"{kind}.color", colouring.unit)]
+        buttons.append({"label": colouring.title, "method": "restyle", "args": [changes, [trace]]})
+    place = {"type": "buttons", "direction": "right", "x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "bottom"}
+    figure.update_layout(updatemenus=[{**place, "showactive": True, "active": 0, "buttons": buttons}])
+    figure.update_layout(margin={"t": 44})

@@ -1,0 +1,12 @@
+%CONTOUR
+; lines, arcs and a row of short blocks, without a stop between them
+#CONTOUR MODE [DEV PATH_DEV=0.05]
+G261 F6000
+G01 X30
+X40 Y15
+G03 X40 Y35 I0 J10
+G01 X20 F3000
+G03 X10 Y25 I0 J-10
+G01 X10 Y12 F6000
+X0 Y0
+M30
