@@ -17,7 +17,7 @@ def check_limits(channel: Channel, state: ModalState, block: NcBlock, motion: Li
     ends = zip(motion.target, state.position, strict=True)
     moving = {place for place, (target, position) in enumerate(ends) if target != position}
     if isinstance(motion, CircularMove):
-        moving.update(motion.plane)
+        moving.update(index for index in range(len(channel.axes)) if motion.turns(index))
     for index, (low, high) in (state.coordinates.limits or {}).items():
         for point in points:
             if low <= point[index] <= high or index not in moving:
