@@ -127,7 +127,9 @@ class ChannelUnit(Unit):
 
     def prepare(self, program: str, text: str, files: Mapping[str, str] = NO_FILES, dialect: str | None = None) -> None:
         """Parses and interprets ahead of time what `load` and `start` then find ready. Raises ProgramError."""
-        parsed = parse_program(text, program, files=files, vocabulary=self._vocabulary_of(dialect))
+        parsed = parse_program(
+            text, program, files=files, cycles=self._check.cycles, vocabulary=self._vocabulary_of(dialect)
+        )
         state = self._initial_state(self._feedback)
         before = state.copy()
         start = self._motion.position
@@ -158,7 +160,7 @@ class ChannelUnit(Unit):
         if prepared is not None and prepared.is_of(text, files, program, vocabulary):
             self._program = prepared.program
         else:
-            self._program = parse_program(text, program, files=files, vocabulary=vocabulary)
+            self._program = parse_program(text, program, files=files, cycles=self._check.cycles, vocabulary=vocabulary)
         if vocabulary is not self._vocabulary:
             self._vocabulary, self._state = vocabulary, self._initial_state({})
         self._library = self._program.library
@@ -207,7 +209,9 @@ class ChannelUnit(Unit):
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
         vocabulary, library = self._vocabulary, self._library
-        program = parse_program(text, "mdi", mdi=True, files=files, library=library, vocabulary=vocabulary)
+        program = parse_program(
+            text, "mdi", mdi=True, files=files, cycles=self._check.cycles, library=library, vocabulary=vocabulary
+        )
         self._begin(cycle, "mdi", program, state)
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:

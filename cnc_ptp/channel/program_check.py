@@ -126,6 +126,7 @@ class ProgramCheck:
         tolerance = channel.circle_center_tolerance
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
+        self.cycles = channel.cycles
         self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
         self.nc = Channel(
             self._axis_names,
@@ -168,11 +169,16 @@ class ProgramCheck:
             rotary=self._rotary,
             tools=self._channel.tool_table,
             files=files,
+            cycles=self.cycles,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
-        ) or self._function_errors(parse_all(text, file, files=files, vocabulary=vocabulary or self.vocabulary)[0])
+        ) or self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
+
+    def parsed(self, text: str, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
+        """A program, whose faulty lines raise when they are reached."""
+        return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
 
     def _function_errors(self, program: Program) -> list[ProgramError]:
         try:
@@ -345,9 +351,9 @@ class ProgramCheck:
         missing: Collection[str],
     ) -> None:
         """Raises ProgramError 22034 for a motion of an axis in `missing`."""
-        circle = motion.plane if isinstance(motion, CircularMove) else ()
         for index, (name, axis) in enumerate(zip(self._axis_names, self._axes, strict=True)):
-            if axis.homing.required and name in missing and (motion.target[index] != start[index] or index in circle):
+            turns = isinstance(motion, CircularMove) and motion.turns(index)
+            if axis.homing.required and name in missing and (turns or motion.target[index] != start[index]):
                 text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
                 raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
 

@@ -318,6 +318,7 @@ def check(
     rotary: Collection[str] = (),
     tools: ToolTable = NO_TOOLS,
     files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
     limits: Limits = LIMITS,
@@ -329,7 +330,7 @@ def check(
     error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
     after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
-    program, errors = parse_all(text, file, files=files, vocabulary=vocabulary)
+    program, errors = parse_all(text, file, files=files, cycles=cycles, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
     homed = False
 

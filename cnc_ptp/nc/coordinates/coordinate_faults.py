@@ -3,6 +3,7 @@
 from cnc_ptp.nc.faults import Fault
 
 OFFSET_INDEX = Fault(21600, "zero offset {index} does not exist: {word}=0 to {word}={limit}")
+NO_OFFSET_OF_G53 = Fault(21622, "{word}: G53 selects no zero offset, so that index 0 has no values (P-ZERO-00001)")
 AXES_MISSING = Fault(21602, "{word} without an axis")
 ROTATION_PLANE = Fault(21603, "{word} needs the axes {needed} of plane {plane}; axes of this channel: {known}")
 MAIN_AXIS_MISSING = Fault(21604, "{word} moves axis {axis}, which this channel does not have")
