@@ -28,6 +28,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.contour import path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
+from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
@@ -279,7 +280,11 @@ class ProgramCheck:
         stream = self._interpreted(program, start, state, begin, missing, required=required)
         if begin is None:
             return stream
-        check = partial(self.check_target, unlimited=missing)
+
+        def check(target: tuple[float, ...], source: Source) -> None:
+            self.check_target(target, source, missing)
+            require_within(self.nc, state.modal, [target], moving_axes(tuple(start), target), source)
+
         return begin.blocks(stream, tuple(start), self._axis_names, state.modal, check)
 
     def _interpreted(
