@@ -128,6 +128,7 @@ class ProgramCheck:
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
         self.cycles = channel.cycles
+        self._references = tuple(axis.homing.reference_position for axis in self._axes)
         self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
         self.nc = Channel(
             self._axis_names,
@@ -141,6 +142,7 @@ class ProgramCheck:
             self._soft_limits,
             channel.tool_table,
             path_defaults(channel),
+            self._references,
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -169,6 +171,7 @@ class ProgramCheck:
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
             tools=self._channel.tool_table,
+            references=self._references,
             files=files,
             cycles=self.cycles,
             offsets=self._channel.offsets,
@@ -312,6 +315,7 @@ class ProgramCheck:
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
+            references=self._references,
             limits=self._limits,
             block_skip=self.block_skip,
             runs=True,
