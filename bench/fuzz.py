@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from cnc_ptp.nc.canonical_text import format_block
-from cnc_ptp.nc.coordinates.codes import initial_coordinates
+from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_all
-from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.program import Channel
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable
@@ -155,7 +155,7 @@ def survives(text: str, dialect: str, draw: random.Random) -> None:
     channel = Channel(
         AXES, dict(zip(AXES, range(3), strict=True)), spindle_table(SPINDLES), 0.0, 0.0, vocabulary, offsets=offsets
     )
-    state = ModalState(coordinates=initial_coordinates(channel, clamp_index=clamp))
+    state = initial_state(channel, clamp_index=clamp)
     options: dict[str, Any] = {"state": state, "tools": tools, "offsets": offsets, "limits": LIMITS}
     try:
         for block in interpret(program, (0.0, 0.0, 0.0), AXES, SPINDLES, **options):

@@ -100,9 +100,10 @@ def test_a_path_ends_whose_cells_do_not_sum_up_to_its_length() -> None:
     assert path(bench)[-1] == pytest.approx((-30.0, 20.0, 0.0), abs=1e-12)
 
 
-def test_arcs_in_a_tilted_system_with_exact_stop() -> None:
+@pytest.mark.parametrize("transition", ["G60", "G359"])
+def test_arcs_in_a_tilted_system_on_their_circle(transition: str) -> None:
     """A full circle and a helix, cycle by cycle on the circle that the system turns."""
-    bench = MachineBench(program(*TILT, "G01 F4000", "G03 I-20", "G02 X-20 Z5 I-20")).run()
+    bench = MachineBench(program(*TILT, f"G01 F4000 {transition}", "G03 I-20", "G02 X-20 Z5 I-20")).run()
     x, y, z = tilted(path(bench)[np.array(bench.column("channel", "line")) >= 5]).T
     assert np.abs(np.hypot(x, y) - 20.0).max() <= 1e-9
     rising = z > 1e-9
