@@ -1,4 +1,7 @@
-"""`python -m bench.fuzz [BYTES] [SEED]`: mutated programs; nothing but ProgramError may come, no hang, no growth."""
+"""`python -m bench.fuzz [BYTES] [SEED] [DIALECT]`: mutated programs; only ProgramError may come, no hang, no growth.
+
+Each is interpreted with tables of tools and offsets and a clamp position, or without them.
+"""
 
 from __future__ import annotations
 
@@ -8,17 +11,38 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
+from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_all
+from cnc_ptp.nc.program import Channel
+from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabularies import VOCABULARIES
+from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, Tool, ToolTable
 
 ROOT = Path(__file__).parents[1]
 AXES = ("X", "Y", "Z")
 SPINDLES = ("S", "S2")
 LIMITS = Limits(call_depth=5, repeats=200)
+RECORDS = {
+    1: Tool(number=1, length=75.0, radius=5.0, wear_length=-0.25),
+    2: Tool(number=2, length=110.5, offsets=(0.5, -0.25, 0.0), values=(12.0, 0.5)),
+    3: Tool(number=3, length=40.0, offsets=(10.0, 20.0, 0.0), fixed=True),
+    7: Tool(number=7, valid=False),
+}
+TOOLS = (
+    NO_TOOLS,
+    *(ToolTable(RECORDS, True, with_t, at_once) for with_t in (False, True) for at_once in (False, True)),
+)
+OFFSETS = (
+    NO_OFFSET_TABLES,
+    OffsetTables({1: (100.0, -50.5, 3.0), 7: (1.0, 2.0, 3.0)}, {7: frozenset({1})}, clamp={1: (1.5, 0.0, -2.0)}),
+    OffsetTables({0: (1.0, 1.0, 1.0), 1: (5.0, 5.0, 5.0)}, default=1, g53=True, clamp={0: (0.5, 0.5, 0.5)}),
+)
 WORDS = (
     *(
         "P1",
@@ -69,15 +93,34 @@ WORDS = (
     ),
     *("G81 X1 Y1 Z-1 R1", "G83 Z-5 R1 Q", "L3", "G28 X0", "G53 ", "G43 H", "G54.1 P", "G10 L20 P1 X", "M98 P", "M99"),
     *("O100", "%", "G92.2", "G80", "#1=", "o<a> call", "G64 P", "K2", "G90.1", "G93", "F"),
+    *(
+        "T1 M6",
+        "D1",
+        "D2 ",
+        "D0",
+        "T3 ",
+        "G160=1 X1",
+        "G160=0 Y",
+        "V.G.NP[1].V.X=",
+        "V.G.NP_AKT.V.Y",
+        "V.G.NP_DEFAULT=",
+    ),
+    *("V.G.WZ[2].L", "V.G.WZ_AKT.R=", "V.A.PZV.X", "#MCS ON", "#MCS OFF", "#ACS ON [0,0,0,30,", "G02 X10 I5 F100"),
+    *("G18 G03 Z5 R4 F9", "#CONTOUR MODE [DEV PATH_DEV=", "#HSC ON [BSPLINE PATH_DEV=0.1]", "G261", "G49", "G43 H2 Z5"),
     *("'H", "/2", "(", ")", ";", "%d", "9" * 12, ".", ",", "\t", "\x00", "\ufeff", "é", "1e9", "-113.0", "0.1"),
 )
 """Pieces that make mutations meaningful."""
 
 
-def corpus() -> list[str]:
-    """Programs to start from: all of the tests and the examples."""
-    files = [*(ROOT / "test" / "nc").rglob("*.nc"), *(ROOT / "examples").rglob("*.nc")]
-    return [file.read_text(encoding="utf-8") for file in sorted(files)]
+def corpus(dialect: str = "") -> list[str]:
+    """Programs to start from: all of the tests and the examples, or those of one vocabulary."""
+    files = [*(ROOT / "test" / "nc").rglob("*.nc"), *(ROOT / "examples").rglob("*.n*c")]
+    texts = [file.read_text(encoding="utf-8") for file in sorted({*files})]
+    return [text for text in texts if dialect in ("", dialect_of(text))]
+
+
+def dialect_of(text: str) -> str:
+    return "iso" if "dialect iso" in text else "twincat"
 
 
 def mutated(texts: Sequence[str], draw: random.Random) -> str:
@@ -103,37 +146,44 @@ def mutated(texts: Sequence[str], draw: random.Random) -> str:
     return text[:20_000]
 
 
-def survives(text: str) -> None:
+def survives(text: str, dialect: str, draw: random.Random) -> None:
     """Raises whatever is no ProgramError."""
-    vocabulary = VOCABULARIES["iso" if "dialect iso" in text else "twincat"]
-    program, errors = parse_all(text, "fuzz.nc", files={"a.nc": "X[@P1]\nM29"}, vocabulary=vocabulary)
+    vocabulary = VOCABULARIES[dialect or dialect_of(text)]
+    files = {"a.nc": "X[@P1]\nM29", "g81.nc": "G00 Z[@P2]\nG01 Z[@P1]\nM29"}
+    program, errors = parse_all(text, "fuzz.nc", files=files, vocabulary=vocabulary)
+    tools, offsets, clamp = draw.choice(TOOLS), draw.choice(OFFSETS), draw.randrange(2)
+    channel = Channel(
+        AXES, dict(zip(AXES, range(3), strict=True)), spindle_table(SPINDLES), 0.0, 0.0, vocabulary, offsets=offsets
+    )
+    state = initial_state(channel, clamp_index=clamp)
+    options: dict[str, Any] = {"state": state, "tools": tools, "offsets": offsets, "limits": LIMITS}
     try:
-        for _ in interpret(program, (0.0, 0.0, 0.0), AXES, SPINDLES, limits=LIMITS):
-            pass
+        for block in interpret(program, (0.0, 0.0, 0.0), AXES, SPINDLES, **options):
+            format_block(block)
     except ProgramError as error:
         errors.append(error)
     for error in errors:
         assert error.line >= 1 and error.column >= 1 and error.caret and str(error)
 
 
-def run(size: int, seed: int) -> Iterator[int]:
+def run(size: int, seed: int, dialect: str = "") -> Iterator[int]:
     """Mutates programs until `size` bytes were tried; yields the bytes so far. Raises at the first failure."""
-    draw, texts, done = random.Random(seed), corpus(), 0
+    draw, texts, done = random.Random(seed), corpus(dialect), 0
     while done < size:
         text = mutated(texts, draw)
         done += len(text.encode("utf-8", errors="replace"))
         try:
-            survives(text)
+            survives(text, dialect, draw)
         except Exception:
             print(repr(text), file=sys.stderr)
             raise
         yield done
 
 
-def main(size: int, seed: int) -> None:
+def main(size: int, seed: int, dialect: str = "") -> None:
     begin, slowest, last, programs = time.monotonic(), 0.0, time.monotonic(), 0
     half = 0
-    for done in run(size, seed):
+    for done in run(size, seed, dialect):
         now = time.monotonic()
         slowest, last, programs = max(slowest, now - last), now, programs + 1
         if done > size / 2 and not half:
@@ -144,4 +194,5 @@ def main(size: int, seed: int) -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(word) for word in [*sys.argv[1:], *["1000000", "1"][len(sys.argv) - 1 :]]))
+    given = [*sys.argv[1:], *["1000000", "1", ""][len(sys.argv) - 1 :]]
+    main(int(given[0]), int(given[1]), given[2])

@@ -232,6 +232,7 @@ def format_command(**options: Any) -> None:
 @click.option("--machine", type=click.Path(dir_okay=False), help="Also check against the axes and limits of a machine.")
 @DIALECT
 @click.option("--canonical", is_flag=True, help="Print the blocks that result: line, functions, machine positions.")
+@click.option("--as-subroutine", is_flag=True, help="The file is called by others: it ends with M17, M29 or M99.")
 @start_options
 def check_command(**options: Any) -> None:
     """Check an NC program: syntax and modal states.

@@ -224,7 +224,9 @@ class ChannelUnit(Unit):
         state = self._state.copy()
         state.modal.spindle.gears = self._check.gears(self._feedback)
         vocabulary, library = self._vocabulary, self._library
-        program = parse_program(text, "mdi", mdi=True, files=files, library=library, vocabulary=vocabulary)
+        program = parse_program(
+            text, "mdi", mdi=True, files=files, cycles=self._check.cycles, library=library, vocabulary=vocabulary
+        )
         self._begin(cycle, "mdi", program, state)
 
     def do_set_zero_offset(self, cycle: int, *, index: int, axis: str, value: float) -> None:

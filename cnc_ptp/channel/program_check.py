@@ -28,6 +28,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.contour import path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
 from cnc_ptp.nc.coordinates.coordinates import NO_CHANGES, OffsetChanges
+from cnc_ptp.nc.coordinates.limits import moving_axes, require_within
 from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
@@ -127,6 +128,8 @@ class ProgramCheck:
         tolerance = channel.circle_center_tolerance
         self.vocabulary = VOCABULARIES[channel.dialect]
         """That of the machine file."""
+        self.cycles = channel.cycles
+        self._references = tuple(axis.homing.reference_position for axis in self._axes)
         self._soft_limits = tuple((axis.soft_limit_negative, axis.soft_limit_positive) for axis in self._axes)
         self.nc = Channel(
             self._axis_names,
@@ -140,6 +143,7 @@ class ProgramCheck:
             self._soft_limits,
             channel.tool_table,
             path_defaults(channel),
+            self._references,
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -168,12 +172,18 @@ class ProgramCheck:
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
             tools=self._channel.tool_table,
+            references=self._references,
             files=files,
+            cycles=self.cycles,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
-        ) or self._function_errors(parse_all(text, file, files=files, vocabulary=vocabulary or self.vocabulary)[0])
+        ) or self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
+
+    def parsed(self, text: str, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
+        """A program, whose faulty lines raise when they are reached."""
+        return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
 
     def _function_errors(self, program: Program) -> list[ProgramError]:
         try:
@@ -225,7 +235,7 @@ class ProgramCheck:
         """A program that is loaded; beyond P-CHAN-90005 it is read while it runs. Raises its first syntax error."""
         vocabulary = self.vocabulary if dialect is None else VOCABULARIES[dialect]
         read = stream_program if len(text) > self._channel.checked_text else parse_program
-        return read(text, file, files=files, vocabulary=vocabulary)
+        return read(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)
 
     def blocks(self, program: Program, start: Sequence[float]) -> list[CanonicalBlock]:
         """The blocks of a program that is started from the initial state, as far as they are known before it runs."""
@@ -285,7 +295,11 @@ class ProgramCheck:
         stream = self._interpreted(program, start, state, begin, missing, required=required)
         if begin is None:
             return stream
-        check = partial(self.check_target, unlimited=missing)
+
+        def check(target: tuple[float, ...], source: Source) -> None:
+            self.check_target(target, source, missing)
+            require_within(self.nc, state.modal, [target], moving_axes(tuple(start), target), source)
+
         return begin.blocks(stream, tuple(start), self._axis_names, state.modal, check)
 
     def _interpreted(
@@ -313,6 +327,7 @@ class ProgramCheck:
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
+            references=self._references,
             limits=self._limits,
             block_skip=self.block_skip,
             runs=True,
@@ -357,9 +372,9 @@ class ProgramCheck:
         missing: Collection[str],
     ) -> None:
         """Raises ProgramError 22034 for a motion of an axis in `missing`."""
-        circle = motion.plane if isinstance(motion, CircularMove) else ()
         for index, (name, axis) in enumerate(zip(self._axis_names, self._axes, strict=True)):
-            if axis.homing.required and name in missing and (motion.target[index] != start[index] or index in circle):
+            turns = isinstance(motion, CircularMove) and motion.turns(index)
+            if axis.homing.required and name in missing and (turns or motion.target[index] != start[index]):
                 text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
                 raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
 

@@ -7,11 +7,13 @@ A called program is looked for in the folder of its caller's main program, then 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Final, NamedTuple
 
 import cnc_ptp
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.flow.sections import cycle_file
 
 UNREADABLE = 26110
 TOO_MANY_FILES = 26122
@@ -38,22 +40,37 @@ def read_file(what: str, path: str) -> str:
         ) from None
 
 
-def read_program(path: str, folders: Sequence[str] = ()) -> tuple[str, dict[str, str]]:
-    """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122.
+class Search(NamedTuple):
+    """What a machine file says of called programs.
 
-    `folders` of the machine file, besides that of the program.
+    folders   searched besides that of the program (P-CHAN-90004)
+    cycles    programs that G80 to G89 call, by code (P-CHAN-00160 …), where they are not g80.nc to g89.nc
     """
+
+    folders: tuple[str, ...] = ()
+    cycles: Mapping[str, str] = {}
+
+    def called(self, text: str, folder: str) -> dict[str, str]:
+        """The programs that a text in this folder calls. Raises CncError 26110, 26122."""
+        return called_programs(text, [folder, *self.folders], self.cycles)
+
+
+NO_SEARCH: Final = Search()
+
+
+def read_program(path: str, search: Search = NO_SEARCH) -> tuple[str, dict[str, str]]:
+    """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122."""
     text = read_file("NC program", path)
-    return text, called_programs(text, [str(Path(path).parent), *folders])
+    return text, search.called(text, folder_of(path))
 
 
-def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
+def called_programs(text: str, folders: Sequence[str], cycles: Mapping[str, str] = NO_SEARCH.cycles) -> dict[str, str]:
     """By name the texts of the programs that a text calls, directly or through others.
 
     A name that is in no folder is left out: the parser names its line.
     """
     found: dict[str, str] = {}
-    names = called_names(text)
+    names = called_names(text, cycles)
     while names:
         name = names.pop()
         if name.upper() in {known.upper() for known in found}:
@@ -65,7 +82,7 @@ def called_programs(text: str, folders: Sequence[str]) -> dict[str, str]:
             reason = f"the program calls more than {MOST_FILES} other programs"
             raise CncError(TOO_MANY_FILES, reason, "nothing was started")
         found[path.name] = read_file("NC program", str(path))
-        names += called_names(found[path.name])
+        names += called_names(found[path.name], cycles)
     return found
 
 
@@ -82,11 +99,11 @@ def available_programs(folder: str) -> list[str]:
         return []
 
 
-def called_names(text: str) -> list[str]:
+def called_names(text: str, cycles: Mapping[str, str]) -> list[str]:
     """Names behind L and in L CYCLE, and those of G80 to G89, also in comments; without folders."""
     text = _CONTINUED.sub(" ", text)
     names = [match[1] or match[2] for match in _CALLED.finditer(text)]
-    names += [f"g{match[1]}.nc" for match in _CYCLE_CODE.finditer(text)]
+    names += [cycle_file(f"G{match[1]}", cycles) for match in _CYCLE_CODE.finditer(text)]
     return [name for name in names if "/" not in name and "\\" not in name and not name.startswith(".")]
 
 

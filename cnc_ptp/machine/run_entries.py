@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.channel.program_start import ProgramStart
-from cnc_ptp.machine.program_files import called_programs, folder_of, read_file, read_program
+from cnc_ptp.machine.program_files import NO_SEARCH, Search, folder_of, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.parser import NO_FILES
@@ -35,7 +35,7 @@ def read_entries(
     """
     entries: list[Entry] = []
     if program is not None:
-        text, files = read_program(program, program_folders(machine))
+        text, files = read_program(program, program_search(machine))
         check_program(machine, text, program, files, dialect, begin)
         channel = next(iter(machine.channels))
         entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))
@@ -52,7 +52,7 @@ def read_entries(
             if entry.command.command == "load":
                 arguments = entry.command.arguments
                 arguments["program"] = str(folder / arguments["program"])
-                add_files(arguments, program_folders(machine, entry.command.target))
+                add_files(arguments, program_search(machine, entry.command.target))
     entries.sort(key=lambda entry: entry.at)
     add_manual_files([entry.command for entry in entries], machine)
     return entries
@@ -96,10 +96,10 @@ def load_arguments(program: str, text: str, files: Mapping[str, str], dialect: s
     return arguments
 
 
-def program_folders(machine: MachineParameters, channel: str = "") -> tuple[str, ...]:
-    """Where programs that others call are looked for (P-CHAN-90004), by a channel or the first one."""
+def program_search(machine: MachineParameters, channel: str = "") -> Search:
+    """Where a channel, or the first one, looks for programs that others call."""
     of_channel = machine.channels.get(channel) or next(iter(machine.channels.values()), None)
-    return of_channel.folders if of_channel else ()
+    return Search(of_channel.folders, of_channel.cycles) if of_channel else NO_SEARCH
 
 
 def add_manual_files(
@@ -115,15 +115,15 @@ def add_manual_files(
         if command.command == "load":
             programs[command.target] = arguments["program"]
         elif command.command == "mdi" and "files" not in arguments:
-            folders = [folder_of(programs.get(command.target, "")), *program_folders(machine, command.target)]
-            files = called_programs(arguments["text"], folders)
+            search = program_search(machine, command.target)
+            files = search.called(arguments["text"], folder_of(programs.get(command.target, "")))
             if files:
                 arguments["files"] = files
 
 
-def add_files(arguments: dict[str, Any], folders: Sequence[str]) -> None:
+def add_files(arguments: dict[str, Any], search: Search) -> None:
     """To a load with the text of its program the texts of those that it calls. Raises CncError 26110, 26122."""
     if "text" in arguments and "files" not in arguments:
-        files = called_programs(arguments["text"], [str(Path(arguments["program"]).parent), *folders])
+        files = search.called(arguments["text"], folder_of(arguments["program"]))
         if files:
             arguments["files"] = files

@@ -4,9 +4,12 @@ Points are (first, second) coordinates of the plane; counter-clockwise is from t
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from cnc_ptp.nc.canonical import CircularMove
+from cnc_ptp.nc.canonical import NO_PART, CircularMove
+from cnc_ptp.nc.coordinates.frame import dot
+from cnc_ptp.nc.degrees import cosine, sine
 
 Point = tuple[float, float]
 
@@ -73,22 +76,49 @@ def distance(a: Point, b: Point) -> float:
     return math.hypot(b[0] - a[0], b[1] - a[1])
 
 
+def directions(move: CircularMove) -> tuple[Sequence[float], Sequence[float]]:
+    """Those of the first and second axis of the arc's plane, with a value for each axis."""
+    if move.directions is not None:
+        return move.directions
+    first, second = ([float(index == axis) for index in range(len(move.target))] for axis in move.plane)
+    return first, second
+
+
+def linear_part(distances: Sequence[float], move: CircularMove) -> list[float]:
+    """The linear motion of each axis, of its distance from start to target; what lies in the plane is the circle's."""
+    first, second = directions(move)
+    forth, aside = dot(distances, first), dot(distances, second)
+    return [value - forth * u - aside * w for value, u, w in zip(distances, first, second, strict=True)]
+
+
 def extreme_points(start: tuple[float, ...], move: CircularMove) -> list[tuple[float, ...]]:
-    """Points of the arc between its ends where one axis of the plane reverses, in the order of the path.
+    """Points of the arc between its ends where an axis of the circle reverses, in the order of the path.
 
-    They are at the multiples of 90 degrees inside the sweep; the axes outside the plane are interpolated linearly.
+    An axis goes by size·cos(angle - crest) and by its linear part m for each radian: it reverses where
+    sin(angle - crest) = m/size, in a plane of two axes at the multiples of 90 degrees.
     """
-    first, second = move.plane
-    begin = math.degrees(math.atan2(start[second] - move.center[1], start[first] - move.center[0]))
+    first, second = directions(move)
+    linear = linear_part([end - begin for begin, end in zip(start, move.target, strict=True)], move)
+    begin = math.degrees(math.atan2(dot(start, second) - move.center[1], dot(start, first) - move.center[0]))
     low, high = min(begin, begin + move.sweep), max(begin, begin + move.sweep)
-    quarters = range(math.floor(low / 90.0) + 1, math.ceil(high / 90.0))
-    points = [_quarter_point(start, move, quarter, (90.0 * quarter - begin) / move.sweep) for quarter in quarters]
-    return points if move.sweep > 0.0 else points[::-1]
+    angles: set[float] = set()
+    for u, w, along in zip(first, second, linear, strict=True):
+        size, slope = move.radius * math.hypot(u, w), along / math.radians(move.sweep)
+        if size <= abs(slope) or size <= NO_PART * move.radius:
+            continue
+        crest, lag = math.degrees(math.atan2(w, u)), math.degrees(math.asin(slope / size))
+        for angle in (crest + lag, crest + 180.0 - lag):
+            turns = range(math.ceil((low - angle) / 360.0), math.floor((high - angle) / 360.0) + 1)
+            angles.update(angle + 360.0 * turn for turn in turns)
+    inside = sorted((angle for angle in angles if low < angle < high), reverse=move.sweep < 0.0)
+    return [_point_at(start, move, linear, angle, (angle - begin) / move.sweep) for angle in inside]
 
 
-def _quarter_point(start: tuple[float, ...], move: CircularMove, quarter: int, fraction: float) -> tuple[float, ...]:
-    point = [begin + fraction * (end - begin) for begin, end in zip(start, move.target, strict=True)]
-    cosine, sine = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarter % 4]
-    point[move.plane[0]] = move.center[0] + move.radius * cosine
-    point[move.plane[1]] = move.center[1] + move.radius * sine
-    return tuple(point)
+def _point_at(
+    start: tuple[float, ...], move: CircularMove, linear: Sequence[float], angle: float, fraction: float
+) -> tuple[float, ...]:
+    """The point of the arc at an angle (deg), after this fraction of it."""
+    first, second = directions(move)
+    x = move.center[0] + move.radius * cosine(angle) - dot(start, first)
+    y = move.center[1] + move.radius * sine(angle) - dot(start, second)
+    return tuple([p + m * fraction + x * u + y * w for p, m, u, w in zip(start, linear, first, second, strict=True)])

@@ -44,6 +44,8 @@ def code_name(letter: str, number: int) -> str:
     return f"{letter}{number:02d}"
 
 
+NO_PART: Final = 1e-12
+"""A smaller part of a direction is rounding."""
 STEP, TRAPEZ, SIN2 = "STEP", "TRAPEZ", "SIN2"
 """Slopes (#SLOPE): the acceleration along the path steps, is a trapezium with limited jerk, or has sin² ramps."""
 AVAILABLE_SLOPES = (STEP, TRAPEZ, SIN2)
@@ -66,12 +68,18 @@ class LinearMove(NamedTuple):
     transition: Transition = THROUGH
 
 
+Direction = tuple[float, ...]
+"""A unit vector, one value for each axis of the channel."""
+
+
 class CircularMove(NamedTuple):
-    """Arc or full circle in a main plane; every other axis moves linearly alongside (helix).
+    """Arc or full circle in a plane; every other axis moves linearly alongside (helix).
 
     `plane` holds the axis indices (first, second), `center` is absolute in that plane (mm), `radius` in mm,
     `sweep` in degrees, positive from the first towards the second axis (G03), 0 < |sweep| <= 360; `feed` in mm/s;
     `slope`, `full_override` and `transition` as in LinearMove.
+    `directions`: in a coordinate system that is tilted, where the two axes of the plane point in the machine; `center`
+    is then along them. They are at right angles to each other and to the linear motion of X, Y and Z.
     """
 
     target: tuple[float, ...]
@@ -83,6 +91,13 @@ class CircularMove(NamedTuple):
     slope: str = ""
     full_override: bool = False
     transition: Transition = THROUGH
+    directions: tuple[Direction, Direction] | None = None
+
+    def turns(self, axis: int) -> bool:
+        """Whether the axis with this index takes part in the circle."""
+        if self.directions is None:
+            return axis in self.plane
+        return any(abs(direction[axis]) > NO_PART for direction in self.directions)
 
 
 class Dwell(NamedTuple):

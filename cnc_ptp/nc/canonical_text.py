@@ -102,6 +102,8 @@ def _motion(motion: Motion) -> str:
     if isinstance(motion, LinearMove):
         return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"
+    if motion.directions is not None:
+        plane += f" along {_numbers(motion.directions[0])} {_numbers(motion.directions[1])}"
     return (
         f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
         f" sweep {number(motion.sweep)} feed {number(motion.feed)}{slope}"

@@ -4,6 +4,7 @@ from math import hypot, radians
 from typing import Final
 
 from cnc_ptp.nc import faults
+from cnc_ptp.nc.arcs import linear_part
 from cnc_ptp.nc.canonical import CircularMove, LinearMove
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
 
@@ -60,7 +61,7 @@ def path_length(channel: Channel, start: tuple[float, ...], motion: LinearMove |
     """Of the main axes; of all axes if these do not move."""
     distances = [target - begin for begin, target in zip(start, motion.target, strict=True)]
     if isinstance(motion, CircularMove):
-        others = [distances[index] for index in channel.main if index >= 0 and index not in motion.plane]
-        return hypot(motion.radius * radians(motion.sweep), *others)
+        linear = linear_part(distances, motion)
+        return hypot(motion.radius * radians(motion.sweep), *[linear[index] for index in channel.main if index >= 0])
     main = hypot(*[distances[index] for index in channel.main if index >= 0])
     return main or hypot(*distances)

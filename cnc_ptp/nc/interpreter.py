@@ -64,6 +64,7 @@ def interpret(
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
     tools: ToolTable = NO_TOOLS,
+    references: tuple[float, ...] = (),
     block_skip: int = 0,
     limits: Limits = LIMITS,
     values: Values | None = None,
@@ -79,7 +80,7 @@ def interpret(
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
     corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine,
-    `soft_limits` of its axes for V.A. `block_skip`: bit n - 1 skips the blocks with /n (`/` is /1).
+    `soft_limits` of its axes for V.A., `references` for G28. `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
     change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
@@ -91,7 +92,9 @@ def interpret(
     index = {axis: position for position, axis in enumerate(axes)}
     table, ratio = spindle_table(spindles), centre_offset_ratio
     words, turns = program.vocabulary, frozenset(rotary)
-    channel = Channel(axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools)
+    channel = Channel(
+        axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools, references=references
+    )
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
@@ -317,7 +320,9 @@ def check(
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
     tools: ToolTable = NO_TOOLS,
+    references: tuple[float, ...] = (),
     files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
     limits: Limits = LIMITS,
@@ -329,7 +334,7 @@ def check(
     error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
     after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
     """
-    program, errors = parse_all(text, file, files=files, vocabulary=vocabulary)
+    program, errors = parse_all(text, file, files=files, cycles=cycles, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
     homed = False
 
@@ -350,6 +355,7 @@ def check(
             offsets=offsets,
             soft_limits=soft_limits,
             tools=tools,
+            references=references,
             limits=limits,
             runs=True,
         )

@@ -240,6 +240,8 @@ class TokenReader:
         if kind in _NUMBERED and continues.match(self.line, match.end()):
             return self._computed(position)
         token = _token(match)
+        if kind == "call" and (bracket := _BARE.match(self.line, match.end())):
+            raise flow_faults.CALL_BRACKET.at(self.source, bracket.end(), scope=token.text, name=token.name)
         if kind == "bracket" and _COMPUTED_INSIDE.search(token.text):
             return self._bracket(token), match.end()
         return token, match.end()
@@ -318,8 +320,7 @@ class TokenReader:
             at = reader.at
             self.synchronises = self.synchronises or reader.synchronises
         shown = self.line[begin.start(1) : at]
-        name = f"{''.join(begin[1].split())}.NC"
-        return Token("call", name, "L CYCLE", begin.start(1) + 1, shown, arguments=arguments), at
+        return Token("call", "".join(begin[1].split()), CODE_CALL, begin.start(1) + 1, shown, arguments=arguments), at
 
     def _computed(self, position: int) -> tuple[Token, int]:
         """A word whose number is an expression."""
@@ -381,6 +382,8 @@ class TokenReader:
 
 _CYCLE_CODE = re.compile(r"\s*(G\s*8\d)(?![\d.])\s*(\[)?", re.ASCII)
 """G80 to G89."""
+CODE_CALL: Final = "G CYCLE"
+"""Text of the token of such a code; L CYCLE is that of a call by name."""
 MOST_ARGUMENTS: Final = 50
 _CYCLE = re.compile(r"\s*(LL?)\s+CYCLE\s*\[", re.ASCII)
 _CYCLE_WORD = re.compile(

@@ -46,14 +46,18 @@ def parse_program(
     *,
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
     vocabulary: Vocabulary = TWINCAT,
 ) -> Program:
     """Parsed program; raises the first syntax error. With `mdi` no program end is required (manual blocks).
 
-    `files`: the texts of the programs that it may call, by name; `library`: such programs that have been read already.
+    `files`: the texts of the programs that it may call, by name; `library`: such programs that have been read already;
+    `cycles`: which of them G80 … G89 call (P-CHAN-00160 …), where it is not g80.nc … g89.nc.
     """
-    program, errors = parse_text(ProgramText(text), file, mdi=mdi, files=files, library=library, vocabulary=vocabulary)
+    program, errors = parse_text(
+        ProgramText(text), file, mdi=mdi, files=files, cycles=cycles, library=library, vocabulary=vocabulary
+    )
     if errors:
         raise errors[0]
     return program
@@ -65,10 +69,17 @@ def parse_all(
     *,
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
     vocabulary: Vocabulary = TWINCAT,
+    subroutine: bool = False,
 ) -> tuple[Program, list[ProgramError]]:
-    """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached."""
-    return parse_text(ProgramText(text), file, mdi=mdi, files=files, vocabulary=vocabulary)
+    """Parsed program and its syntax errors, one per line in their order; a faulty line raises when it is reached.
+
+    `subroutine`: other programs call this one, so that it ends with M17, M29 or M99.
+    """
+    return parse_text(
+        ProgramText(text), file, mdi=mdi, files=files, cycles=cycles, vocabulary=vocabulary, subroutine=subroutine
+    )
 
 
 def parse_text(
@@ -77,8 +88,10 @@ def parse_text(
     *,
     mdi: bool = False,
     files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
     library: Mapping[str, Program] | None = None,
     vocabulary: Vocabulary = TWINCAT,
+    subroutine: bool = False,
 ) -> tuple[Program, list[ProgramError]]:
     """As parse_all, from memory or from a file."""
     texts = files if vocabulary is TWINCAT else NO_FILES
@@ -88,8 +101,8 @@ def parse_text(
     errors: list[ProgramError] = []
     with paused_collector():
         for each in (program, *called.values()):
-            each.library = known
-            errors += ProgramReader(each, mdi=mdi, called=each is not program).read()
+            each.library, each.cycles = known, cycles
+            errors += ProgramReader(each, mdi=mdi, called=subroutine or each is not program).read()
     return program, errors
 
 

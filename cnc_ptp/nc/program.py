@@ -264,7 +264,8 @@ class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
     `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
-    empty for none. `path`: how the path goes from block to block at the start.
+    empty for none. `path`: how the path goes from block to block at the start; `references`: position of the reference
+    point of each axis (P-AXIS-00152), empty for 0.
     """
 
     axes: tuple[str, ...]
@@ -278,6 +279,7 @@ class Channel(NamedTuple):
     soft_limits: tuple[tuple[float, float], ...] = ()
     tools: ToolTable = NO_TOOLS
     path: PathDefaults = PATH_DEFAULTS
+    references: tuple[float, ...] = ()
 
     @property
     def main(self) -> tuple[int, int, int]:

@@ -135,13 +135,19 @@ def line_of(error: ProgramError) -> int:
 
 
 def stream_program(
-    text: str, file: str, *, files: Mapping[str, str] = NO_FILES, vocabulary: Vocabulary = TWINCAT
+    text: str,
+    file: str,
+    *,
+    files: Mapping[str, str] = NO_FILES,
+    cycles: Mapping[str, str] = NO_FILES,
+    vocabulary: Vocabulary = TWINCAT,
 ) -> StreamedProgram:
     """As parse_program. The programs that it calls are read at once, of its own text the lines before its main program.
 
     Raises their first error.
     """
     program = StreamedProgram(file, ProgramText(text), vocabulary)
-    program.library = parse_program("M30", file, files=files, vocabulary=vocabulary).library
+    program.library = parse_program("M30", file, files=files, cycles=cycles, vocabulary=vocabulary).library
+    program.cycles = cycles
     program.begin()
     return program

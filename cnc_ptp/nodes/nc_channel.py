@@ -11,7 +11,7 @@ from cnc_ptp import action, msg
 from cnc_ptp.channel.channel_unit import ChannelUnit
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import read_program
-from cnc_ptp.machine.run_entries import add_manual_files, load_arguments
+from cnc_ptp.machine.run_entries import add_manual_files, load_arguments, program_search
 from cnc_ptp.machine.wiring import build_unit
 from cnc_ptp.nodes import convert, node_command_line
 from cnc_ptp.nodes.program_topic import ProgramTopic
@@ -45,8 +45,8 @@ class ChannelNode(UnitNode):
         node_command_line.require_unit(machine, name, ["channel"])
         unit = build_unit(machine, name)
         if program is not None and isinstance(unit, ChannelUnit):
-            unit.prepare(program, *read_program(program, machine.channels[name].folders), dialect)
-        self._folders = machine.channels[name].folders
+            unit.prepare(program, *read_program(program, program_search(machine, name)), dialect)
+        self._search = program_search(machine, name)
         super().__init__(machine, unit, **options)
         self._cycle_time = machine.cycle_time_us * 1e-6
         self._program_topic: ProgramTopic | None = None
@@ -79,7 +79,7 @@ class ChannelNode(UnitNode):
         if command.command == "load" and "text" not in command.arguments:
             path = command.arguments["program"]
             try:
-                text, files = read_program(path, self._folders)
+                text, files = read_program(path, self._search)
             except CncError as error:
                 return self.refuse(command, error.number, error.reason)
             command = Command(
@@ -104,7 +104,7 @@ class ChannelNode(UnitNode):
             if command.target == self.unit.name and command.command == "load" and "text" not in command.arguments:
                 with contextlib.suppress(CncError):
                     path = command.arguments["program"]
-                    command.arguments.update(load_arguments(path, *read_program(path, self._folders)))
+                    command.arguments.update(load_arguments(path, *read_program(path, self._search)))
         with contextlib.suppress(CncError):
             own = [each for each in block.commands if each.target == self.unit.name]
             add_manual_files(own, self._machine, self._loaded)

@@ -118,13 +118,30 @@ class Line:
         return _combine(feed * override_max, [_project(slopes, axes)])
 
 
+class Ring(NamedTuple):
+    """What an axis does on an arc: q = centre + slope·s + along·cosθ + across·sinθ, with θ by path length s.
+
+    slope   of the linear motion and of the closing error, mm/mm
+    size    √(along² + across²), mm: amplitude of the circular motion, 0 for an axis that has none
+    crest   angle (rad) at which this motion is largest
+    """
+
+    centre: float
+    slope: float
+    along: float
+    across: float
+    size: float
+    crest: float
+
+
 class Arc:
-    """Circular motion in a plane of two axes, linear motion of all others (helix).
+    """Circular motion in a plane, linear motion of all axes beside it (helix).
 
     plane       indices of the first and second plane axis; positive sweep turns from the first to the second
-    center      centre in these two axes, mm (absolute)
+    directions  two unit vectors at right angles, a value for each axis, in place of the two plane axes
+    center      centre along the plane axes or directions, mm (absolute)
     sweep_deg   signed angle, deg; several turns allowed
-    length      √(arc² + linear²): the arc and the linear motion of the remaining axes among `path_axes`
+    length      √(arc² + linear²): the arc and the linear motion of the `path_axes`
     rate        rad by which the arc turns in 1 mm of path length, with the sign of the sweep
 
     The circle runs through `start` around `center`. A closing error at the target (rounded I, J, K) is spread evenly
@@ -132,7 +149,7 @@ class Arc:
     """
 
     __slots__ = (
-        "_angle", "_center", "_drift", "_linear",
+        "_angle", "_drift", "_linear", "_rings",
         "center", "length", "plane", "radius", "rate", "start", "sweep_deg", "target",
     )  # fmt: skip
 
@@ -145,6 +162,7 @@ class Arc:
         radius: float,
         sweep_deg: float,
         path_axes: Collection[int],
+        directions: tuple[Sequence[float], Sequence[float]] | None = None,
     ) -> None:
         _check_points(start, target)
         self.start = tuple(start)
@@ -152,8 +170,8 @@ class Arc:
         self.center = (center[0], center[1])
         self.plane = (plane[0], plane[1])
         self.sweep_deg = sweep_deg
-        first, second = self.plane
-        x, y = self.start[first] - center[0], self.start[second] - center[1]
+        first, second = directions or [[float(n == axis) for n in range(len(start))] for axis in plane]
+        x, y = _along(start, first) - center[0], _along(start, second) - center[1]
         self.radius = hypot(x, y)
         if not (0.0 < self.radius < inf and 0.0 < abs(sweep_deg) < inf):
             raise CncError(
@@ -164,18 +182,21 @@ class Arc:
                 sweep_deg=sweep_deg,
             )
         sweep = radians(sweep_deg)
-        others = [(n, b - a) for n, (a, b) in enumerate(zip(start, target, strict=True)) if n not in self.plane]
-        self.length = hypot(self.radius * sweep, *(distance for n, distance in others if n in path_axes))
+        distances = [b - a for a, b in zip(start, target, strict=True)]
+        forth, aside = _along(distances, first), _along(distances, second)
+        linear = [d - forth * u - aside * w for d, u, w in zip(distances, first, second, strict=True)]
+        self.length = hypot(self.radius * sweep, *[distance for n, distance in enumerate(linear) if n in path_axes])
         self._angle = atan2(y, x)
         self.rate = sweep / self.length
-        self._linear = tuple([(n, self.start[n], distance / self.length) for n, distance in others])
-        self._set_drift(x, y, sweep, radius)
+        self._linear = [distance / self.length for distance in linear]
+        self._set_rings(x, y, sweep, radius, first, second)
 
-    def _set_drift(self, x: float, y: float, sweep: float, radius: float) -> None:
+    def _set_rings(
+        self, x: float, y: float, sweep: float, radius: float, first: Sequence[float], second: Sequence[float]
+    ) -> None:
         """Spread the closing error at the target (and the rounding of r·cos, r·sin at the start) over the path."""
-        first, second = self.plane
-        miss_x = self.target[first] - self.center[0] - (x * cos(sweep) - y * sin(sweep))
-        miss_y = self.target[second] - self.center[1] - (x * sin(sweep) + y * cos(sweep))
+        miss_x = _along(self.target, first) - self.center[0] - (x * cos(sweep) - y * sin(sweep))
+        miss_y = _along(self.target, second) - self.center[1] - (x * sin(sweep) + y * cos(sweep))
         miss = hypot(miss_x, miss_y)
         limit = CLOSING_TOLERANCE_MM + CLOSING_TOLERANCE * self.radius
         if miss > limit:
@@ -187,44 +208,35 @@ class Arc:
                 miss=miss,
                 limit=limit,
             )
-        self._drift = (miss_x / self.length, miss_y / self.length)
-        self._center = (
-            self.start[first] - self.radius * cos(self._angle),
-            self.start[second] - self.radius * sin(self._angle),
-        )
+        drift_x, drift_y = miss_x / self.length, miss_y / self.length
+        self._drift = hypot(drift_x, drift_y)
+        cosine, sine = cos(self._angle), sin(self._angle)
+        self._rings = []
+        for p, k, u, w in zip(self.start, self._linear, first, second, strict=True):
+            along, across = self.radius * u, self.radius * w
+            centre, slope = p - (along * cosine + across * sine), k + (drift_x * u + drift_y * w)
+            self._rings.append(Ring(centre, slope, along, across, hypot(along, across), atan2(across, along)))
 
     def evaluate(self, s: float, v: float, a: float, j: float) -> tuple[AxisState, ...]:
         """State of each axis at path length s; exactly the target at the end.
 
-        The linear axes as on a line; with θ = θ0 + w·s the plane axes have θ' = w·v, θ'' = w·a, θ''' = w·j and
-        x = cx + r·cosθ, x' = -r·sinθ·θ', x'' = -r·sinθ·θ'' - r·cosθ·θ'², x''' = -r·sinθ·(θ''' - θ'³) - 3·r·cosθ·θ'·θ''.
+        With θ = θ0 + w·s: θ' = w·v, θ'' = w·a, θ''' = w·j. With g = along·cosθ + across·sinθ and
+        h = dg/dθ = across·cosθ - along·sinθ the circular motion is g, its derivatives are h·θ', h·θ'' - g·θ'² and
+        h·(θ''' - θ'³) - 3·g·θ'·θ''.
         """
         angle = self._angle + self.rate * s
-        x = self.radius * cos(angle)
-        y = self.radius * sin(angle)
+        cosine, sine = cos(angle), sin(angle)
         rate = self.rate * v
         swing = self.rate * a
         square = rate * rate
-        turn = self.rate * j - square * rate
+        twist = self.rate * j - square * rate
         cross = 3.0 * rate * swing
-        dx, dy = self._drift
-        cx, cy = self._center
-        first, second = self.plane
-        states: list[AxisState] = [(0.0, 0.0, 0.0, 0.0)] * len(self.start)
-        for n, p, k in self._linear:
-            states[n] = (p + k * s, k * v, k * a, k * j)
-        states[first] = (
-            cx + x + dx * s,
-            dx * v - y * rate,
-            dx * a - y * swing - x * square,
-            dx * j - y * turn - x * cross,
-        )
-        states[second] = (
-            cy + y + dy * s,
-            dy * v + x * rate,
-            dy * a + x * swing - y * square,
-            dy * j + x * turn - y * cross,
-        )
+        states: list[AxisState] = []
+        for centre, k, along, across, _, _ in self._rings:
+            g, h = along * cosine + across * sine, across * cosine - along * sine
+            states.append(
+                (centre + g + k * s, k * v + h * rate, k * a + h * swing - g * square, k * j + h * twist - g * cross)
+            )
         if s >= self.length:
             return tuple([(p, *state[1:]) for p, state in zip(self.target, states, strict=True)])
         return tuple(states)
@@ -232,48 +244,44 @@ class Arc:
     def shape(self, s: float) -> list[Shape]:
         """q, q1, q2, q3 of each axis at path length s; exactly the target at the end.
 
-        The linear axes as on a line; with θ = θ0 + w·s and its drift k the first plane axis has
-        q = cx + r·cosθ + k·s, q1 = k - w·r·sinθ, q2 = -w²·r·cosθ, q3 = w³·r·sinθ.
+        With θ = θ0 + w·s and g, h as in `evaluate`: q1 = slope + w·h, q2 = -w²·g, q3 = -w³·h.
         """
         w = self.rate
         angle = self._angle + w * s
-        x = self.radius * cos(angle)
-        y = self.radius * sin(angle)
+        cosine, sine = cos(angle), sin(angle)
         square = w * w
         cube = square * w
-        dx, dy = self._drift
-        cx, cy = self._center
-        first, second = self.plane
-        shape: list[Shape] = [(0.0, 0.0, 0.0, 0.0)] * len(self.start)
-        for n, p, k in self._linear:
-            shape[n] = (p + k * s, k, 0.0, 0.0)
-        shape[first] = (cx + x + dx * s, dx - y * w, -x * square, y * cube)
-        shape[second] = (cy + y + dy * s, dy + x * w, -y * square, -x * cube)
+        shape: list[Shape] = []
+        for centre, k, along, across, _, _ in self._rings:
+            g, h = along * cosine + across * sine, across * cosine - along * sine
+            shape.append((centre + g + k * s, k + h * w, -g * square, -h * cube))
         if s >= self.length:
             return [(p, q1, q2, q3) for p, (_, q1, q2, q3) in zip(self.target, shape, strict=True)]
         return shape
 
     def bounds(self, begin: float, end: float) -> list[Bounds]:
         """Largest |q1|, |q2|, |q3| of each axis from s = `begin` to `end`, from the ranges of sine and cosine there."""
-        w, r = self.rate, self.radius
+        w = self.rate
         least, most = self._angle + w * begin, self._angle + w * end
         if w < 0.0:
             least, most = most, least
-        low_sine, high_sine = _range(least, most, sin(least), sin(most), 0.5 * pi)
-        low_cosine, high_cosine = _range(least, most, cos(least), cos(most), 0.0)
-        sine, cosine = r * max(-low_sine, high_sine), r * max(-low_cosine, high_cosine)
         square = w * w
         cube = abs(square * w)
-        dx, dy = self._drift
-        first, second = self.plane
-        found: list[Bounds] = [(0.0, 0.0, 0.0)] * len(self.start)
-        for n, _, k in self._linear:
-            found[n] = (abs(k), 0.0, 0.0)
-        along = max(abs(dx - r * low_sine * w), abs(dx - r * high_sine * w))
-        found[first] = (along, cosine * square, sine * cube)
-        along = max(abs(dy + r * low_cosine * w), abs(dy + r * high_cosine * w))
-        found[second] = (along, sine * square, cosine * cube)
+        found: list[Bounds] = []
+        for _, k, _, _, size, crest in self._rings:
+            if size == 0.0:
+                found.append((abs(k), 0.0, 0.0))
+                continue
+            low, high = _range(least - crest, most - crest, 0.0)
+            falling, rising = _range(least - crest, most - crest, -0.5 * pi)
+            along = max(abs(k + size * falling * w), abs(k + size * rising * w))
+            found.append((along, size * max(-low, high) * square, size * max(-falling, rising) * cube))
         return found
+
+    def fourth_derivative(self, axis: int) -> float:
+        """Largest |q4| of an axis on the whole circle: its amplitude times w⁴."""
+        square = self.rate * self.rate
+        return self._rings[axis].size * square * square
 
     def speed(self, s: float, axes: Sequence[int]) -> float:
         """|dq/ds| of the given axes."""
@@ -282,25 +290,27 @@ class Arc:
     def limits(self, feed: float, axes: Sequence[AxisLimits], override_max: float = 1.0) -> Limits:
         """Path dynamics under which no axis exceeds its limits at any angle, at any velocity up to the returned one.
 
-        The plane axes share the weaker one's limits. With k the plane part of the path velocity, u = k·v and r the
-        radius:
+        The axes of the circle share the weakest one's limits V, A, J. With k the plane part of the path velocity,
+        u = k·v and r the radius:
         velocity       u <= V, u²/r <= 0.8·min(A+, A-), u³/r² <= 0.3·J
         acceleration   (k·a)² + (u²/r)² <= A² for A+ and A- apart, and 3·u·k·a/r <= 0.6·J
         jerk           (k·j + u³/r²)² + (3·u·k·a/r)² <= J²
+        An axis has the share size/r of the circle, and with the slope m of its linear motion the share size/r + |m|/k;
+        its limits count divided by that share, which is 1 in a plane of two axes.
         All are taken at the highest velocity, so that a later override within it needs no other limits; where the
         velocity is low against the radius they tend to those of a line. `feed`, `override_max` as for a line.
         """
         _check_feed(feed)
         r = self.radius
-        first, second = axes[self.plane[0]], axes[self.plane[1]]
-        velocity = min(first.velocity, second.velocity)
-        up = min(first.acceleration, second.acceleration)
-        down = min(first.deceleration, second.deceleration)
-        jerk = min(first.jerk, second.jerk)
-        k = abs(self.rate) * r + hypot(*self._drift)
-        linear = _project([abs(slope) for _, _, slope in self._linear], [axes[n] for n, _, _ in self._linear])
+        k = abs(self.rate) * r + self._drift
+        shares = [
+            ring.size / r + abs(m) / k if ring.size else 0.0 for ring, m in zip(self._rings, self._linear, strict=True)
+        ]
+        circle = _project(shares, axes)
+        linear = _project([0.0 if ring.size else abs(ring.slope) for ring in self._rings], axes)
+        up, down, jerk = circle.acceleration, circle.deceleration, circle.jerk
         u = min(
-            velocity,
+            circle.velocity,
             sqrt(CENTRIPETAL_SHARE * min(up, down) * r),
             cbrt(CURVATURE_JERK_SHARE * jerk * r * r),
             k * min(feed * override_max, linear.velocity),
@@ -314,8 +324,14 @@ class Arc:
         return _combine(u / k, [linear, Limits(inf, up / k, down / k, free / k)])
 
 
-def _range(least: float, most: float, at_least: float, at_most: float, crest: float) -> tuple[float, float]:
-    """Smallest and largest value between two angles, of a sine wave that has a crest at the angle `crest`."""
+def _along(point: Sequence[float], direction: Sequence[float]) -> float:
+    """Coordinate of a point along a direction."""
+    return sum([p * d for p, d in zip(point, direction, strict=True)])
+
+
+def _range(least: float, most: float, crest: float) -> tuple[float, float]:
+    """Smallest and largest value of cos(θ - crest) for θ between two angles."""
+    at_least, at_most = cos(least - crest), cos(most - crest)
     low, high = min(at_least, at_most), max(at_least, at_most)
     if crest + tau * ceil((least - crest) / tau) <= most:
         high = 1.0

@@ -238,7 +238,8 @@ class PathMotion:
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):
             return Line(start, motion.target, self._path_axes)
-        return Arc(start, motion.target, motion.center, motion.plane, motion.radius, motion.sweep, self._path_axes)
+        turn = (motion.center, motion.plane, motion.radius, motion.sweep)
+        return Arc(start, motion.target, *turn, self._path_axes, motion.directions)
 
     def _link(self, plan: Plan, motion: Path, source: MotionSource) -> bool:
         """Starts a path of several blocks if the next motion can be linked to this one."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from machine_support import MILL, UnitBench
+from machine_support import MILL, MachineBench, UnitBench
 from replay_support import replay
 
 from cnc_ptp.channel.program_check import ProgramCheck
@@ -136,3 +136,14 @@ def test_the_commands(tmp_path: Path) -> None:
     small.write_text("(G64 in a comment)\nG21 G0 X1\nM30\n")
     assert "exact stop" not in call("check", str(small), "--dialect", "iso")[1]
     assert call("simulate", str(ROOT / "config" / "mill.yaml"), "--program", str(small), "--dialect", "iso")[0] == 0
+
+
+def test_g28_reads_the_reference_point_of_the_axis_list() -> None:
+    """P-AXIS-00152."""
+    axes = dict(MILL.axes)
+    axes["x"] = replace(axes["x"], homing=replace(axes["x"].homing, reference_position=12.5))
+    bench = MachineBench(machine=replace(MILL, axes=axes), end_when_idle=False).run(0.1)
+    assert bench.give("channel", "load", program="a.nc", text="G0 X5 Y5\nG28 X6 Y6\nM30", dialect="iso").accepted
+    assert bench.give("channel", "start").accepted
+    bench.run(3.0)
+    assert (bench.position("x"), bench.position("y")) == (12.5, 0.0)

@@ -77,6 +77,62 @@ def test_arcs_and_lines_with_contouring() -> None:
     assert moving(bench).min() > 3.0
 
 
+TILT = ("#CS ON [0, 0, 10, 30]", "G00 X20 Y0 Z0")
+"""The plane is turned by 30 deg about X and shifted along Z."""
+
+
+def tilted(points: np.ndarray) -> np.ndarray:
+    """Points of the machine in the tilted system."""
+    c, s = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
+    return (points - [0.0, 0.0, 10.0]) @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def test_a_path_ends_whose_cells_do_not_sum_up_to_its_length() -> None:
+    """Three quarters of a circle at the end: the sum of the cells was 1.4e-14 mm short, and the path never ended."""
+    arcs = ("G261 F4000", "G01 Y10", "G03 X0 Y30 R20", "G01 X-20", "G02 X-30 Y20 J-10")
+    bench = MachineBench(program("G00 X20", "#CONTOUR MODE [DEV PATH_DEV=0.02]", *arcs)).run()
+    assert path(bench)[-1] == pytest.approx((-30.0, 20.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("transition", ["G60", "G359"])
+def test_arcs_in_a_tilted_system_on_their_circle(transition: str) -> None:
+    """A full circle and a helix, cycle by cycle on the circle that the system turns."""
+    bench = MachineBench(program(*TILT, f"G01 F4000 {transition}", "G03 I-20", "G02 X-20 Z5 I-20")).run()
+    x, y, z = tilted(path(bench)[np.array(bench.column("channel", "line")) >= 5]).T
+    assert np.abs(np.hypot(x, y) - 20.0).max() <= 1e-9
+    rising = z > 1e-9
+    angle = np.degrees(np.arctan2(-y[rising], x[rising])) % 360.0
+    assert z[rising] == pytest.approx(angle / 36.0, abs=1e-9)
+    assert (x[-1], y[-1], z[-1]) == pytest.approx((-20.0, 0.0, 5.0), abs=1e-9)
+    assert max(bench.column("channel", "path_velocity")) <= 200.0
+    smooth(bench)
+
+
+def test_linked_arcs_in_a_tilted_system() -> None:
+    """The deviation from the programmed contour, in the tilted plane, is within the tolerance; no stop between."""
+    contour = (
+        "#CONTOUR MODE [DEV PATH_DEV=0.02]",
+        "G261 F4000",
+        "G01 Y10",
+        "G03 X0 Y30 R20",
+        "G01 X-20",
+        "G03 X-30 Y20 J-10",
+    )
+    bench = MachineBench(program(*TILT, *contour)).run()
+    x, y, z = tilted(path(bench)[np.array(bench.column("channel", "line")) >= 6]).T
+    assert np.abs(z).max() <= 1e-9
+    angles = np.radians(np.linspace(0.0, 90.0, 2001))
+    first = [(20.0 * math.cos(a), 10.0 + 20.0 * math.sin(a)) for a in angles]
+    second = [(-20.0 - 10.0 * math.sin(a), 20.0 + 10.0 * math.cos(a)) for a in angles]
+    programmed = LineString([(20.0, 0.0), *first, *second])
+    deviations = [programmed.distance(Point(*point)) for point in zip(x, y, strict=True)]
+    assert max(deviations) <= 0.02 + 1e-5
+    on_the_way = np.array(bench.column("channel", "line")) >= 6
+    velocity = np.array(bench.column("channel", "path_velocity"))[on_the_way]
+    assert velocity[100 : np.nonzero(velocity)[0][-1] - 100].min() > 3.0
+    smooth(bench)
+
+
 def test_exact_stop_reaches_its_corner() -> None:
     lines = ("#CONTOUR MODE [DEV PATH_DEV=0.1]", "G261 F6000", "G01 X20", "G09 Y20", "X0", "G60 Y0", "X5")
     bench = MachineBench(program(*lines)).run()

@@ -110,6 +110,13 @@ def test_every_example_is_a_program(entry):
     run(f"{before}{text}\nM30", files=FILES)
 
 
+def test_the_first_word_of_several_commands_explains_all_of_them():
+    names = [entry.name for entry in find("#TIMER")]
+    assert names[:3] == ["#TIMER START", "#TIMER START SYN", "#TIMER STOP"]
+    assert all(name.startswith("#TIMER ") for name in names) and len(names) == 8
+    assert [entry.name for entry in find("#flush")] == ["#FLUSH"]
+
+
 @pytest.mark.parametrize("number", [code.number for code in TWINCAT.g_codes.values() if code.later])
 def test_what_comes_later_is_refused_and_explained(number, capsys):
     with pytest.raises(ProgramError, match=f"G{number} is not available yet"):

@@ -10,13 +10,13 @@ from machine_support import ROOT
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
-from cnc_ptp.machine.program_files import called_names, called_programs, read_program
+from cnc_ptp.machine.program_files import Search, called_names, called_programs, read_program
 from cnc_ptp.recording.reader import read_recording
 
 
 def test_names_of_called_programs() -> None:
     text = "N10 L a.nc ; L b.nc\nLL local\nX5 L c\nl cycle [@P1=3 NAME=d.cyc @P2=4]\nLL CYCLE [NAME=e]\n(L f.nc)\nBALL 5\nL ../g.nc"
-    assert called_names(text) == ["a.nc", "b.nc", "c", "d.cyc", "f.nc"]
+    assert called_names(text, {}) == ["a.nc", "b.nc", "c", "d.cyc", "f.nc"]
 
 
 def test_programs_are_found_through_others_in_the_folder_of_the_first(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_folders_of_the_machine_file_come_after_that_of_the_program(tmp_path: Pa
         (tmp_path / folder / "all.nc").write_text(f"({folder})\nM29")
     main_program = tmp_path / "programs" / "main.nc"
     main_program.write_text("L all.nc\nL cycles.nc\nL SHARED.NC\nM30")
-    _, files = read_program(str(main_program), [str(tmp_path / "cycles"), str(tmp_path / "shared")])
+    _, files = read_program(str(main_program), Search((str(tmp_path / "cycles"), str(tmp_path / "shared"))))
     assert files == {"all.nc": "(programs)\nM29", "cycles.nc": "M29", "shared.nc": "M29"}
 
 
@@ -133,6 +133,63 @@ def test_a_machine_with_offset_files_and_folders_is_recorded_and_replayed(
     assert called(["replay", "--verify", str(recording)]) == 0
     recorded = read_recording(recording)
     assert recorded.machine_yaml.endswith("--- # file of the machine: vices.yaml\nG54: {name: vice, X: 12.5}\n\n")
+
+
+def test_cycles_that_the_machine_file_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """G81 calls spot.nc (P-CHAN-00161); the run, `check`, manual blocks and the replay know it."""
+    machine, recording = tmp_path / "mill.yaml", tmp_path / "run.mcap"
+    text = (ROOT / "config" / "mill.yaml").read_text()
+    settings = "/channel:\n  ros__parameters:\n    g81_prog_file: spot.nc\n    g84_prog_file: thread.nc\n"
+    machine.write_text(text.replace("/channel:\n  ros__parameters:\n", settings))
+    (tmp_path / "spot.nc").write_text("G00 X[@P1]\nM29")
+    (tmp_path / "main.nc").write_text("G81[7]\nM30")
+    (tmp_path / "scenario.yaml").write_text("- {at: 2, to: channel, do: mdi, text: 'G81[-7]'}\n")
+    program = str(tmp_path / "main.nc")
+    assert called(["check", program, "--machine", str(machine), "--canonical"]) == 0
+    assert "1:N0 | rapid (7, 0, 0)" in capsys.readouterr().out
+    run = ["simulate", str(machine), "--program", program, "--scenario", str(tmp_path / "scenario.yaml")]
+    assert called([*run, "--record", str(recording)]) == 0
+    (tmp_path / "spot.nc").write_text("M29")
+    assert called(["replay", "--verify", str(recording)]) == 0
+    moved = read_recording(recording).states["/x/state"]["set_position"]
+    assert (max(moved), moved[-1]) == (7.0, -7.0)
+    (tmp_path / "main.nc").write_text("G84[7]\nM30")
+    capsys.readouterr()
+    assert called(["check", program, "--machine", str(machine)]) == 2
+    assert capsys.readouterr().err.splitlines()[0] == (
+        f"P-ERR-21598 {program} line 1 column 1 'G84[7]': G84 calls thread.nc (P-CHAN-00164), which is in no search "
+        "folder; put a program of this name beside the main one"
+    )
+
+
+def test_a_file_that_is_a_subroutine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`check --as-subroutine` executes it if it needs no @ parameters, else it is only read."""
+    file = tmp_path / "hole.nc"
+    for text, output in (
+        (
+            "G00 X[@P1] Y[@DEPTH]\nM29\n",
+            "hole.nc: no syntax errors in 2 lines; not executed without values of @DEPTH, @P1\n",
+        ),
+        ("G00 X1\nM17\n", "hole.nc: no errors in 2 lines\n"),
+    ):
+        file.write_text(text)
+        assert called(["check", str(file), "--as-subroutine"]) == 0
+        assert capsys.readouterr().out == output
+        assert called(["check", str(file)]) == 2
+        word = text.split()[-1]
+        error = f"P-ERR-21018 {file} line 2 column 1 '{word}': {word} ends a subroutine, but this is the main program"
+        printed = capsys.readouterr().err.splitlines()
+        assert printed[-4:] == [error, word, "^", "note: --as-subroutine checks a file that other programs call"]
+        assert called(["format", str(file)]) == 0
+        assert capsys.readouterr().out == text
+    file.write_text("G01 X1\nM29\n")
+    assert called(["check", str(file), "--as-subroutine"]) == 2
+    assert "P-ERR-20008 hole.nc line 1 column 1 'G01 X1'" in capsys.readouterr().err
+    file.write_text("G00 X1\nG77\n")
+    assert called(["check", str(file), "--as-subroutine"]) == 2
+    lines = [line for line in capsys.readouterr().err.splitlines() if line.startswith("P-ERR")]
+    assert [line.split()[0] for line in lines] == ["P-ERR-20131"]
+    assert called(["format", str(file)]) == 2
 
 
 def called(command: list[str]) -> int:

@@ -8,8 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nc_support import run
 
+from cnc_ptp.nc.arcs import extreme_points
+from cnc_ptp.nc.canonical import CircularMove
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.parameters import OffsetTables
+from cnc_ptp.path import Arc, Line
 
 lengths = st.integers(-9999, 9999).map(lambda n: n / 100.0)
 angles = st.integers(-360, 360).map(float)
@@ -195,3 +198,79 @@ def test_a_cycle_gives_its_caller_the_coordinates_back():
     text = "%L UP\nG92 X50\nG91 G70\nM29\n%MAIN\nLL CYCLE [NAME=UP]\nG00 X1\nLL UP\nX1\nM30"
     moves = [block.motion.target[0] for block in run(text) if block.motion]
     assert moves == [1.0, 26.4]
+
+
+ARCS = """G00 X10 Y0 Z5
+G03 X10 Y0 I-10 F600
+G02 X-10 Y0 Z2 I-10
+G19 G03 Y20 Z2 J10
+G18 G02 X-10 Z2 K5
+G91 G17 G03 X5 Y5 Z-1 R5"""
+"""Full circles, helices and arcs in all planes."""
+
+
+def elements(text: str) -> list[Arc | Line]:
+    """What the path makes of the motions of a program."""
+    found: list[Arc | Line] = []
+    position = (0.0, 0.0, 0.0)
+    for block in run(text):
+        move = block.motion
+        if isinstance(move, CircularMove):
+            shape = (move.center, move.plane, move.radius, move.sweep)
+            found.append(Arc(position, move.target, *shape, range(3), move.directions))
+        elif move is not None:
+            found.append(Line(position, move.target, range(3)))
+        position = move.target if move is not None else position
+    return found
+
+
+def on(element: Arc | Line, part: float) -> np.ndarray:
+    return np.array([state[0] for state in element.evaluate(part * element.length, 0.0, 0.0, 0.0)])
+
+
+@given(sixes, sixes, st.sampled_from(["", "G21", "G22", "G23", "#SCALE X0.5 Y0.5 Z0.5\n#SCALE ON"]), st.booleans())
+def test_arcs_in_tilted_systems_are_those_of_turned_points(outer, inner, change, fixture):
+    """Each arc of the run without systems, point by point: shifted, turned, mirrored and scaled."""
+    command = "#ACS" if fixture else "#CS"
+    text = f"{command} ON {listed(outer)}\n#CS ON [2] {listed(inner)}\n{change}\n{ARCS}"
+    (v1, r1), (v2, r2) = system(outer), system(inner)
+    changed = np.diag({"": (1, 1, 1), "G21": (-1, 1, 1), "G22": (1, -1, 1), "G23": (-1, -1, 1)}.get(change, (0.5,) * 3))
+    plain, tilted = elements(ARCS)[1:], elements(text)[1:]
+    assert len(plain) == len(tilted) == 5
+    for before, after in zip(plain, tilted, strict=True):
+        for part in np.linspace(0.0, 1.0, 13):
+            expected = v1 + r1 @ (v2 + r2 @ (changed @ on(before, part)))
+            np.testing.assert_allclose(
+                on(after, part), expected, atol=1e-9 * (1.0 + np.abs(v1).max() + np.abs(v2).max())
+            )
+
+
+@given(sixes, st.sampled_from(range(1, 6)))
+def test_extreme_points_of_tilted_arcs_are_those_of_many_samples(values, number):
+    text = f"#CS ON {listed(values)}\n{ARCS}"
+    arc = elements(text)[number]
+    move = [block.motion for block in run(text) if block.motion][number]
+    corners = np.array([arc.start, arc.target, *extreme_points(arc.start, move)])
+    samples = np.array([on(arc, part) for part in np.linspace(0.0, 1.0, 721)])
+    assert corners.min(axis=0) == pytest.approx(samples.min(axis=0), abs=1e-3)
+    assert corners.max(axis=0) == pytest.approx(samples.max(axis=0), abs=1e-3)
+    assert (corners.min(axis=0) <= samples.min(axis=0) + 1e-9).all()
+    assert (corners.max(axis=0) >= samples.max(axis=0) - 1e-9).all()
+
+
+def test_limits_count_for_the_highest_point_of_a_tilted_circle():
+    """A circle of radius 10 in a plane that is tilted by 30 deg about X reaches Z = ±5."""
+    text = "G98 Z{}\nG99 Z{}\n#CS ON [0, 0, 0, 30]\nG00 X10\nG03 X10 I-10 F600"
+    assert len(run(text.format(-5.001, 5.001))) == 2
+    with pytest.raises(ProgramError) as refused:
+        run(text.format(-6, 4.9))
+    reason = "axis Z: 5 mm lies beyond the software limit 4.9 mm of G99"
+    assert str(refused.value) == f"P-ERR-120002 test.nc line 5 column 1 'G03 X10 I-10 F600': {reason}"
+
+
+def test_inverse_time_feed_of_a_tilted_helix():
+    """G93 F10: 10 s for the length of the helix."""
+    (_, move) = (
+        block.motion for block in run("#CS ON [0,0,0,40,10,5]\nG00 X10\nG93 G03 X10 Z30 I-10 F10") if block.motion
+    )
+    assert move.feed == pytest.approx(math.hypot(20.0 * math.pi, 30.0) / 10.0, rel=1e-12)

@@ -224,3 +224,9 @@ def test_random_words_raise_nothing_but_program_errors(parts):
 def test_at_least_twenty_programs_are_in_the_style_of_cam_systems():
     programs = list((HERE / "golden").glob("cam_*.nc"))
     assert len(programs) >= 20 and sum("iso" in path.name for path in programs) >= 10
+
+
+def test_g28_goes_to_the_reference_point_of_the_axis():
+    blocks = run("G0 X5 Y5 Z5\nG91 G28 Z1\nG28 X0 Y0", dialect="iso", references=(1.5, -2.0, 40.0))
+    targets = [block.motion.target for block in blocks if block.motion]
+    assert targets == [(5.0, 5.0, 5.0), (5.0, 5.0, 6.0), (5.0, 5.0, 40.0), (1.5, -2.0, 40.0)]

@@ -186,6 +186,13 @@ ZERO = "zero list, P-ZERO-0000"
         ("interpreter.checked_text: -1", "25008 m.yaml:5:31: channel list, P-CHAN-90005 interpreter.checked_text of /ch: value -1 is below the minimum 0"),
         ("interpreter.blocks_per_cycle: 0", "25008 m.yaml:5:35: channel list, P-CHAN-90006 interpreter.blocks_per_cycle of /ch: value 0 is below the minimum 1"),
         ("interpreter.blocks_per_cycle: 1001", "25008 m.yaml:5:35: channel list, P-CHAN-90006 interpreter.blocks_per_cycle of /ch: value 1001 is above the maximum 1000"),
+        ("g81_prog_file: 5", "25007 m.yaml:5:20: channel list, P-CHAN-00161 g81_prog_file of /ch: value 5 is an integer, text is needed"),
+        ("g81_prog_file: ../up.nc", "25008 m.yaml:5:20: channel list, P-CHAN-00161 g81_prog_file of /ch: value '../up.nc' must be the name of a file without folder"),
+        ("g89_prog_file: ''", "25008 m.yaml:5:20: channel list, P-CHAN-00169 g89_prog_file of /ch: value '' must be the name of a file without folder"),
+        (f"g80_prog_file: {'a' * 84}", f"25008 m.yaml:5:20: channel list, P-CHAN-00160 g80_prog_file of /ch: value '{'a' * 56}... is longer than 83 characters"),
+        ("g90_prog_file: up.nc", "25005 m.yaml:5:20: channel /ch has no parameter 'g90_prog_file'; did you mean g89_prog_file (P-CHAN-00169)?"),
+        ("g81_prog_file: !!python/name:os.system up.nc", "25001 m.yaml:5:20: tags are not supported: !!python/name:os.system"),
+        ("g81_prog_file: !foo up.nc", "25001 m.yaml:5:20: tags are not supported: !foo"),
         ("interpreter.folders: cycles", "25007 m.yaml:5:26: channel list, P-CHAN-90004 interpreter.folders of /ch: value 'cycles' is text, a list of names is needed"),
     ],
 )  # fmt: skip

@@ -179,6 +179,11 @@ REFUSALS = {
     "offsets that are a number": ("5: {offsets: 3}", "25001 t:1:14: tool T5, offsets must be a mapping"),
     "a list of tools": ("- {length: 3}", "25001 t:1:1: a tool table is a mapping of T numbers"),
     "two documents": ("5: {}\n---\n6: {}", "25001 t:2:1: a tool table has one YAML document only"),
+    "a tag of a value": ("5: {length: !foo 3}", "25001 t:1:13: tags are not supported: !foo"),
+    "a tag of a tool": (
+        "5: !!python/object/apply:os.system {length: 3}",
+        "25001 t:1:4: tags are not supported: !!python/object/apply:os.system",
+    ),
     "no YAML": ("5: {length: 1", "25001 t:2:1: YAML syntax error, did not find expected ',' or '}'"),
 }
 

@@ -6,6 +6,7 @@ import math
 import random
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 from cnc_ptp.path import Arc, AxisLimits, Line
@@ -19,8 +20,11 @@ def random_axes(draw: random.Random, count: int = 3) -> list[AxisLimits]:
     ]
 
 
-def random_arc(draw: random.Random, radius: float, axes: int = 3) -> Arc:
-    """An arc or helix of up to two turns in one of the three planes, with its target on the circle."""
+def random_arc(draw: random.Random, radius: float, axes: int = 3, *, tilted: bool | None = None) -> Arc:
+    """An arc or helix of up to two turns in one of the three planes, with its target on the circle.
+
+    `tilted`: turned in space with its plane; None: every second one.
+    """
     first, second = draw.choice([(0, 1), (2, 0), (1, 2)])
     start = [draw.uniform(-100, 100) for _ in range(axes)]
     begin, sweep = draw.uniform(-math.pi, math.pi), draw.choice([-1, 1]) * draw.uniform(1.0, 700.0)
@@ -28,7 +32,20 @@ def random_arc(draw: random.Random, radius: float, axes: int = 3) -> Arc:
     target = [value + draw.choice([0.0, draw.uniform(-2.0, 2.0) * radius]) for value in start]
     target[first] = center[0] + radius * math.cos(begin + math.radians(sweep))
     target[second] = center[1] + radius * math.sin(begin + math.radians(sweep))
-    return Arc(start, target, center, (first, second), radius, sweep, range(3))
+    if not (draw.random() < 0.5 if tilted is None else tilted):
+        return Arc(start, target, center, (first, second), radius, sweep, range(3))
+    turn = random_rotation(draw)
+    start[:3], target[:3] = turn @ start[:3], turn @ target[:3]
+    directions = tuple([*turn[:, axis], *[0.0] * (axes - 3)] for axis in (first, second))
+    return Arc(start, target, center, (first, second), radius, sweep, range(3), directions)
+
+
+def random_rotation(draw: random.Random) -> np.ndarray:
+    """Right-handed or mirrored; sometimes about one axis alone."""
+    wanted = np.array([[draw.gauss(0, 1) for _ in range(3)] for _ in range(3)])
+    if draw.random() < 0.3:
+        wanted[0], wanted[:, 0] = (1.0, 0.0, 0.0), (1.0, 0.0, 0.0)
+    return np.linalg.qr(wanted)[0]
 
 
 def random_line(draw: random.Random, axes: int = 3) -> Line:
@@ -49,3 +66,8 @@ def draw_arc() -> Callable[..., Arc]:
 @pytest.fixture(scope="session")
 def draw_line() -> Callable[..., Line]:
     return random_line
+
+
+@pytest.fixture(scope="session")
+def draw_rotation() -> Callable[..., np.ndarray]:
+    return random_rotation

@@ -27,11 +27,12 @@ _SHORT_IF = re.compile(r"\$IF\b.*\$GOTO\b")
 def format_program(program: str, in_place: bool, check_only: bool, dialect: str = "twincat") -> int:
     """Prints the program, or writes it back; with `check_only` only says whether it would change (status 1).
 
-    A program with syntax errors is left alone: they are printed, status 2.
+    One with syntax errors, as a main program and as a subroutine, is left alone: they are printed, status 2.
     """
     text, files = read_program(program)
-    errors = parse_all(text, program, files=files, vocabulary=VOCABULARIES[dialect])[1]
-    if errors:
+    vocabulary = VOCABULARIES[dialect]
+    errors = parse_all(text, program, files=files, vocabulary=vocabulary)[1]
+    if errors and parse_all(text, program, files=files, vocabulary=vocabulary, subroutine=True)[1]:
         for error in errors:
             print_error(error)
         return WRONG_INPUT

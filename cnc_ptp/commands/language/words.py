@@ -88,12 +88,17 @@ def function_text(text: str) -> Explanation:
 
 
 def find(word: str, dialect: str = "twincat") -> list[Entry]:
-    """The entries of a word as somebody may type it: g1, G01, $if, #cs, sin. Raises CncError 26123."""
+    """The entries of a word as somebody may type it: g1, G01, $if, #cs, sin; #timer: all its commands.
+
+    Raises CncError 26123.
+    """
     wanted = normal(word)
     known = {normal(entry.name): entry for entry in entries(dialect)}
     if wanted in known:
         return [known[wanted]]
-    found = [entry for name, entry in known.items() if name.lstrip("#$") == wanted.lstrip("#$")]
+    plain = {name.lstrip("#$"): entry for name, entry in known.items()}
+    bare = wanted.lstrip("#$")
+    found = [plain[bare]] if bare in plain else [entry for name, entry in plain.items() if name.startswith(f"{bare} ")]
     if found:
         return found
     close = did_you_mean([known[name].name for name in nearest(wanted, known, most=3, cutoff=0.5)])

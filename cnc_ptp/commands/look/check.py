@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -13,12 +15,15 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
-from cnc_ptp.machine.program_files import read_program
-from cnc_ptp.machine.run_entries import program_folders
+from cnc_ptp.machine.program_files import NO_SEARCH, read_program
+from cnc_ptp.machine.run_entries import program_search
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.canonical_text import format_block
+from cnc_ptp.nc.faults import RETURN_IN_MAIN, ProgramError
+from cnc_ptp.nc.flow.calls import arguments_read
 from cnc_ptp.nc.flow.sections import Program
+from cnc_ptp.nc.flow.structures import Place
 from cnc_ptp.nc.interpreter import awaits_path, interpret
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.nc.parser import parse_all, parse_program
@@ -37,33 +42,59 @@ def check(
     canonical: bool = False,
     dialect: str | None = None,
     begin: StartPoint | None = None,
+    as_subroutine: bool = False,
 ) -> int:
     """Prints all syntax errors and the first modal one, and the warnings of the machine file.
 
     Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too, with `begin`
     those from the start point on. `dialect`: vocabulary of the program; None: that of the machine file, or twincat.
-    `begin`: prints what is done when the program starts there. Raises the errors of ProgramStart.
+    `begin`: prints what is done when the program starts there. `as_subroutine`: as if a program called the file.
+    Raises the errors of ProgramStart.
     """
     parameters = None if machine is None else read_machine(machine)
-    text, files = read_program(program, () if parameters is None else program_folders(parameters))
-    vocabulary = VOCABULARIES[dialect or "twincat"]
-    if parameters is None:
-        axes, spindles = AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE
-        errors = check_text(text, program, axes, spindles, files=files, vocabulary=vocabulary)
-    else:
+    search = NO_SEARCH if parameters is None else program_search(parameters)
+    text, files = read_program(program, search)
+    checked = None if parameters is None else ProgramCheck.of_first_channel(parameters, program)
+    if parameters is not None:
         print_notices(parameters)
-        checked = ProgramCheck.of_first_channel(parameters, program)
-        vocabulary = checked.vocabulary if dialect is None else vocabulary
-        errors = checked.errors(text, program, files, vocabulary)
+    own = VOCABULARIES["twincat"] if checked is None else checked.vocabulary
+    vocabulary = own if dialect is None else VOCABULARIES[dialect]
+    given: dict[str, Any] = {"files": files, "cycles": search.cycles, "vocabulary": vocabulary}
+    name, lines = Path(program).name, len(text.splitlines())
+    if as_subroutine:
+        subroutine, errors = parse_all(text, program, subroutine=True, **given)
+        read = sorted(arguments_read(subroutine, Place(subroutine.main.line, subroutine.main.offset)))
+        if errors or read or vocabulary is not VOCABULARIES["twincat"]:
+            return print_result(errors, f"{name}: no syntax errors in {lines} lines{without_values(read)}")
+        text, program, given["files"] = f"L CYCLE [NAME={name}]\nM30", "call of " + name, {**files, name: text}
+    errors = errors_of(text, program, checked, given)
     if begin is not None and not errors:
-        parsed = parse_program(text, program, files=files, vocabulary=vocabulary)
-        print_start(ProgramStart(begin, parsed), parameters, canonical=canonical)
+        print_start(ProgramStart(begin, parse_program(text, program, **given)), parameters, canonical=canonical)
     elif canonical:
-        print_stream(Stream(parse_all(text, program, files=files, vocabulary=vocabulary)[0], parameters).blocks())
+        print_stream(Stream(parse_all(text, program, **given)[0], parameters).blocks())
+    return print_result(errors, "" if canonical or begin is not None else f"{name}: no errors in {lines} lines")
+
+
+def errors_of(text: str, program: str, checked: ProgramCheck | None, given: dict[str, Any]) -> list[ProgramError]:
+    """Of a program with its `files`, `cycles` and `vocabulary`."""
+    if checked is None:
+        return check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, **given)
+    return checked.errors(text, program, given["files"], given["vocabulary"])
+
+
+def without_values(arguments: Sequence[str]) -> str:
+    """Why a subroutine was not executed."""
+    return f"; not executed without values of {', '.join(f'@{name}' for name in arguments)}" if arguments else ""
+
+
+def print_result(errors: Sequence[ProgramError], good: str) -> int:
+    """Prints the errors, or what is to be said without any; the status of the command."""
     for error in errors:
         print_error(error)
-    if not errors and not canonical and begin is None:
-        print(f"{Path(program).name}: no errors in {len(text.splitlines())} lines")
+        if error.number == RETURN_IN_MAIN.number:
+            print("note: --as-subroutine checks a file that other programs call", file=sys.stderr)
+    if good and not errors:
+        print(good)
     return WRONG_INPUT if errors else 0
 
 

@@ -44,12 +44,17 @@ def select_offset(channel: Channel, state: ModalState, index: int) -> None:
 def use_offset(channel: Channel, coordinates: Coordinates, index: int) -> None:
     """The change alone; the frame follows from it."""
     zero: Offsets = ()
-    if index or channel.offsets.g53:
+    if has_offset(channel, index):
         changes = coordinates.changes
         inactive = inactive_axes(channel, changes, index)
         values = offset_values(channel, changes, index)
         zero = tuple([0.0 if place in inactive else value for place, value in enumerate(values)])
     coordinates.own = coordinates.own._replace(zero_index=index, zero=zero)
+
+
+def has_offset(channel: Channel, index: int) -> bool:
+    """Index 0 (G53) has one on machines with P-ZERO-00001."""
+    return index > 0 or channel.offsets.g53
 
 
 def offset_values(channel: Channel, changes: OffsetChanges, index: int) -> Offsets:
@@ -87,6 +92,8 @@ def initial_coordinates(channel: Channel, changes: OffsetChanges, clamp_index: i
 def offset_activity(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> tuple[Function, ...]:
     """G160=2 X1 Y0: zero offset 2 does not count for X, but for Y, when it is selected next."""
     index = offset_index(block, code)
+    if not has_offset(channel, index):
+        raise faults.NO_OFFSET_OF_G53.at(block.source, block.source.column(code.name), word=f"{code.name}=0")
     changes = state.coordinates.changes
     places = set(inactive_axes(channel, changes, index))
     for place, value in axis_values(channel, state, block, code, scaled=False):

@@ -3,6 +3,7 @@
 from cnc_ptp.nc.faults import Fault
 
 OFFSET_INDEX = Fault(21600, "zero offset {index} does not exist: {word}=0 to {word}={limit}")
+NO_OFFSET_OF_G53 = Fault(21622, "{word}: G53 selects no zero offset, so that index 0 has no values (P-ZERO-00001)")
 AXES_MISSING = Fault(21602, "{word} without an axis")
 ROTATION_PLANE = Fault(21603, "{word} needs the axes {needed} of plane {plane}; axes of this channel: {known}")
 MAIN_AXIS_MISSING = Fault(21604, "{word} moves axis {axis}, which this channel does not have")
@@ -10,7 +11,6 @@ SCALE_FACTOR = Fault(21605, "scale {value} of axis {axis} must be greater than 0
 SCALE_ACTIVE = Fault(21606, "#SCALE with factors while it is on; #SCALE OFF first")
 SCALE_ROTARY = Fault(21607, "axis {axis} is rotary and is not scaled")
 SCALED_ARC = Fault(21608, "the arc would be an ellipse: axes {first} and {second} have different scales")
-TILTED_ARC = Fault(21609, "arcs in a coordinate system that is turned out of the plane {plane} are not available yet")
 SYSTEM_NUMBER = Fault(21610, "coordinate system {number} must be an integer from 1 to {limit}")
 SYSTEM_UNKNOWN = Fault(21611, "{command} {number} was not defined with {command} DEF or ON before")
 SYSTEM_VALUES = Fault(21612, "{command} takes up to six values: shift of X, Y, Z in mm, rotation about X, Y, Z in deg")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.degrees import cosine, sine
 
@@ -10,6 +10,8 @@ Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+LEAST: Final = 1e-12
+"""Smaller parts of a matrix are rounding."""
 SAME: Final = 1e-9
 """mm: an axis that is moved by less because of rounding stays where it is."""
 
@@ -98,21 +100,52 @@ class Frame:
                 result[index] = value
         return tuple(result)
 
-    def in_plane(self, first: int, second: int) -> tuple[float, float, bool] | None:
-        """Scales of the two axes of a plane and whether it is turned over, if it stays the same plane; else None.
-
-        `first`, `second`: places of the axes. The two scales differ where circles become ellipses.
-        """
+    def circle(self, first: int, second: int) -> "Circle | None":
+        """What becomes of circles in the plane of these axes; None where they become ellipses or lie askew."""
         if not self.turned:
-            return 1.0, 1.0, False
+            return AS_IT_IS
         a, b = self.main.index(first), self.main.index(second)
-        c = 3 - a - b
-        out_of_plane = (self.linear[c][a], self.linear[c][b], self.linear[a][c], self.linear[b][c])
-        if any(abs(value) > 1e-12 for value in out_of_plane):
+        u, v, normal = (tuple([row[k] for row in self.linear]) for k in (a, b, 3 - a - b))
+        scale = math.hypot(*u)
+        if (
+            abs(math.hypot(*v) - scale) > LEAST * scale
+            or not square(u, v)
+            or not square(u, normal)
+            or not square(v, normal)
+        ):
             return None
-        u = (self.linear[a][a], self.linear[b][a])
-        v = (self.linear[a][b], self.linear[b][b])
-        sheared = abs(u[0] * v[0] + u[1] * v[1]) > 1e-12
-        lengths = math.hypot(*u), math.hypot(*v)
-        over = u[0] * v[1] - u[1] * v[0] < 0.0
-        return lengths[0], math.inf if sheared else lengths[1], over
+        if all(abs(value) <= LEAST * scale for value in (u[3 - a - b], v[3 - a - b])):
+            return Circle(scale, u[a] * v[b] - u[b] * v[a] < 0.0, None)
+        return Circle(scale, False, (self._direction(u, scale), self._direction(v, scale)))
+
+    def _direction(self, main: Sequence[float], length: float) -> tuple[float, ...]:
+        """A vector of the main axes as one of all axes, with length 1."""
+        result = [0.0] * len(self.shift)
+        for index, value in zip(self.main, main, strict=True):
+            if index >= 0:
+                result[index] = value / length
+        return tuple(result)
+
+
+def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return sum([p * q for p, q in zip(a, b, strict=True)])
+
+
+def square(a: Sequence[float], b: Sequence[float]) -> bool:
+    """At right angles to each other."""
+    return abs(dot(a, b)) <= LEAST * math.hypot(*a) * math.hypot(*b)
+
+
+class Circle(NamedTuple):
+    """A circle of the programmed plane in machine coordinates.
+
+    over         it turns the other way round
+    directions   of the axes of its plane in the machine; None if it stays in its plane
+    """
+
+    scale: float
+    over: bool
+    directions: tuple[tuple[float, ...], tuple[float, ...]] | None
+
+
+AS_IT_IS: Final = Circle(1.0, False, None)

@@ -3,8 +3,10 @@
 An axis that does not move may be beyond a limit that came later.
 """
 
+from collections.abc import Collection, Sequence
+
 from cnc_ptp.nc.arcs import extreme_points
-from cnc_ptp.nc.canonical import CircularMove, LinearMove
+from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock
 
@@ -12,12 +14,22 @@ from cnc_ptp.nc.program import Channel, ModalState, NcBlock
 def check_limits(channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove | CircularMove) -> None:
     """Raises ProgramError 120002 / 120003 for a motion (machine coordinates) beyond a limit of G98 or G99."""
     points = [motion.target]
+    moving = moving_axes(state.position, motion.target)
     if isinstance(motion, CircularMove):
         points += extreme_points(state.position, motion)
-    ends = zip(motion.target, state.position, strict=True)
-    moving = {place for place, (target, position) in enumerate(ends) if target != position}
-    if isinstance(motion, CircularMove):
-        moving.update(motion.plane)
+        moving.update(index for index in range(len(channel.axes)) if motion.turns(index))
+    require_within(channel, state, points, moving, block.source)
+
+
+def moving_axes(start: tuple[float, ...], target: tuple[float, ...]) -> set[int]:
+    """Places of the axes that a straight motion moves."""
+    return {place for place, (a, b) in enumerate(zip(start, target, strict=True)) if a != b}
+
+
+def require_within(
+    channel: Channel, state: ModalState, points: Sequence[tuple[float, ...]], moving: Collection[int], source: Source
+) -> None:
+    """Raises ProgramError 120002 / 120003 if one of the `moving` axes is beyond a limit of G98 or G99 in a point."""
     for index, (low, high) in (state.coordinates.limits or {}).items():
         for point in points:
             if low <= point[index] <= high or index not in moving:
@@ -25,4 +37,4 @@ def check_limits(channel: Channel, state: ModalState, block: NcBlock, motion: Li
             name = channel.axes[index]
             fault, limit = (faults.LIMIT_POSITIVE, high) if point[index] > high else (faults.LIMIT_NEGATIVE, low)
             values = {"axis": name, "unit": "deg" if name in channel.rotary else "mm", "limit": f"{limit:g}"}
-            raise fault.at(block.source, block.source.column(name), position=f"{point[index]:g}", **values)
+            raise fault.at(source, source.column(name), position=f"{point[index]:g}", **values)

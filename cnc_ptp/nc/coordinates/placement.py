@@ -2,6 +2,7 @@
 
 from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
+from cnc_ptp.nc.coordinates.frame import dot
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock
 
 
@@ -16,21 +17,20 @@ def place(
     if isinstance(motion, LinearMove):
         return motion._replace(target=target)
     first, second = motion.plane
-    scales = frame.in_plane(first, second)
-    code = next((code.name for code in block.codes if code.motion is not None), "")
-    column = block.source.column(code) if code else 1
-    if scales is None:
-        plane = f"G{state.plane}"
-        raise faults.TILTED_ARC.at(block.source, column, plane=plane)
-    if abs(scales[0] - scales[1]) > 1e-12:
+    circle = frame.circle(first, second)
+    if circle is None:
+        code = next((code.name for code in block.codes if code.motion is not None), "")
         names = {"first": channel.axes[first], "second": channel.axes[second]}
-        raise faults.SCALED_ARC.at(block.source, column, **names)
+        raise faults.SCALED_ARC.at(block.source, block.source.column(code) if code else 1, **names)
     centre = list(motion.target)
     centre[first], centre[second] = motion.center
     placed = frame.to_machine(centre)
-    sweep = -motion.sweep if scales[2] else motion.sweep
+    sweep = -motion.sweep if circle.over else motion.sweep
+    center = placed[first], placed[second]
+    if circle.directions is not None:
+        center = dot(placed, circle.directions[0]), dot(placed, circle.directions[1])
     return motion._replace(
-        target=target, center=(placed[first], placed[second]), radius=motion.radius * scales[0], sweep=sweep
+        target=target, center=center, radius=motion.radius * circle.scale, sweep=sweep, directions=circle.directions
     )
 
 

@@ -76,12 +76,14 @@ class Parameter(Node):
     def value(self, values: Values) -> float:
         found = values.parameters.get(self.index)
         if found is None:
+            values.require_parameter(self.index, self.column)
             raise values.fault(faults.PARAMETER_UNSET, self.column, name=f"P{self.index}")
         return found
 
     def assign(self, values: Values, value: Scalar) -> None:
         if isinstance(value, str):
             raise values.fault(faults.NUMBER_EXPECTED, self.column, what=f"the value of P{self.index}")
+        values.require_parameter(self.index, self.column)
         values.parameters[self.index] = value
 
 

@@ -6,7 +6,8 @@ Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables.
 from collections.abc import Callable
 from typing import Final
 
-from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, default_offset, offset_values
+from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, default_offset, has_offset, offset_values
+from cnc_ptp.nc.coordinates.coordinate_faults import NO_OFFSET_OF_G53
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.reading import Reading, Units, axis_of, in_mm, length
@@ -49,6 +50,12 @@ def table_index(values: Values, unit: Scalar, column: int) -> int:
     return int(unit)
 
 
+def require_offset(values: Values, index: int, word: str, column: int) -> None:
+    """Raises ProgramError 21622 for values of index 0 on a machine without an offset of G53."""
+    if not has_offset(values.channel, index):
+        raise values.fault(NO_OFFSET_OF_G53, column, word=word)
+
+
 def zero_offset(values: Values, units: Units, column: int) -> Scalar:
     """V.G.NP[j].V.X."""
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
@@ -58,6 +65,7 @@ def zero_offset(values: Values, units: Units, column: int) -> Scalar:
 def set_zero_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
     """It acts when the offset is selected next, as the vendor has it."""
     index, axis = table_index(values, units[0], column), axis_of(values, units[1], column)
+    require_offset(values, index, "V.G.NP[0]", column)
     table = list(offset_values(values.channel, values.state.coordinates.changes, index))
     table[axis] = in_mm(values, axis, value, column)
     changes = values.state.coordinates.changes
@@ -73,6 +81,7 @@ def active_offset(values: Values, units: Units, column: int) -> Scalar:
 def set_active_offset(values: Values, units: Units, value: Scalar, column: int) -> None:
     """Lost when a zero offset is selected next."""
     axis, own = axis_of(values, units[0], column), values.state.coordinates.own
+    require_offset(values, own.zero_index, "V.G.NP_AKT", column)
     zero = list(own.zero or (0.0,) * len(values.channel.axes))
     zero[axis] = in_mm(values, axis, value, column)
     values.state.coordinates.own = own._replace(zero=tuple(zero))

@@ -44,7 +44,7 @@ from cnc_ptp.nc.expressions.nodes import (
 from cnc_ptp.nc.expressions.readable import READABLE, all_names, forms
 from cnc_ptp.nc.expressions.reading import Reading
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, SCOPES, in_words
-from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.faults import NUMBER_TOO_LONG, Fault, ProgramError
 
 Assignable = Parameter | ComputedParameter | SelfDefined | Readable
 
@@ -61,7 +61,9 @@ _OPERATORS: Final = {
 }  # fmt: skip
 _OPERATOR = re.compile(r"\s*(\*\*|\|\||&&|[=!<>]=|[-+*/<>|^&]|(?:MOD|AND|OR|XOR)(?![A-Z0-9_]))", re.ASCII)
 _BLANK = re.compile(r"\s*", re.ASCII)
-_NUMBER = re.compile(r"(?:\d{1,15}+(?:\.\d*+)?+|\.\d++)(?![\d.])", re.ASCII)
+MOST_DIGITS: Final = 15
+_TOO_LONG = re.compile(rf"\d{{{MOST_DIGITS + 1}}}", re.ASCII)
+_NUMBER = re.compile(rf"(?:\d{{1,{MOST_DIGITS}}}+(?:\.\d*+)?+|\.\d++)(?![\d.])", re.ASCII)
 _CODED = re.compile(r"'\s*(?:H\s*([0-9A-F]{1,13})|B\s*([01]{1,53}))\s*'", re.ASCII)
 _PARAMETER = re.compile(r"P\s*(?:(\d+)(?![\d.])|(?=P\s*[\d\[P]|\[))", re.ASCII)
 _VARIABLE = re.compile(r"V\s*\.\s*[A-Z_]+\s*\.\s*[-+]?[A-Z_@][A-Z0-9_]*", re.ASCII)
@@ -135,6 +137,8 @@ class ExpressionReader:
     def operand_missing(self, at: int) -> ProgramError:
         """The error of something that is no value, or of nothing."""
         word = self.word()
+        if _TOO_LONG.match(self.line, self.at):
+            return self.fault(NUMBER_TOO_LONG, at, word=word, limit=MOST_DIGITS)
         return self.fault(faults.OPERAND_MISSING, at, word=word) if word else self.fault(faults.OPERAND_END, at)
 
     def equals(self, at: int) -> ProgramError:

@@ -91,6 +91,8 @@ class Values:
         self.timers: dict[int, float] = {}
         """V.G.TIMER, ms."""
         self.parameters: dict[int, float] = {}
+        self.arrays: frozenset[int] = frozenset()
+        """Numbers of the P parameters that are arrays; these are in `program`."""
         self.program: dict[str, Variable] = {}
         self.shared: dict[str, Variable] = {}
         self.local: dict[str, Variable] = {}
@@ -105,7 +107,7 @@ class Values:
     def copy(self, state: ModalState) -> "Values":
         """Independent, with the copy of the modal state, so that a refused MDI text changes nothing."""
         other = Values(self.channel, state)
-        other.parameters = dict(self.parameters)
+        other.parameters, other.arrays = dict(self.parameters), self.arrays
         other.timers = dict(self.timers)
         other.arguments = dict(self.arguments)
         other.program, other.shared = copies(self.program), copies(self.shared)
@@ -125,6 +127,7 @@ class Values:
     def begin_program(self) -> None:
         """What belongs to one program begins anew; V.S. stays."""
         self.parameters, self.program, self.local, self.cycle, self.arguments = {}, {}, {}, {}, {}
+        self.arrays = frozenset()
         self.count = sum(len(variable.values) for variable in self.shared.values())
 
     def scope(self, name: str) -> dict[str, Variable]:
@@ -163,8 +166,12 @@ class Values:
         type: str = "",
         longest: int = 0,
     ) -> None:
-        """Makes a variable."""
+        """Makes a variable. Raises ProgramError 21443 for an array P10 beside a parameter P10."""
         self.reserve(len(values), name, column)
+        if name.startswith("P"):
+            if int(name[1:]) in self.parameters:
+                raise self.fault(faults.PARAMETER_AND_ARRAY, column, name=name)
+            self.arrays |= {int(name[1:])}
         self.count += len(values)
         self.scope(name)[name] = Variable(name, dimensions, values, type, longest)
 
@@ -200,6 +207,8 @@ class Values:
             raise self.fault(faults.DELETED_OF_CALLER, column, name=name)
         self.count -= len(scope[name].values)
         del scope[name]
+        if name.startswith("P"):
+            self.arrays -= {int(name[1:])}
 
     def leave(self, local: dict[str, Variable], cycle: dict[str, Variable], arguments: dict[str, Scalar]) -> None:
         """Back to the values of the caller."""
@@ -207,6 +216,11 @@ class Values:
         own = [variable for name, variable in self.cycle.items() if name not in cycle]
         self.count -= sum(len(variable.values) for variable in own)
         self.local, self.cycle, self.arguments = local, cycle, arguments
+
+    def require_parameter(self, index: int, column: int) -> None:
+        """Raises ProgramError 21431 for P10 without an index if it is an array."""
+        if index in self.arrays:
+            self.place(self.program[f"P{index}"], [], column)
 
     def place(self, variable: Variable, indices: list[float], column: int) -> int:
         """Where the element of an array is among its values."""

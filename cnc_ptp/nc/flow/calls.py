@@ -32,7 +32,8 @@ def call_of(token: Token, source: Source) -> Call:
     if not local and ("/" in token.name or "\\" in token.name or token.name.startswith(".")):
         raise faults.FILE_FOLDER.at(source, token.column, name=token.name)
     modal = cycle[1] if len(cycle) > 1 else ""
-    return Call(token.name, token.column, arguments, local=local, cycle=bool(cycle), modal=modal)
+    by_code = scope == "G"
+    return Call(token.name, token.column, arguments, local=local, cycle=bool(cycle), modal=modal, by_code=by_code)
 
 
 def check_arguments(call: Call, source: Source, program: Program, place: Place) -> None:

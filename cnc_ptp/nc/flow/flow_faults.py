@@ -53,6 +53,11 @@ CYCLE_WORD = Fault(
     21591, "'{word}' is not available in a cycle call; there are NAME=..., @P1=..., MODAL_MOVE and MODAL_BLOCK"
 )
 FILE_FOLDER = Fault(21592, "{name}: programs are called by their name alone, they are looked for in the search folders")
+CALL_BRACKET = Fault(21597, "parameters need a cycle call: {scope} CYCLE [NAME={name} @P1=...]")
+CYCLE_FILE = Fault(
+    21598,
+    "{g} calls {file} ({parameter}), which is in no search folder; put a program of this name beside the main one",
+)
 FILE_UNKNOWN = Fault(21586, "no program {name} in the search folders{nearest}")
 DECLARATION = Fault(20908, "'{word}' between #VAR and #ENDVAR: only V.P., V.L., V.S., V.CYC. and P are declared")
 DECLARATION_LIST = Fault(21587, "the first values of the array {name} need brackets: = [1, 2, 3]")

@@ -58,7 +58,7 @@ class Call:
     """A call of a subroutine at the end of its line: `name`, of this file (`local`) or of another one.
 
     `arguments`: @ parameters by name; `cycle`: the called program leaves the modal state as it was; `modal`: "" once,
-    "MODAL_MOVE" after each motion, "MODAL_BLOCK" after each block; `count`: how often.
+    "MODAL_MOVE" after each motion, "MODAL_BLOCK" after each block; `count`: how often; `by_code`: `name` is G80 to G89.
     """
 
     def __init__(
@@ -71,9 +71,11 @@ class Call:
         cycle: bool,
         modal: str,
         count: int = 1,
+        by_code: bool = False,
     ) -> None:
         self.name, self.column, self.arguments = name, column, arguments
         self.local, self.cycle, self.modal, self.count = local, cycle, modal, count
+        self.by_code = by_code
         self.synchronises = False
         """Its arguments read what only the run knows."""
 

@@ -39,6 +39,16 @@ class Section(NamedTuple):
         return f"{self.kind} {self.name}".rstrip()
 
 
+def cycle_file(code: str, cycles: Mapping[str, str]) -> str:
+    """The program that G80 … G89 call: that of `cycles`, else g80.nc … g89.nc."""
+    return cycles.get(code) or f"{code.lower()}.nc"
+
+
+def cycle_parameter(code: str) -> str:
+    """P-CHAN-00160 … P-CHAN-00169 name the programs of G80 … G89."""
+    return f"P-CHAN-001{code[1:].replace('8', '6', 1)}"
+
+
 class Program:
     """A parsed file.
 
@@ -48,6 +58,7 @@ class Program:
     structure_of    by number of the line that opens, divides, closes or leaves a structure
     targets         where the $GOTO of a line leads to, or why it leads nowhere
     library         the other files that it may call, by upper-case name
+    cycles          files of G80 to G89 by code, where they are not g80.nc to g89.nc
     lines           number of its last line
     streamed        it is read while it is executed (StreamedProgram)
     """
@@ -63,6 +74,7 @@ class Program:
         self.targets: dict[int, Place | ProgramError] = {}
         self.kept: list[Line | None] = [None]
         self.library: Mapping[str, Program] = {}
+        self.cycles: Mapping[str, str] = {}
         self.special: dict[int, Line] = {}
         """Lines that hold more than their text says: declarations, comments of several lines."""
         self.arguments_read: dict[int, frozenset[str]] = {}
@@ -117,7 +129,7 @@ class Program:
 
     def called(self, call: Call, source: Source) -> tuple[Program, Place]:
         """The program and the place of its first line. Raises ProgramError when it is not there."""
-        name = call.name.upper()
+        name = cycle_file(call.name, self.cycles).upper() if call.by_code else call.name.upper()
         if call.local:
             section = self.subroutines.get(name)
             if section is None:
@@ -125,6 +137,9 @@ class Program:
                 raise faults.UNKNOWN_SUBROUTINE.at(source, call.column, name=call.name, known=known)
             return self, Place(section.line, section.offset)
         program = self.library.get(name)
+        if program is None and call.by_code:
+            file, parameter = cycle_file(call.name, self.cycles), cycle_parameter(call.name)
+            raise flow_faults.CYCLE_FILE.at(source, call.column, g=call.name, file=file, parameter=parameter)
         if program is None:
             nearest = nearest_name(name, list(self.library))
             raise flow_faults.FILE_UNKNOWN.at(source, call.column, name=call.name, nearest=nearest)

@@ -33,6 +33,8 @@ class Assignment(Statement):
 
     def assign(self, values: Values) -> None:
         if self.parameter >= 0:
+            if values.arrays:
+                values.require_parameter(self.parameter, self.target.column)
             values.parameters[self.parameter] = self.value.value(values)
         else:
             self.target.assign(values, self.value.scalar(values))

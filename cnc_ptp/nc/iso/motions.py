@@ -60,12 +60,13 @@ def require_axes(channel: Channel, state: ModalState, block: NcBlock, code: GCod
 def reference_point(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove:
     """G28: the axes of the block at rapid speed to the intermediate point, from there to the reference point."""
     target = motions.target_of(channel, state, block, code) or state.programmed
-    state.following = _to_reference(state, [channel.axis_index[word] for word in block.words if word in channel.axes])
+    axes = [channel.axis_index[word] for word in block.words if word in channel.axes]
+    state.following = _to_reference(channel, state, axes)
     return LinearMove(tuple(target), True, 0.0)
 
 
-def _to_reference(state: ModalState, axes: list[int]) -> Iterator[Step]:
+def _to_reference(channel: Channel, state: ModalState, axes: list[int]) -> Iterator[Step]:
     target = list(state.position)
     for axis in axes:
-        target[axis] = 0.0
+        target[axis] = channel.references[axis] if channel.references else 0.0
     yield Step(LinearMove(tuple(target), True, 0.0), machine=True)

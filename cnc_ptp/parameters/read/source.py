@@ -1,7 +1,8 @@
 """Text of a ROS parameters file -> sections with flat parameter names, values and places.
 
 Works on the events of the YAML parser, so that every value keeps its line and column, duplicates are found, and
-any input, however deep or odd, gives at most a Problem. Anchors and aliases are refused, as ROS refuses them.
+any input, however deep or odd, gives at most a Problem. Anchors and aliases are refused, as ROS refuses them, and so
+are tags (!!str, !!python/…), which would say what the declarations say.
 """
 
 import re
@@ -59,7 +60,7 @@ def read_events(reader: "Reader", text: str) -> None:
     """Reads a whole text, or up to what cannot be read."""
     file = reader.file
     try:
-        reader.read_file(yaml.parse(text, Loader=yaml_text.PARSER))
+        reader.read_file(reader.without_tags(yaml.parse(text, Loader=yaml_text.PARSER)))
     except Refused as refusal:
         reader.problems.append(refusal.args[0])
     except yaml.MarkedYAMLError as error:
@@ -81,6 +82,15 @@ class Reader:
         self.file = file
         self.sections: list[Section] = []
         self.problems: list[Problem] = []
+
+    def without_tags(self, events: Iterator[Any]) -> Iterator[Any]:
+        """The events; a tag is refused."""
+        for event in events:
+            tag = getattr(event, "tag", None)
+            if tag is not None:
+                shown = tag.replace("tag:yaml.org,2002:", "!!")
+                raise self.refusal(event, f"tags are not supported: {shown}")
+            yield event
 
     def read_file(self, events: Iterator[Any]) -> None:
         for event in events:

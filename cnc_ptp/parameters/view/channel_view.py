@@ -104,6 +104,8 @@ class ChannelParameters:
     blocks_per_cycle: Annotated[int, ids.INTERPRETER_BLOCKS_PER_CYCLE] = 10
     folders: tuple[str, ...] = ()
     """In which called programs are looked for besides that of the main program (P-CHAN-90004)."""
+    cycles: Mapping[str, str] = field(default_factory=dict)
+    """Programs that G80 to G89 call, by code, where the machine file names them (P-CHAN-00160 … 00169)."""
     dialect: str = "twincat"
     """Vocabulary of its programs: twincat or iso (P-CHAN-90010)."""
     transition: Annotated[int, ids.PROG_START_TRANSITION] = 359
@@ -137,6 +139,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         tool_table=tool_table(channel, sets),
         slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),
         offsets=offset_tables(channel, len(axes)),
+        cycles=cycles(channel),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),
     )
@@ -188,6 +191,26 @@ def tool_limits(channel: ParameterSet, spindles: Sequence[ChannelAxisEntry]) -> 
 def limit(channel: ParameterSet, number: str, tool: int) -> float | None:
     """A limit of a tool in kernel units; None if it is not given."""
     return channel.kernel(number, tool) if channel.is_given(number, tool) else None
+
+
+CYCLE_PARAMETERS = (
+    ids.G80_PROG_FILE,
+    ids.G81_PROG_FILE,
+    ids.G82_PROG_FILE,
+    ids.G83_PROG_FILE,
+    ids.G84_PROG_FILE,
+    ids.G85_PROG_FILE,
+    ids.G86_PROG_FILE,
+    ids.G87_PROG_FILE,
+    ids.G88_PROG_FILE,
+    ids.G89_PROG_FILE,
+)
+
+
+def cycles(channel: ParameterSet) -> dict[str, str]:
+    """Programs of G80 … G89 that the file names."""
+    codes = enumerate(CYCLE_PARAMETERS, 80)
+    return {f"G{code}": channel.text(parameter) for code, parameter in codes if channel.is_given(parameter)}
 
 
 def m_functions(channel: ParameterSet) -> dict[int, Synchronisation]:

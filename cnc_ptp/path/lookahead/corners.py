@@ -181,9 +181,7 @@ def deviation(
 
 def fourth_derivative(element: Curve, axis: int) -> float:
     """Largest |q4| of an axis."""
-    if isinstance(element, Arc) and axis in element.plane:
-        return element.radius * element.rate * element.rate * element.rate * element.rate
-    return 0.0
+    return element.fourth_derivative(axis) if isinstance(element, Arc) else 0.0
 
 
 def largest_distance(factors: Parts, tolerance: float) -> float:

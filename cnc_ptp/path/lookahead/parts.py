@@ -145,10 +145,10 @@ class Division(NamedTuple):
         if index < len(self.head):
             return self.head[index] if index >= 0 else 0.0
         index -= len(self.head)
-        if index + 1 == self.equal:
-            return self.begin + self.length  # without rounding: it may be the end of the part
-        if index < self.equal:
+        if index < self.equal - 1:
             return self.begin + self.length * (index + 1) / self.equal
+        if index == self.equal - 1:
+            return self.begin + self.length  # exactly: the path ends where the last cell does
         return self.tail[index - self.equal]
 
 

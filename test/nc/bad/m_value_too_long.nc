@@ -1,0 +1,3 @@
+; P-ERR-21004 m_value_too_long.nc line 2 column 5 'M52=9999999999999999999999999999': number '9999999999999999999999999999' has more than 15 digits before the decimal point
+M52=9999999999999999999999999999
+M30

@@ -1,0 +1,49 @@
+"""The cycles that ship: what they refuse, and the motions of each, computed by hand."""
+
+import pytest
+from nc_support import HERE, lines
+
+from cnc_ptp.machine.program_files import called_programs
+
+BEFORE = "M03 S100\nG00 Z5\nG01 F600\n"
+
+
+def cycle(call: str) -> list[str]:
+    """The blocks behind `call`, at Z5, with feed 10 mm/s."""
+    return lines(f"{BEFORE}{call}\nM30", files=called_programs(call, [str(HERE / "library")]))[2:-1]
+
+
+@pytest.mark.parametrize("code", [81, 82, 83, 85, 86, 89])
+@pytest.mark.parametrize(("depth", "plane"), [("5", "2"), ("2", "2"), ("-3", "-4")])
+def test_a_depth_above_the_retract_plane_is_refused(code: int, depth: str, plane: str) -> None:
+    third = ", 1" if code in (82, 83, 89) else ""
+    reason = f"PM1 = depth is not below the retract plane, PV1 = {depth}, PV2 = {plane}"
+    assert cycle(f"G{code}[{depth}, {plane}{third}]") == [f"error {code} '#ERROR {code} of the program: {reason}'"]
+
+
+@pytest.mark.parametrize("peck", ["0", "-1"])
+def test_deep_drilling_needs_a_peck_depth(peck: str) -> None:
+    text = f"#ERROR 83 of the program: PM1 = peck depth is not above 0, PV1 = {peck}"
+    assert cycle(f"G83[-5, 2, {peck}]") == [f"error 83 '{text}'"]
+
+
+def z(*moves: float | str) -> list[str]:
+    """Rapid moves, and with an F behind the number those at the feed."""
+    return [
+        f"line (0, 0, {move[:-1]}) feed 10" if isinstance(move, str) else f"rapid (0, 0, {move:g})" for move in moves
+    ]
+
+
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ("G81[-4, 2]", z(2, "-4F", 2)),
+        ("G82[-4, 2, 0.5]", [*z(2, "-4F"), "dwell 0.5 s", *z(2)]),
+        ("G83[-5, 2, 3]", z(2, "-1F", 2, -0.5, "-4F", 2, -3.5, "-5F", 2)),
+        ("G85[-4, 2]", z(2, "-4F", "2F")),
+        ("G86[-4, 2]", [*z(2, "-4F"), "S[M5]", *z(2), "S[M3 REV100]"]),
+        ("G89[-4, 2, 0.2]", [*z(2, "-4F"), "dwell 0.2 s", *z("2F")]),
+    ],
+)
+def test_motions(call: str, expected: list[str]) -> None:
+    assert cycle(call) == expected
