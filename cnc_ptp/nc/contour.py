@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from cnc_ptp.parameters import ChannelParameters
+if TYPE_CHECKING:
+    from cnc_ptp.parameters import ChannelParameters
 
 DEV: Final = "DEV"
 """The distance to the programmed path is given."""

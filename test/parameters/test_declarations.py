@@ -21,6 +21,7 @@ PREFIXES = {
     "machine": "P-MACH-",
 }
 UNITS = {
+    "0.1 µm or 0.0001°",
     *(
         "",
         "0.1 µm",

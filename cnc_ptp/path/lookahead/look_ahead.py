@@ -306,7 +306,7 @@ class LookAhead:
         return None if following is None or following.kind != BETWEEN else (piece, following)
 
     def _from_knot(self, following: PathPiece, cells: Sequence[PathCell]) -> tuple[MovingStart, list[PathCell]]:
-        """The state at the begin of a piece, and the cells from there on, of which the first has no length."""
+        """The state at the start of a piece, and the cells from there on, of which the first has no length."""
         start = MovingStart(following.u, following.velocity * following.velocity, 2.0 * following.acceleration)
         ahead = [cell for cell in cells if cell.middle > following.u]
         return start, [cell.part(following.u, following.u) for cell in ahead[:1]] + ahead

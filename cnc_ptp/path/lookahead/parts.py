@@ -126,7 +126,7 @@ def whole_cell(part: PathPart) -> PathCell:
 class Division(NamedTuple):
     """How a part is divided into cells: those of `head`, then `equal` ones of the same length, then those of `tail`.
 
-    `head`, `tail`: ends of their cells, mm from the begin of the part.
+    `head`, `tail`: ends of their cells, mm from the start of the part.
     """
 
     head: list[float]
@@ -141,7 +141,7 @@ class Division(NamedTuple):
         return len(self.head) + self.equal + len(self.tail)
 
     def end(self, index: int) -> float:
-        """Where a cell ends; -1 is the begin of the first one."""
+        """Where a cell ends; -1 is the start of the first one."""
         if index < len(self.head):
             return self.head[index] if index >= 0 else 0.0
         index -= len(self.head)
