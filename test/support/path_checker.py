@@ -27,7 +27,7 @@ EXACT = 1e-9
 """mm."""
 ROUNDING = 2e-8
 """mm; programmed numbers have nine digits behind the point, an arc may miss its target by their rounding."""
-WITH_KINKS = 2.5
+WITH_KINKS = 1.0
 """Kinks that are passed without contouring (G359) take half of the jerk and of the acceleration, each for itself, while
 the planner may take all of both beside them: differences of the positions may show that much of a limit."""
 SHORTEST = 2e-3

@@ -44,6 +44,8 @@ LEAST_DISTANCE: Final = 1e-6
 """mm; a shorter curve is none."""
 ROUNDING: Final = 1e-9
 """Part of a direction, and of a curvature, by which it may change without being a jump."""
+KINK_SHARE: Final = 0.5
+"""Part of the jerk of an axis that a kink may take; half of it each where velocity and acceleration step."""
 STEPS: Final = 8
 """Newton steps to the largest distance; the first value is at most four times that."""
 
@@ -80,19 +82,34 @@ def kink_square(a: Span, b: Span, limits: Sequence[AxisLimits], cycle_time: floa
     """Largest y = u'² at which the corner from A to B can be passed as it is; inf where nothing jumps.
 
     A jump of the velocity of an axis within one cycle T takes the jerk Δv/T² and the acceleration Δv/T, one of its
-    acceleration the jerk Δa/T. Each of the two may take half the jerk of the axis: |Δq1|·u' <= J·T²/2,
-    |Δq2|·u'² <= J·T/2; and half its acceleration: |Δq1|·u' <= A·T/2.
+    acceleration the jerk Δa/T. Together they may take half the jerk of the axis: |Δq1|·u' <= J·T²/2 or
+    |Δq2|·u'² <= J·T/2; and half its acceleration: |Δq1|·u' <= A·T/2. `quiet_limits` leaves that free beside the kink.
     """
     end, start = a.shape(a.length), b.shape(0.0)
     square = inf
     for kink, bend, axis in zip(direction_jumps(end, start), curvature_jumps(end, start), limits, strict=True):
+        share = 0.5 * KINK_SHARE if kink and bend else KINK_SHARE
         if kink:
-            strength = min(axis.jerk * cycle_time, axis.acceleration, axis.deceleration)
-            velocity = 0.5 * strength * cycle_time / kink
+            velocity = share * strength(axis, cycle_time) * cycle_time / kink
             square = min(square, velocity * velocity)
         if bend:
-            square = min(square, 0.5 * axis.jerk * cycle_time / bend)
+            square = min(square, share * axis.jerk * cycle_time / bend)
     return square
+
+
+def strength(axis: AxisLimits, cycle_time: float) -> float:
+    """Largest acceleration that an axis can build up in one cycle."""
+    return min(axis.jerk * cycle_time, axis.acceleration, axis.deceleration)
+
+
+def quiet_limits(axes: Sequence[AxisLimits], cycle_time: float) -> list[AxisLimits]:
+    """What the axes may take near a kink that is passed, so that both together stay within their limits."""
+    quiet: list[AxisLimits] = []
+    for axis in axes:
+        step = KINK_SHARE * strength(axis, cycle_time)
+        jerk = (1.0 - KINK_SHARE) * axis.jerk
+        quiet.append(AxisLimits(axis.velocity, axis.acceleration - step, axis.deceleration - step, jerk))
+    return quiet
 
 
 def direction_jumps(end: Sequence[Shape], start: Sequence[Shape]) -> list[float]:

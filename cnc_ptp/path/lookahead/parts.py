@@ -43,10 +43,11 @@ class PathPart:
     axes   limits of the axes of the channel in this part
     feed   mm/s at override 1; inf in rapid traverse, where the override acts on what the axes permit
     block  number of the program block within the path, from 0
-    entry  largest y = u'² at its begin; 0 is an exact stop
+    entry  largest y = u'² at its start; 0 is an exact stop
+    quiet  mm at its start and at its end in which kinks that are passed need a share of what the axes permit
     """
 
-    __slots__ = ("axes", "block", "entry", "feed", "geometry", "length", "path_axes")
+    __slots__ = ("axes", "block", "entry", "feed", "geometry", "length", "path_axes", "quiet", "quiet_axes")
 
     def __init__(
         self,
@@ -56,19 +57,27 @@ class PathPart:
         feed: float,
         block: int,
         entry: float = inf,
+        quiet: tuple[float, float] = (0.0, 0.0),
+        quiet_axes: Sequence[AxisLimits] = (),
     ) -> None:
+        """`quiet_axes`: limits there."""
         self.geometry, self.axes, self.path_axes = geometry, axes, path_axes
         self.feed, self.block, self.entry = feed, block, entry
         self.length = geometry.length
+        self.quiet, self.quiet_axes = quiet, quiet_axes
+
+    def limits(self, begin: float, end: float) -> Sequence[AxisLimits]:
+        """Of the axes from `begin` to `end`."""
+        return self.quiet_axes if begin < self.quiet[0] or end > self.length - self.quiet[1] else self.axes
 
 
 def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell:
     """What the part permits from `begin` to `end`; `origin`: u of the path at which the part begins."""
-    geometry = part.geometry
+    geometry, axes = part.geometry, part.limits(begin, end)
     bounds = geometry.bounds(begin, end)
     curved = False
     limit = up = down = jerk = LARGEST_LIMIT
-    for (first, second, third), axis in zip(bounds, part.axes, strict=True):
+    for (first, second, third), axis in zip(bounds, axes, strict=True):
         curved = curved or second > 0.0 or third > 0.0
         if first > 0.0:
             limit = min(limit, (axis.velocity / first) ** 2)
@@ -77,7 +86,7 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
             jerk = min(jerk, axis.jerk / first)
     loads: list[AxisLoad] = []
     if curved:
-        loads = loads_of(part, bounds, 0.5 * (begin + end), 0.5 * (end - begin))
+        loads = loads_of(part, axes, bounds, 0.5 * (begin + end), 0.5 * (end - begin))
         limit = min(limit, largest_square(loads))
     if begin == 0.0 and part.entry > 0.0:
         limit = min(limit, part.entry)
@@ -86,7 +95,9 @@ def cell_of(part: PathPart, origin: float, begin: float, end: float) -> PathCell
     return PathCell(origin + begin, origin + end, limit, feed, up, down, jerk, loads)
 
 
-def loads_of(part: PathPart, bounds: Sequence[Bounds], middle: float, half: float) -> list[AxisLoad]:
+def loads_of(
+    part: PathPart, axes: Sequence[AxisLimits], bounds: Sequence[Bounds], middle: float, half: float
+) -> list[AxisLoad]:
     """For each axis that the path moves in a cell.
 
     Where the sign of q1 changes in the cell, q2 and q3 count for both signs. q3 of a cubic piece is the same
@@ -112,7 +123,7 @@ def loads_of(part: PathPart, bounds: Sequence[Bounds], middle: float, half: floa
             spread=spread,
             twist=sign * twist,
             wring=wring,
-            limits=part.axes[index],
+            limits=axes[index],
         )
         loads.append(load)
     return loads

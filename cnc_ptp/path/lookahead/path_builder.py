@@ -7,18 +7,20 @@ because what follows decides where it is left.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from math import inf, sqrt
 from typing import Final
 
 from cnc_ptp.nc.contour import Transition
 from cnc_ptp.path.geometry import AxisLimits, Line
-from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square
+from cnc_ptp.path.lookahead.corners import Corner, corner, kink_square, quiet_limits
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.smoothing import Smoother
 from cnc_ptp.path.lookahead.spans import Curve, Span, whole
 
 SLOWEST: Final = 1.0
 """mm/s; a corner that could only be passed more slowly is an exact stop."""
+KINK_CYCLES: Final = 3.0
+"""Cycles on either side of a kink in which differences of the positions show it; there is no other one in them."""
 
 
 class LinkedMotion:
@@ -53,13 +55,15 @@ class PathBuilder:
         self._last: LinkedMotion | None = None
         self._entry = inf
         """y with which the last motion may be entered."""
+        self._quiet = 0.0
+        """mm at its start that are near the kink there."""
         self._smoother: Smoother | None = None
         self._smoothed: LinkedMotion | None = None
         """The last motion that went into the smoother."""
 
     def begin(self) -> None:
         """A path begins at rest."""
-        self._last, self._entry = None, inf
+        self._last, self._entry, self._quiet = None, inf, 0.0
         self._smoother = None
 
     @property
@@ -123,8 +127,9 @@ class PathBuilder:
             before, curve, motion.span = made
             spans = [before, *curve] if before.length > 0.0 else curve
             return [self._part(last if span.block == last.block else motion, span) for span in spans]
-        part = self._part(last, last.span)
-        self._entry = square
+        quiet = KINK_CYCLES * self._cycle_time * sqrt(square) if square < inf else 0.0
+        part = self._part(last, last.span, quiet)
+        self._entry, self._quiet = square, quiet
         return [part] if part.length > 0.0 else []
 
     def _join(self, last: LinkedMotion, motion: LinkedMotion) -> tuple[Corner | None, float]:
@@ -134,11 +139,17 @@ class PathBuilder:
         if made is not None:
             return made, inf
         square = kink_square(last.span, motion.span, narrower(last.axes, motion.axes), self._cycle_time)
+        if square < inf:
+            alone = min(last.span.length, motion.span.length) / (KINK_CYCLES * self._cycle_time)
+            square = min(square, alone * alone)
         return None, square if square >= SLOWEST * SLOWEST else 0.0
 
-    def _part(self, motion: LinkedMotion, span: Span) -> PathPart:
+    def _part(self, motion: LinkedMotion, span: Span, quiet: float = 0.0) -> PathPart:
+        """`quiet`: mm at its end that are near a kink."""
         entry, self._entry = self._entry, inf
-        return PathPart(span, motion.axes, self._path_axes, motion.feed, span.block, entry)
+        near, self._quiet = (self._quiet, quiet), 0.0
+        axes = quiet_limits(motion.axes, self._cycle_time) if near != (0.0, 0.0) else ()
+        return PathPart(span, motion.axes, self._path_axes, motion.feed, span.block, entry, near, axes)
 
 
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
