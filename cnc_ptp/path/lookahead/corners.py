@@ -63,7 +63,7 @@ def corner(a: Span, b: Span, contour: Contour, path_axes: Sequence[int]) -> Corn
     if angle > SHARPEST_DEG or (0.0 < contour.max_angle < angle and both_lines(a, b)):
         return None
     others = [axis for axis in range(len(end)) if axis not in path_axes]
-    if contour.track_dev <= 0.0 and any([kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others]):
+    if contour.track_dev <= 0.0 and any(kinks[axis] > 0.0 or jumps[axis] > 0.0 for axis in others):
         return None
     before, after = distances(a, b, contour, path_axes, end, start)
     if min(before, after) < LEAST_DISTANCE:
