@@ -186,7 +186,16 @@ def test_right_angle_by_hand():
         ((0, 1), (10.0, 50.0, 500.0), Contour(track_dev=1e3), 72.0 / 13.0 / math.sqrt(2.0)),
         ((0, 1), (10.0, 50.0, 500.0), Contour(DIST, track_dev=0.01), 0.01 * 72.0 / 13.0 / 10.0),
     ],
-    ids=["half of A", "half of B", "REMAIN_PART", "DIST", "DIST within half a block", "TRACK_DEV", "large TRACK_DEV", "both"],
+    ids=[
+        "half of A",
+        "half of B",
+        "REMAIN_PART",
+        "DIST",
+        "DIST within half a block",
+        "TRACK_DEV",
+        "large TRACK_DEV",
+        "both",
+    ],
 )
 def test_distances_from_the_corner(path_axes, target, contour, distance):
     first, _, last = corner_of((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), target, contour=contour, path_axes=path_axes)
