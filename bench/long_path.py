@@ -1,4 +1,4 @@
-"""`python -m bench.long_path BLOCKS`: so many short blocks are planned and run; prints the largest resident MiB."""
+"""`python -m bench.long_path BLOCKS`: plans and runs so many short blocks; prints the largest resident size in MiB."""
 
 from __future__ import annotations
 

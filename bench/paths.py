@@ -30,6 +30,8 @@ def failures(count: int, seed: int, kind: str) -> Iterator[tuple[int, list[str]]
             found = texts_of(number, kind)
         except Exception as error:
             found = [repr(error)]
+        if number % 50 == 49:
+            print(f"up to seed {number}", flush=True)
         if found:
             yield number, found
 

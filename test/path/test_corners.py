@@ -183,10 +183,19 @@ def test_right_angle_by_hand():
         (XYZ, (10.0, 50.0, 0.0), Contour(DIST, pre_dist=2.0, post_dist=2.0), 2.0),
         (XYZ, (10.0, 3.0, 0.0), Contour(DIST, pre_dist=2.0, post_dist=2.0), 1.5),
         ((0, 1), (10.0, 50.0, 500.0), Contour(track_dev=1.0), 72.0 / 13.0 / 10.0),
-        ((0, 1), (10.0, 50.0, 500.0), Contour(), 72.0 / 13.0 / math.sqrt(2.0)),
+        ((0, 1), (10.0, 50.0, 500.0), Contour(track_dev=1e3), 72.0 / 13.0 / math.sqrt(2.0)),
         ((0, 1), (10.0, 50.0, 500.0), Contour(DIST, track_dev=0.01), 0.01 * 72.0 / 13.0 / 10.0),
     ],
-    ids=["half of A", "half of B", "REMAIN_PART", "DIST", "DIST within half a block", "TRACK_DEV", "without", "both"],
+    ids=[
+        "half of A",
+        "half of B",
+        "REMAIN_PART",
+        "DIST",
+        "DIST within half a block",
+        "TRACK_DEV",
+        "large TRACK_DEV",
+        "both",
+    ],
 )
 def test_distances_from_the_corner(path_axes, target, contour, distance):
     first, _, last = corner_of((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), target, contour=contour, path_axes=path_axes)
@@ -196,7 +205,7 @@ def test_distances_from_the_corner(path_axes, target, contour, distance):
 
 def test_different_distances_are_shortened_apart_unless_by_track_dev():
     points = ((0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (10.0, 2.0, 20.0))
-    contour = Contour(DIST, pre_dist=4.0, post_dist=3.0)
+    contour = Contour(DIST, pre_dist=4.0, post_dist=3.0, track_dev=1e3)
     first, _, last = corner_of(*points, contour=contour, path_axes=(0, 1))
     assert (10.0 - first.end, last.begin) == pytest.approx((4.0, 1.0), abs=1e-12)
     first, pieces, last = corner_of(*points, contour=contour._replace(track_dev=1.0), path_axes=(0, 1))
@@ -342,9 +351,11 @@ def test_the_angle_between_line_and_arc_does_not_count_for_max_angle():
     assert corner(whole(line, 0), whole(arc, 1), Contour(max_angle=30.0), XYZ) is not None
 
 
-def test_a_kink_of_other_axes_alone_needs_track_dev():
+def test_a_kink_of_other_axes_needs_track_dev():
     points = (0.0, 0.0, 0.0), (10.0, 0.0, 0.0), (20.0, 0.0, 90.0)
     assert corner_of(*points, path_axes=(0, 1)) is None
+    assert corner_of(*points[:2], (20.0, 5.0, 90.0), path_axes=(0, 1)) is None
+    assert corner_of((0.0, 0.0, -90.0), (10.0, 0.0, 0.0), (10.0, 10.0, 90.0), path_axes=(0, 1)) is not None
     _, _, last = corner_of(*points, contour=Contour(track_dev=1.0), path_axes=(0, 1))
     assert last.begin == pytest.approx(72.0 / 13.0 / 9.0, rel=1e-12)
     assert corner_of(*points[:2], (10.0, 0.0, 90.0), contour=Contour(track_dev=1.0), path_axes=(0, 1)) is not None

@@ -32,7 +32,7 @@ WITH_KINKS = 1.0
 the planner may take all of both beside them: differences of the positions may show that much of a limit."""
 SHORTEST = 2e-3
 """mm; a stop between two shorter segments may lie between cycles of which neither belongs to its ramps."""
-WINDOW = 64
+WINDOW, POINTS = 32, 512
 """Segments and samples that are compared at once."""
 
 
@@ -183,7 +183,7 @@ class PathChecker:
         found = np.zeros(len(points))
         place, begin, width = 0, 0, WINDOW
         while begin < len(points):
-            chunk = points[begin : begin + WINDOW]
+            chunk = points[begin : begin + POINTS]
             window = order[place : place + width]
             inside = np.column_stack([self._inside(int(k), chunk) for k in window])
             low, done = 0, len(chunk)
@@ -285,10 +285,10 @@ class PathChecker:
         speed = np.linalg.norm(run.velocity[:, self.path], axis=1)
         whole = np.linalg.norm(run.velocity, axis=1)
         allowed = np.zeros(len(speed))
-        for begin in range(0, len(speed), WINDOW):
-            part = slice(begin, begin + WINDOW)
+        for begin in range(0, len(speed), POINTS):
+            part = slice(begin, begin + POINTS)
             low = max(int(first[part].min()) - 1, 0)
-            high = min(int(last[part].max()) + 2, len(self.segments), low + 4 * WINDOW)
+            high = min(int(last[part].max()) + 2, len(self.segments))
             for k in range(low, high):
                 near = self._inside(k, run.position[part], 3.0)
                 near &= (first[part] - 1 <= k) & (k <= last[part] + 1)
@@ -322,7 +322,7 @@ class PathChecker:
             apart = np.linalg.norm((run.position[part] - s.end)[:, self.path], axis=1)
             near = apart <= reach * (1.0 + 1e-9) + step[part] * 1.01
             if s.stop and max(s.length, following.length) > SHORTEST:
-                near &= [self._rests(run, n, s.end) for n in range(at, at + len(apart))]
+                near[near] = [self._rests(run, at + int(n), s.end) for n in np.nonzero(near)[0]]
             if near.any():
                 return at + int(np.argmax(near))
             at += 4 * WINDOW
@@ -336,8 +336,8 @@ class PathChecker:
         if np.abs(p - place).max() > 1e-3:
             return False
         with np.errstate(divide="ignore", invalid="ignore"):
-            if self.steps:
-                rest = p - np.where(a != 0.0, v * v / (2.0 * a), 0.0)
+            if self.steps:  # the acceleration steps, or rises within a part of a cycle; no jerk is reported
+                ways = [np.where(a != 0.0, v * v / (part * a), 0.0) for part in (2.0, 1.5)]
             else:
-                rest = p - np.where(j != 0.0, a * a * a / (6.0 * j * j), 0.0)
-        return bool(np.abs(rest - place).max() <= EXACT)
+                ways = [np.where(j != 0.0, a * a * a / (6.0 * j * j), 0.0)]
+        return any(bool(np.abs(p - way - place).max() <= EXACT) for way in ways)
