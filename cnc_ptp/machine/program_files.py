@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 
 import cnc_ptp
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.flow.sections import cycle_file
+from cnc_ptp.nc.flow.cycle_files import cycle_file
 
 UNREADABLE = 26110
 TOO_MANY_FILES = 26122

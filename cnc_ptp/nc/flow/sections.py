@@ -10,6 +10,7 @@ from cnc_ptp.nc import faults
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.flow.cycle_files import cycle_file, cycle_parameter
 from cnc_ptp.nc.flow.lines import Call, Line
 from cnc_ptp.nc.flow.structures import Place, Structure
 from cnc_ptp.nc.program import Vocabulary
@@ -37,16 +38,6 @@ class Section(NamedTuple):
     def title(self) -> str:
         """Kind and name, for errors."""
         return f"{self.kind} {self.name}".rstrip()
-
-
-def cycle_file(code: str, cycles: Mapping[str, str]) -> str:
-    """The program that G80 … G89 call: that of `cycles`, else g80.nc … g89.nc."""
-    return cycles.get(code) or f"{code.lower()}.nc"
-
-
-def cycle_parameter(code: str) -> str:
-    """P-CHAN-00160 … P-CHAN-00169 name the programs of G80 … G89."""
-    return f"P-CHAN-001{code[1:].replace('8', '6', 1)}"
 
 
 class Program:
