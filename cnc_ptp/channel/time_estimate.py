@@ -149,10 +149,18 @@ def direction(plan: Plan, u: float) -> list[float]:
 
 def turn(before: list[float], behind: list[float]) -> float:
     """rad between two directions; 0 without one."""
-    size = sqrt(sum([q * q for q in before]) * sum([q * q for q in behind]))
-    if size == 0.0:
+    if not before or not behind:
         return 0.0
-    return acos(max(-1.0, min(1.0, sum([one * other for one, other in zip(before, behind, strict=True)]) / size)))
+    size = sqrt(product(before, before) * product(behind, behind))
+    return acos(max(-1.0, min(1.0, product(before, behind) / size)))
+
+
+def product(one: list[float], other: list[float]) -> float:
+    """Of two vectors."""
+    total = 0.0
+    for index, value in enumerate(one):
+        total += value * other[index]
+    return total
 
 
 def slowing(before: Motion | None, motion: Motion, angle: float) -> float:
