@@ -47,8 +47,8 @@ def test_the_contour_has_no_stop_and_keeps_the_limits() -> None:
         assert 0.9 * axis.jerk < jerk <= axis.jerk * (1.0 + 1e-6)
 
 
-def refused(folder: Path, program: str, **head: str) -> str:
-    (folder / "p.nc").write_text(program)
+def refused(folder: Path, text: str, **head: str) -> str:
+    (folder / "p.nc").write_text(text)
     keys = {"title": "t", "caption": "c", "machine": "config/mill.yaml", **head}
     figure = read_head(head_and_scenario(folder, keys, "[]\n"))
     with pytest.raises(FigureError) as caught:
