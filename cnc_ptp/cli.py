@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
@@ -26,6 +27,7 @@ from cnc_ptp.start_options import start_options, take_start
 MACHINE = click.argument("machine", type=click.Path(dir_okay=False))
 RECORDING = click.argument("recording", type=click.Path(dir_okay=False))
 CLIENTS = ("status", "do", "jog", "watch")
+MCAP_MAGIC = b"\x89MCAP"
 STARTS_NODES = ("run", "replay", *CLIENTS)
 """Commands that take ROS arguments."""
 
@@ -340,9 +342,23 @@ def plot_command(more_topics: tuple[str, ...], topics: tuple[str, ...], **option
         given = {name: value for name, value in of_program.items() if value is not None}
         sys.exit(plot_program(options["recording"], output=options["output"], **given))
     require_none(of_program, "needs --machine: it is of an NC program")
+    if is_text(options["recording"]):
+        raise click.UsageError(
+            f"{options['recording']} is no recording; --machine draws an NC program; nothing was drawn"
+        )
     from cnc_ptp.commands.look.plot import plot
 
     sys.exit(plot(**options, **of_recording))
+
+
+def is_text(file: str) -> bool:
+    """Whether a file exists and begins as no recording does."""
+    try:
+        with Path(file).open("rb") as stream:
+            first = stream.read(1)
+    except OSError:
+        return False
+    return first != MCAP_MAGIC[:1] and not file.endswith(".mcap")
 
 
 def require_none(options: dict[str, Any], why: str) -> None:

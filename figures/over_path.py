@@ -45,6 +45,8 @@ def path_columns(figure: FigureScenario, run: FigureRun) -> PathColumns:
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places[:2], axis=1)))])
     velocity = column("path_velocity")
     moving = np.flatnonzero(velocity)
+    if len(moving) == 0:
+        raise FigureError(figure.path, "its program does not move along a path")
     shown = np.arange(moving[0], moving[-1] + 1)
     columns = (length, velocity, column("programmed_feed"), column("block_number"))
     return PathColumns(shown, *(values[shown] for values in columns))

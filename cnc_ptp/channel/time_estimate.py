@@ -1,13 +1,14 @@
 """How long each block of a program takes at override 100 %, found before it runs.
 
 The path is run in thought, with the look-ahead of the run. Of a program that would take too much computing for that,
-windows are run; the blocks between them take as much longer than at their feed as those of the window before.
+windows are run; the blocks between them take as much longer than in a sketch (at their feed, with ramps where the path
+stops) as those of the windows before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
+from math import acos, ceil, sqrt
 from typing import Final
 
 from cnc_ptp.channel.block_stream import BlockStream
@@ -15,15 +16,22 @@ from cnc_ptp.channel.following_blocks import FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
 from cnc_ptp.errors import CncError
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, LinearMove
-from cnc_ptp.path.path_motion import PathMotion
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, HomeAxes, LinearMove
+from cnc_ptp.path.linked_path import can_follow
+from cnc_ptp.path.path_motion import PathMotion, Plan
 
+Motion = LinearMove | CircularMove | Dwell | HomeAxes
 BUDGET: Final = 40_000.0
 """Cost of what is planned, in blocks."""
 COST_PER_SECOND: Final = 250.0
 """Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 4 ms."""
 WINDOW: Final = 1_000.0
 """Cost of a window."""
+CORNER: Final = 0.6
+"""rad from which on a smooth curve has a corner."""
+KINK: Final = 0.05
+"""rad from which on the path stops where there is no curve."""
+NO_DIRECTION: Final[list[float]] = []
 EDGE: Final = 0.15
 """Part of a window at either end that does not count: the path sets out from rest there, and stops."""
 
@@ -41,7 +49,7 @@ class TimeEstimate:
         A motion that cannot be planned takes no time: it is a fault when the path reaches it.
         """
         places = places_of(blocks, tuple(start))
-        nominal = [self._at_feed(block, place) for block, place in zip(blocks, places, strict=True)]
+        nominal = self._sketch(blocks, places)
         costs = [cost(block, seconds) for block, seconds in zip(blocks, nominal, strict=True)]
         every = ceil(sum(costs) / BUDGET)
         if every <= 1:
@@ -100,17 +108,80 @@ class TimeEstimate:
             seconds.append(duration)
         return seconds
 
-    def _at_feed(self, block: CanonicalBlock, start: tuple[float, ...]) -> float:
-        """Seconds at the feed of the block, or of its dwell."""
-        motion = block.motion
-        if isinstance(motion, Dwell):
-            return motion.seconds
+    def _sketch(self, blocks: Sequence[CanonicalBlock], places: Sequence[tuple[float, ...]]) -> list[float]:
+        """Seconds of each block at its feed, and half of a ramp more for each end at which the path stops."""
+        seconds = [block.motion.seconds if isinstance(block.motion, Dwell) else 0.0 for block in blocks]
+        last, last_plan, last_direction = -1, None, NO_DIRECTION
+        stop = 1.0
+        for index, block in enumerate(blocks):
+            motion = block.motion
+            if motion is None:
+                continue
+            plan = self._plan(motion, places[index])
+            before = blocks[last].motion if last >= 0 else None
+            if last_plan is not None:
+                begins = NO_DIRECTION if plan is None else direction(plan, 0.0)
+                slow = slowing(before, motion, turn(last_direction, begins))
+                seconds[last] = between(last_plan, stop, slow)
+                stop = slow
+            last, last_plan = index, plan
+            if plan is not None:
+                last_direction = direction(plan, plan.element.length)
+            else:
+                stop = 1.0
+        if last_plan is not None:
+            seconds[last] = between(last_plan, stop, 1.0)
+        return seconds
+
+    def _plan(self, motion: Motion, start: tuple[float, ...]) -> Plan | None:
         if not isinstance(motion, (LinearMove, CircularMove)):
-            return 0.0
+            return None
         try:
-            return self._path.duration_at_feed(motion, start)
+            return self._path.plan(motion, start)
         except CncError:
-            return 0.0
+            return None
+
+
+def direction(plan: Plan, u: float) -> list[float]:
+    """Derivatives of the axes at a place of the element."""
+    return [shape[1] for shape in plan.element.shape(u)] if plan.element.length > 0.0 else NO_DIRECTION
+
+
+def turn(before: list[float], behind: list[float]) -> float:
+    """rad between two directions; 0 without one."""
+    if not before or not behind:
+        return 0.0
+    size = sqrt(product(before, before) * product(behind, behind))
+    return acos(max(-1.0, min(1.0, product(before, behind) / size)))
+
+
+def product(one: list[float], other: list[float]) -> float:
+    """Of two vectors."""
+    total = 0.0
+    for index, value in enumerate(one):
+        total += value * other[index]
+    return total
+
+
+def slowing(before: Motion | None, motion: Motion, angle: float) -> float:
+    """How much of a stop there is between two motions: 0 none, 1 an exact stop."""
+    if not isinstance(before, (LinearMove, CircularMove)) or not isinstance(motion, (LinearMove, CircularMove)):
+        return 1.0
+    if not can_follow(before, motion):
+        return 1.0
+    transition = before.transition
+    if transition.smoothing is not None:
+        return 1.0 if angle > CORNER else 0.0
+    if transition.contour is not None:
+        return min(1.0, angle)
+    return 1.0 if angle > KINK else 0.0
+
+
+def between(plan: Plan, begin: float, end: float) -> float:
+    """Seconds of a motion with so much of a stop at either end."""
+    at_feed = plan.duration_at_feed
+    part = 0.5 * (begin + end)
+    return at_feed + part * (plan.duration - at_feed) if part > 0.0 else at_feed
 
 
 def no_waits() -> tuple[Moment, ...]:
@@ -145,7 +216,7 @@ def end_of_window(costs: Sequence[float], begin: int) -> int:
 def lengthening(
     blocks: Sequence[CanonicalBlock], planned: Sequence[float], nominal: Sequence[float], otherwise: float
 ) -> float:
-    """How much longer the motions of a window take than at their feed; its edges do not count."""
+    """How much longer the motions of a window take than in the sketch; its edges do not count."""
     moves = [n for n, block in enumerate(blocks) if isinstance(block.motion, (LinearMove, CircularMove))]
     edge = int(EDGE * len(moves))
     counted = moves[edge : len(moves) - edge]

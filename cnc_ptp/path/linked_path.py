@@ -164,14 +164,8 @@ class LinkedPath:
         while not self.look_ahead.done:
             self._fill()
             rows = self.look_ahead.step(1, LONG_CYCLE)
-            u, step = (
-                (rows[0][0], LONG_CYCLE)
-                if rows
-                else (
-                    self.look_ahead.end,
-                    LONG_CYCLE - self.look_ahead.remaining_time,
-                )
-            )
+            step = LONG_CYCLE if rows else LONG_CYCLE - self.look_ahead.remaining_time
+            u = rows[0][0] if rows else self.look_ahead.end
             block = self.look_ahead.locate(u)[1].block if rows else self._blocks - 1
             while self.block < block:
                 part = (self._ends[0] - before) / (u - before) if u > before else 1.0

@@ -49,6 +49,11 @@ class Plan(NamedTuple):
         return min(self.feed, self.limits.velocity)
 
     @property
+    def duration_at_feed(self) -> float:
+        """Seconds at that velocity."""
+        return self.element.length / self.velocity if self.element.length > 0.0 else 0.0
+
+    @property
     def duration(self) -> float:
         """Seconds from rest to rest with override 100 %."""
         if self.element.length == 0.0:
@@ -203,7 +208,7 @@ class PathMotion:
             self._interpolator.dwell(motion.seconds)
             self._dwell = motion.seconds
             return
-        plan = self._plan(motion, self.position)
+        plan = self.plan(motion, self.position)
         element, feed = plan.element, plan.feed
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
@@ -217,16 +222,12 @@ class PathMotion:
 
         Raises as `start`.
         """
-        plan = self._plan(motion, start)
+        plan = self.plan(motion, start)
         path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0))
         return [plan.duration] if path is None else path.durations()
 
-    def duration_at_feed(self, motion: Path, start: tuple[float, ...]) -> float:
-        """Seconds of a motion from `start` at its feed, or the velocity that the axes permit. Raises as `start`."""
-        plan = self._plan(motion, start)
-        return plan.element.length / plan.velocity if plan.element.length > 0.0 else 0.0
-
-    def _plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
+    def plan(self, motion: Path, start: tuple[float, ...]) -> Plan:
+        """How a motion from `start` is run on its own. Raises as `start`."""
         element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
         axis_limits = self._rapid_limits if rapid else self._feed_limits
         if slope == STEP:
@@ -259,7 +260,7 @@ class PathMotion:
         return path if path.begin(self._linked_motion(plan, motion, 0), motion, following) else None
 
     def _make_linked(self, start: tuple[float, ...], motion: Path, block: int) -> LinkedMotion:
-        plan = self._plan(motion, start)
+        plan = self.plan(motion, start)
         return self._linked_motion(plan, motion, block)
 
     def _linked_motion(self, plan: Plan, motion: Path, block: int) -> LinkedMotion:
