@@ -100,7 +100,7 @@ class ProgramProgress:
         self.now = Progress(min(1.0, max(self.now.share, share)), self._less(time_left, path.override))
 
     def _less(self, time_left: float, override: float) -> float:
-        """At the same override no more than before: where the path runs through, the end of the active block may move."""
+        """At the same override no more than before: where the path runs through, the end of a block may move."""
         before = self.now.time_left
         same, self._override = override == self._override, override
         return min(before, time_left) if same and min(before, time_left) >= 0.0 else time_left
