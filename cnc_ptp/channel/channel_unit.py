@@ -289,12 +289,7 @@ class ChannelUnit(Unit):
 
     def do_measuring_event(self, cycle: int) -> None:
         """The event for which a measuring run and functions of type MNE_SNS wait; refused (22020) without either."""
-        try:
-            awaited = self._sequence.measuring_event()
-        except CncError as error:
-            self._fault_in_line(cycle, error)
-            return
-        if not awaited:
+        if not self._sequence.measuring_event():
             self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:

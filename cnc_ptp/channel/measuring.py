@@ -40,9 +40,10 @@ class ChannelAxisProbe(NamedTuple):
 class Measuring:
     """One measuring run after the other.
 
-    touch     how the last one has ended
-    awaits    a run is on, and the signal has not come
-    reached   the signal has come, and the path brakes
+    touch      how the last one has ended
+    awaits     a run is on, and the signal has not come
+    commanded  the PLC has given the signal; it counts when the newest blocks of the axes are read
+    reached    the signal has come, and the path brakes
     """
 
     def __init__(
@@ -63,8 +64,7 @@ class Measuring:
         self._stood_at: tuple[float, ...] = ()
         """… these positions."""
         self.touch = NO_TOUCH
-        self.awaits = False
-        self.reached = False
+        self.awaits = self.commanded = self.reached = False
 
     def ready(self, motion: LinearMove, feedback: Mapping[str, CycleBlock]) -> bool:
         """The axes that take part have reported whether their probes are on."""
@@ -82,11 +82,12 @@ class Measuring:
         self._measures = motion.measures
         self._last = self._stood_at = self._ends(feedback)
         self._settling = self._window = 0
-        self.touch, self.awaits, self.reached = NO_TOUCH, True, False
+        self.touch, self.awaits = NO_TOUCH, True
+        self.commanded = self.reached = False
 
     def end(self) -> None:
         """The run has ended, or the program was aborted."""
-        self.awaits = self.reached = False
+        self.awaits = self.commanded = self.reached = False
 
     def short_strokes(self, braking: Sequence[float]) -> str:
         """Warning of axes whose `braking` distances (mm, deg) from the feed are longer than their strokes, or empty."""
@@ -101,13 +102,15 @@ class Measuring:
     # the signal
 
     def read(self, feedback: Mapping[str, CycleBlock]) -> bool:
-        """Reads the blocks of the axes; True when the first probe has switched in them."""
+        """Reads the blocks of the axes; True when a probe has switched in them, or the PLC has given the signal."""
         blocks = [self._block(axis, feedback) for axis in self._axes]
         instants = [(block.probe_cycle, place) for place in self._measures if (block := blocks[place]).probe_switched]
         if instants:
             instant, by = min(instants)
             self._take(tuple([self._at(place, by, instant, block) for place, block in enumerate(blocks)]))
-        return bool(instants)
+        elif self.commanded:
+            self._take(self._ends(feedback))
+        return self.reached
 
     def _at(self, place: int, by: int, instant: float, block: AxisBlock) -> float:
         """Actual position of an axis at an instant between two cycles of its block; its own probe knows it exactly."""
@@ -118,10 +121,6 @@ class Measuring:
         positions = (self._last[place], *block.actual_position)
         before, after = positions[cycle], positions[min(cycle + 1, len(positions) - 1)]
         return before + share * (after - before)
-
-    def take_last(self, feedback: Mapping[str, CycleBlock]) -> None:
-        """The PLC gives the signal: the positions are those of the last cycle that the axes have reported."""
-        self._take(self._ends(feedback))
 
     def _take(self, position: tuple[float, ...]) -> None:
         self.touch = Touch(position)

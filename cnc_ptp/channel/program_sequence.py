@@ -224,14 +224,11 @@ class ProgramSequence:
     def measuring_event(self) -> bool:
         """The signal of the PLC: a measuring run ends, functions of type MNE_SNS go out; False without either.
 
-        Raises CncError 22052 when the stroke of a probe is too short for the ramp.
+        A measuring run reads the newest blocks of the axes first.
         """
         if self._block is not None and measures(self._block.motion):
-            if not self._measuring.awaits:
-                return False
-            self._measuring.take_last(self._feedback)
-            self._touch()
-            return True
+            self._measuring.commanded = self._measuring.awaits
+            return self._measuring.awaits
         return self._send_at_event()
 
     def _touch(self) -> None:
