@@ -113,7 +113,7 @@ def test_single_block_is_switched_on_and_off_in_mid_program() -> None:
     assert bench.position("x") == 30.0 and bench.last("channel").done
 
 
-STRAIGHT = 'G01 F3000 X10\nX20\n#MSG ["at 20"]\nX30\nX40\nM30'
+STRAIGHT = "G01 F3000 X10\nX20\n#MSG [\"at 20\"]\nX30\nX40\nM30"
 """One path: nothing stops between its blocks."""
 
 
