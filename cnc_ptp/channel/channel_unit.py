@@ -290,7 +290,7 @@ class ChannelUnit(Unit):
     def do_measuring_event(self, cycle: int) -> None:
         """The event for which a measuring run and functions of type MNE_SNS wait; refused (22020) without either."""
         if not self._sequence.measuring_event():
-            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
+            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "nothing in the running block waits for one")
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""

@@ -11,6 +11,7 @@ import pytest
 from machine_support import MachineBench, assert_axis_smooth
 from replay_support import bits, replay
 
+from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import AxisBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
@@ -221,7 +222,7 @@ def test_nothing_waits_for_the_signal() -> None:
     scenario = "".join(f"- {{at: {at}, to: channel, do: measuring_event}}\n" for at in (0.2, 1.0, 1.05))
     bench = run("G04 0.5\nG100 Y60 F600\nM30", scenario)
     assert bench.errors() == []
-    reason = "measuring_event refused: no function of the running block waits for one; nothing was changed"
+    reason = "measuring_event refused: nothing in the running block waits for one; nothing was changed"
     assert bench.refusals() == [f"P-ERR-22020 channel channel: {reason}"] * 2
 
 
@@ -394,3 +395,39 @@ def test_the_vocabulary_iso_skips() -> None:
     assert_clean(bench)
     assert messages(bench) == ["measured: X 27.7 mm"]
     assert ABOVE - 2.0 < bench.position("x") < ABOVE
+
+
+def test_steps_of_the_acceleration() -> None:
+    bench = run("#SLOPE [TYPE=STEP]\nG100 X200 F3000\nM30", x={"stroke": 0.0})
+    assert_clean(bench)
+    ahead = bench.column("x", "set_position")[signal(bench, "x").first_cycle + 10]
+    assert bench.position("x") == pytest.approx(ahead + 50.0**2 / (2.0 * A), abs=1e-9)
+
+
+def test_reset_while_the_axis_follows_to_the_end() -> None:
+    plain = run("G100 X10 F6000\nM30")
+    assert "P-ERR-22051" in plain.errors()[0]
+    at_end = plain.column("x", "set_position").index(10.0)
+    scenario = f"- {{at: {(at_end + 20) / 1000.0}, to: channel, do: reset}}\n"
+    bench = run("G100 X10 F6000\nM30", scenario)
+    assert_clean(bench)
+    assert bench.position("x") == 10.0
+
+
+# check before the start
+
+
+def errors(text: str, **changes: Any) -> list[str]:
+    machine = probe(**changes)
+    return [str(error) for error in ProgramCheck.of_first_channel(machine, "a.nc").errors(text, "a.nc")]
+
+
+def test_check_continues_from_the_programmed_end() -> None:
+    """Also with what only the machine knows: measuring axes, M functions, soft limits."""
+    assert errors("G100 X60 F300\nG91 X-1\nG02 X10 I5\nM30") == []
+    assert errors("G100 X60 F300\nX0\nG100 Y5\nM30", y={"measures": False}) == [
+        "P-ERR-50059 a.nc line 3 column 6 'G100 Y5': axis Y cannot measure (P-AXIS-00118); axes that can: X, Z"
+    ]
+    assert "P-ERR-22011" in errors("G100 X60 F300\nM55\nM30")[0]
+    assert "P-ERR-120002" in errors("G100 X60 F300\nG91 X245\nM30")[0]
+    assert errors("G100 X60 F300\nX[V.A.MESS.X + 1000]\nM55\nM30") == []
