@@ -11,7 +11,10 @@ import pytest
 from machine_support import MachineBench, assert_axis_smooth
 from replay_support import bits, replay
 
+from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.program_check import ProgramCheck
+from cnc_ptp.errors import CncError
+from cnc_ptp.nc.canonical import LinearMove
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.blocks import AxisBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
@@ -431,3 +434,27 @@ def test_check_continues_from_the_programmed_end() -> None:
     assert "P-ERR-22011" in errors("G100 X60 F300\nM55\nM30")[0]
     assert "P-ERR-120002" in errors("G100 X60 F300\nG91 X245\nM30")[0]
     assert errors("G100 X60 F300\nX[V.A.MESS.X + 1000]\nM55\nM30") == []
+
+
+# an axis that does not come to rest
+
+
+@pytest.mark.parametrize("required", [True, False])
+def test_an_axis_that_never_rests_is_waited_for_a_second(required: bool) -> None:
+    measuring = Measuring(["X"], [PROBE.axes["x"]], 0.001, required=required)
+    blocks = [AxisBlock(0, 10, actual_position=[9.9 + 0.01 * ((n + 1) // 2 % 2)] * 10) for n in range(200)]
+    measuring.begin(LinearMove((10.0,), False, 5.0, measures=(0,)), {"x": blocks[0]})
+    waited = 0
+    try:
+        while not measuring.settled({"x": blocks[waited]}, 10):
+            waited += 1
+    except CncError as error:
+        assert required and error.number == 22051
+    assert waited == 99 and not measuring.awaits
+
+
+def test_an_axis_that_rests_is_not_waited_for() -> None:
+    measuring = Measuring(["X"], [PROBE.axes["x"]], 0.001, required=False)
+    block = AxisBlock(0, 10, actual_position=[10.0] * 10)
+    measuring.begin(LinearMove((10.0,), False, 5.0, measures=(0,)), {"x": block})
+    assert [measuring.settled({"x": block}, 10) for _ in range(2)] == [False, True]
