@@ -19,6 +19,7 @@ from cnc_ptp.axis.jog_commands import JogCommands
 from cnc_ptp.axis.monitoring import MOVING_ALONE, Monitoring
 from cnc_ptp.axis.override_commands import OverrideCommands
 from cnc_ptp.axis.power_commands import PowerCommands
+from cnc_ptp.axis.probe import Probe
 from cnc_ptp.axis.ptp_commands import PtpCommands
 from cnc_ptp.axis.stop_commands import StopCommands
 from cnc_ptp.control.commands import FEEDFORWARD_WAITS, ControlCommands, feedforward_warning
@@ -67,6 +68,7 @@ class AxisUnit(Unit):
         if not parameters.referenced_at_start:
             self._loop.count_from(parameters.start_position)
         self._homing = Homing(self._axis, self._loop)
+        self._probe = Probe(parameters.probe)
         begin, length = self._axis.modulo_range
         self._make_block = partial(
             AxisBlock, modulo_begin=begin, modulo_length=length, torque_digits=self._loop.torque_digits
@@ -160,6 +162,7 @@ class AxisUnit(Unit):
             axis.advance(first_cycle + done)
             self._follow(first_cycle + done, axis.basic_motion(first_cycle + done, count - done), block, control)
         take_columns(block, control)
+        self._probe.watch(block, self._loop.offset)
         warning = feedforward_warning(self._loop.feedforward, block.set_velocity[-1], axis.unit)
         if warning is not None:
             self._report_warning(first_cycle + count - 1, FEEDFORWARD_WAITS, f"axis {self.name}: {warning}")

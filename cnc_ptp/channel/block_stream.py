@@ -10,6 +10,7 @@ from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import awaits_path
+from cnc_ptp.nc.measuring import Touch
 
 BUFFER: Final = 1000
 """Blocks that are interpreted ahead, before the path asks for them."""
@@ -76,10 +77,18 @@ class BlockStream:
                 return
             self._interpret()
 
-    def give(self, actual: tuple[float, ...], position: tuple[float, ...], timers: Mapping[int, float]) -> None:
-        """Actual and set positions of the axes at this instant, and the timers that were read (ms)."""
+    def give(
+        self,
+        actual: tuple[float, ...],
+        position: tuple[float, ...],
+        timers: Mapping[int, float],
+        touch: Touch | None = None,
+    ) -> None:
+        """Actual and set positions of the axes at this instant, the timers that were read (ms), how a measuring run
+        has ended.
+        """
         if self._values is not None:
-            self._values.actual, self._values.position = actual, position
+            self._values.actual, self._values.position, self._values.touch = actual, position, touch
             self._values.timers = dict(timers)
 
     def next(self) -> CanonicalBlock | None:

@@ -14,6 +14,7 @@ from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
 from cnc_ptp.channel.function_output import FunctionOutput
+from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
@@ -40,7 +41,7 @@ from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
-from cnc_ptp.protocol.notes import PROGRAM_MESSAGE, START_STEP
+from cnc_ptp.protocol.notes import START_STEP
 from cnc_ptp.protocol.unit import UPSTREAM_LOST, Unit
 
 NO_PROGRAM = 22003
@@ -95,7 +96,9 @@ class ChannelUnit(Unit):
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
         homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
-        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, Timers(cycle_time))
+        names, required = [axis.name for axis in parameters.axes], parameters.signal_required
+        measuring = Measuring(names, [axes[node] for node in nodes], cycle_time, required=required)
+        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, measuring, Timers(cycle_time))
         self._estimate = TimeEstimate(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
@@ -304,9 +307,9 @@ class ChannelUnit(Unit):
         self._sequence.acknowledge(id)
 
     def do_measuring_event(self, cycle: int) -> None:
-        """The event for which functions of type MNE_SNS wait; refused (22020) when the active block has none."""
+        """The event for which a measuring run and functions of type MNE_SNS wait; refused (22020) without either."""
         if not self._sequence.measuring_event():
-            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "no function of the running block waits for one")
+            self._refuse("measuring_event", NOTHING_AWAITS_EVENT, "nothing in the running block waits for one")
 
     def do_upstream_lost(self, cycle: int, *, source: str) -> None:
         """Watchdog: PLC, clock, an axis or a spindle has not published in time; the path stops."""
@@ -429,7 +432,7 @@ class ChannelUnit(Unit):
             self._reach_offsets(cycle + len(points))
         elif self._motion.halted and self._sequence.phase is Phase.MOTION:
             self._sequence.halted()
-        elif len(points) < missing or (self._sequence.phase is Phase.RAMP_DOWN and self._motion.stopped):
+        elif len(points) < missing or self._motion.stopped:
             self._sequence.motion_ended()
         self._warn(cycle + len(points))
 
@@ -440,8 +443,7 @@ class ChannelUnit(Unit):
             self._fail_before(cycle, error)
             return True
         except CncError as error:
-            source = self._sequence.source
-            self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
+            self._fault_in_line(cycle, error)
             return True
         self._warn(cycle)
         self._reach_offsets(cycle)
@@ -455,8 +457,8 @@ class ChannelUnit(Unit):
 
     def _warn(self, cycle: int) -> None:
         messages, self._sequence.messages = self._sequence.messages, []
-        for text, line in messages:
-            self.event(cycle, Severity.INFO, PROGRAM_MESSAGE, text, line)
+        for number, text, line, values in messages:
+            self.event(cycle, Severity.INFO, number, text, line, values)
         notes, self._sequence.notes = self._sequence.notes, []
         for number, note, line in notes:
             self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", line)
@@ -576,8 +578,7 @@ class ChannelUnit(Unit):
         try:
             self._sequence.read(first_cycle, inputs)
         except CncError as error:
-            source = self._sequence.source
-            self._fault(first_cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
+            self._fault_in_line(first_cycle, error)
         self._warn(first_cycle)
         self._report_held(first_cycle)
 
@@ -647,6 +648,12 @@ class ChannelUnit(Unit):
             waited = f"request {request.id} ({what}) within {self._handshake_timeout:g} s (P-MACH-00060)"
             self._fault(first_cycle, NOT_ACKNOWLEDGED, f"the PLC has not acknowledged {waited}")
 
+    def _fault_in_line(self, cycle: int, error: CncError) -> None:
+        """Error of the active block; what the program has told before comes before it."""
+        self._warn(cycle)
+        source = self._sequence.source
+        self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
+
     def _fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
         if self._error_id:
@@ -713,6 +720,7 @@ PHASE_STATES = {
     Phase.WAIT_END: C.WAITING,
     Phase.MOTION: C.WAITING,
     Phase.HOMING: C.RUNNING,
+    Phase.WAIT_SIGNAL: C.WAITING,
     Phase.WAIT_BEFORE: C.WAITING,
     Phase.WAIT_AFTER: C.WAITING,
     Phase.STOPPED: C.STOPPED,

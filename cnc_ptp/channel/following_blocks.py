@@ -11,6 +11,7 @@ from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Motion
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.measuring import measures
 
 
 class FollowingBlocks:
@@ -66,6 +67,8 @@ class FollowingBlocks:
             if block is None or not self._functions.without_stop(block) or self._synchronises(block, place, waits):
                 return None
             place += 1
+            if measures(block.motion):
+                return None
             if isinstance(block.motion, (LinearMove, CircularMove)):
                 self._shown = place
                 return block.motion

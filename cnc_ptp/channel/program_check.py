@@ -33,7 +33,8 @@ from cnc_ptp.nc.expressions.values import Values, Variable, copies
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.flow.sections import Program
-from cnc_ptp.nc.interpreter import awaits_path, check, interpret
+from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
+from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.streamed_program import stream_program
@@ -51,6 +52,7 @@ from cnc_ptp.parameters.view.homing_view import DISABLED
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
+NO_MEASURING_AXIS = 50059
 UNKNOWN_M_FUNCTION = 22011
 NOT_REFERENCED = 22034
 NO_CHANNEL = 26112
@@ -186,8 +188,12 @@ class ProgramCheck:
         return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
 
     def _function_errors(self, program: Program) -> list[ProgramError]:
+        """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
+        unreferenced, state = self.unreferenced_at_start, self.state({}, {}, {})
         try:
-            self.blocks(program, self.start)
+            for block in self.running(program, self.start, state, unreferenced, required=False):
+                if isinstance(block.motion, HomeAxes) or reads_the_run(block):
+                    break
         except ProgramError as error:
             return [error]
         return []
@@ -337,13 +343,15 @@ class ProgramCheck:
         for block in stream:
             for function in block.functions:
                 self._function(function, block.source)
+            if isinstance(block.motion, LinearMove):
+                self._require_measuring_axes(block.motion, block.source)
             if isinstance(block.motion, HomeAxes):
                 missing.difference_update(self._homed(block.motion, block.source))
             elif missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
                 position = block.motion.target
             yield block
-            if isinstance(block.motion, HomeAxes) and state.values.position:
+            if (isinstance(block.motion, HomeAxes) or measures(block.motion)) and state.values.position:
                 position = state.values.position
 
     def _names(self, nodes: Collection[str]) -> set[str]:
@@ -363,6 +371,15 @@ class ProgramCheck:
                 text = f"axis {name} cannot be homed (P-AXIS-00299 = DISABLED)"
                 raise ProgramError(HOMING_DISABLED, text, source, source.column(name))
         return homed
+
+    def _require_measuring_axes(self, motion: LinearMove, source: Source) -> None:
+        """Raises ProgramError 50059 for a measuring run of an axis that may not take part (P-AXIS-00118)."""
+        for place in motion.measures:
+            name = self._axis_names[place]
+            if not self._axes[place].probe.measures:
+                able = [other for other, axis in zip(self._axis_names, self._axes, strict=True) if axis.probe.measures]
+                text = f"axis {name} cannot measure (P-AXIS-00118); axes that can: {', '.join(able) or 'none'}"
+                raise ProgramError(NO_MEASURING_AXIS, text, source, source.column(name))
 
     def _require_references(
         self,

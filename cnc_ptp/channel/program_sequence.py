@@ -7,6 +7,7 @@
 | WAIT_BEFORE | the path waits for all that must precede the motion | MOTION, without one WAIT_AFTER |
 | MOTION | PathMotion makes the cycles; functions of MNE_SNS go out with the measuring event | WAIT_AFTER |
 | HOMING | G74: the axes are off the path and home themselves | WAIT_AFTER |
+| WAIT_SIGNAL | a measuring run is at its end without a signal; the axes still follow the path | WAIT_AFTER |
 | WAIT_AFTER | functions after the motion have gone out; the block's last waits | NEXT, STOPPED, at M30 IDLE |
 | WAIT_END | no M30, or a fault in the next block: the path waits for all that is pending | IDLE, RAMP_DOWN |
 | STOPPED | M00, M01, single block: `resume` continues | NEXT |
@@ -17,12 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
 from enum import Enum, auto
+from typing import NamedTuple
 
 from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.following_blocks import FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
+from cnc_ptp.channel.measuring import STROKE_SHORT, Measuring
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
@@ -42,9 +45,10 @@ from cnc_ptp.nc.canonical import (
     WaitForPath,
 )
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.measuring import measures
 from cnc_ptp.path.path_motion import PathMotion
-from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock
-from cnc_ptp.protocol.notes import ORDERED_ERROR
+from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, EventValue
+from cnc_ptp.protocol.notes import MEASURED, ORDERED_ERROR, PROGRAM_MESSAGE
 
 ENDS = ("stop", "decouple")
 """Commands that are sent although the program was aborted."""
@@ -63,6 +67,7 @@ class Phase(Enum):
     WAIT_BEFORE = auto()
     MOTION = auto()
     HOMING = auto()
+    WAIT_SIGNAL = auto()
     WAIT_AFTER = auto()
     WAIT_END = auto()
     STOPPED = auto()
@@ -77,6 +82,15 @@ ALL_LATE = frozenset((Moment.NEXT_CUT, Moment.EXPLICIT))
 """What the path waits for at the end of the program, but not in its own block."""
 
 
+class Told(NamedTuple):
+    """An event for the operator: its number, text, program line and the numbers in the text."""
+
+    number: int
+    text: str
+    line: int
+    values: Sequence[EventValue] = ()
+
+
 class ProgramSequence:
     """Runs canonical blocks.
 
@@ -85,11 +99,18 @@ class ProgramSequence:
     """
 
     def __init__(
-        self, motion: PathMotion, functions: FunctionOutput, axes: Sequence[str], homing: AxisHoming, timers: Timers
+        self,
+        motion: PathMotion,
+        functions: FunctionOutput,
+        axes: Sequence[str],
+        homing: AxisHoming,
+        measuring: Measuring,
+        timers: Timers,
     ) -> None:
         """`axes`: nodes of the channel's axes, in its order."""
         self._motion = motion
         self._homing = homing
+        self._measuring = measuring
         self._timers = timers
         self._axes = axes
         self._functions = functions
@@ -120,10 +141,12 @@ class ProgramSequence:
         """The cycle block in which it was found: its functions go out with the next one."""
         self.handshake = Handshake()
         self._feedback: Mapping[str, CycleBlock] = {}
+        self._read_at = 0
+        """First cycle of the last block."""
         self.notes: list[tuple[int, str, int]] = []
         """Warnings for the channel to publish: number, text and line."""
-        self.messages: list[tuple[str, int]] = []
-        """Messages of the program for the channel to publish, with their lines."""
+        self.messages: list[Told] = []
+        """Messages of the program for the channel to publish."""
         self.offsets: OffsetReport | None = None
         """Offsets that count from the active block on, for the channel to publish."""
 
@@ -179,6 +202,7 @@ class ProgramSequence:
         homes = self.phase is Phase.HOMING
         self.phase = Phase.RAMP_DOWN
         self._awaits_event = False
+        self._measuring.end()
         self._outgoing = Outgoing(commands=[command for command in self._outgoing.commands if command.command in ENDS])
         if homes:
             self._outgoing.commands += self._homing.stop(self._feedback)
@@ -204,7 +228,28 @@ class ProgramSequence:
         self._outgoing.commands += self._functions.spindles.decouple_all()
 
     def measuring_event(self) -> bool:
-        """The functions of type MNE_SNS of the active motion go out; False when there are none."""
+        """The signal of the PLC: a measuring run ends, functions of type MNE_SNS go out; False without either.
+
+        A measuring run reads the newest blocks of the axes first.
+        """
+        if self._block is not None and measures(self._block.motion):
+            self._measuring.commanded = self._measuring.awaits
+            return self._measuring.awaits
+        return self._send_at_event()
+
+    def _touch(self) -> None:
+        """The probe has switched: the path stops on its ramp, its distance to go is deleted."""
+        self._send_at_event()
+        if self.phase is Phase.MOTION:
+            self._motion.stop()
+        measuring = self._measuring
+        self.messages.append(Told(MEASURED, measuring.text(), self.source.line, measuring.values()))
+        measuring.overrun(self._motion.rest)
+        if self.phase is Phase.WAIT_SIGNAL:
+            self._end_motion()
+
+    def _send_at_event(self) -> bool:
+        """The functions of type MNE_SNS of the active block go out; False when there are none."""
         if not self._awaits_event or self._block is None:
             return False
         self._awaits_event = False
@@ -243,10 +288,16 @@ class ProgramSequence:
             self.motion_ended()
 
     def read(self, cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
-        """Reads the blocks of spindles and homing axes for the cycles before `cycle`. Raises CncError 22035."""
+        """Reads the blocks of spindles, homing and measuring axes for the cycles before `cycle`.
+
+        Raises CncError 22035, 22051, 22052.
+        """
+        passed, self._read_at = cycle - self._read_at, cycle
         self._feedback = feedback
         if self.phase is Phase.HOMING:
             self._home()
+        elif self._measuring.awaits:
+            self._measure(passed)
         spindles = self._functions.spindles
         ended = spindles.read(cycle, feedback)
         for text in ended:
@@ -256,6 +307,16 @@ class ProgramSequence:
         for spindle in spindles:
             if lost := spindle.lost_speed(cycle, watched=runs and spindle.node not in waited_for):
                 self._note(COMMANDED_BY_OTHERS, f"{lost}; the program continues")
+
+    def _measure(self, passed: int) -> None:
+        """A measuring run waits for its signal; `passed`: cycles since the last block."""
+        measuring, feedback = self._measuring, self._feedback
+        if measuring.read(feedback):
+            self._touch()
+        elif self.phase is not Phase.WAIT_SIGNAL:
+            measuring.follow(feedback)
+        elif measuring.settled(feedback, passed):
+            self._end_motion()
 
     def _holds(self, wait: Wait) -> bool:
         """The path waits for it now."""
@@ -304,7 +365,7 @@ class ProgramSequence:
         if self.phase is Phase.WAIT_GEAR:
             self._functions_before(cycle)
         elif self.phase is Phase.WAIT_BEFORE:
-            return self._start_motion()
+            return self._start_motion(first_cycle, cycle)
         elif self.phase is Phase.WAIT_END:
             return self._finish_if_good(first_cycle)
         else:
@@ -322,11 +383,23 @@ class ProgramSequence:
             self._end_program()
             self._stop_spindles()
             return
-        self._motion.finish()
+        if self._measuring.awaits:
+            self._motion.finish()
+            self.phase = Phase.WAIT_SIGNAL
+            return
+        self._end_motion()
+
+    def _end_motion(self) -> None:
+        """The motion has finished; what comes after it goes out."""
+        if self._measuring.reached:
+            self._motion.abandon()
+        else:
+            self._motion.finish()
+        self._measuring.end()
         if self._awaits_event:
             text = "no measuring event has come in the block; its functions go out after the motion"
             self._note(NO_MEASURING_EVENT, text)
-            self.measuring_event()
+            self._send_at_event()
         if self._block is not None:
             self._queue(self._functions.of_block(self._block, Moment.AFTER))
         if self._block is not None and self._block.stop == "end":
@@ -350,7 +423,7 @@ class ProgramSequence:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
             actual = actual_positions(self._feedback, self._axes)
-            self.stream.give(actual, self._motion.position, self._timers.read)
+            self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch)
         block: CanonicalBlock | None = None
         try:
             block = self._following.take()
@@ -391,7 +464,7 @@ class ProgramSequence:
         """Messages and timers of the block. Raises CncError 22029 for an error that the program orders."""
         for function in block.functions:
             if isinstance(function, Message):
-                self.messages.append((function.text, self.source.line))
+                self.messages.append(Told(PROGRAM_MESSAGE, function.text, self.source.line))
             elif isinstance(function, Timer):
                 self._timers.carry_out(function, cycle)
             elif isinstance(function, OrderedError):
@@ -399,20 +472,34 @@ class ProgramSequence:
                     raise CncError(ORDERED_ERROR, function.text)
                 self._note(ORDERED_ERROR, function.text)
 
-    def _start_motion(self) -> bool:
-        """False while the interpreter computes the block with which it is linked."""
+    def _start_motion(self, first_cycle: int, cycle: int) -> bool:
+        """False while the interpreter computes the block with which it is linked, and while a measuring run waits for
+        the next block: then all cycles before it have been reported.
+        """
         motion = self._block.motion if self._block else None
         if motion is None:
             self.motion_ended()
         elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
-        elif self._following.awaits_next(motion):
-            return False
-        else:
+        elif not (isinstance(motion, LinearMove) and motion.measures):
+            if self._following.awaits_next(motion):
+                return False
             self._motion.start(motion, self._following)
             self.phase = Phase.MOTION
+        elif cycle != first_cycle + 1 or not self._measuring.ready(motion, self._feedback):
+            return False
+        else:
+            self._start_measuring(motion)
         return True
+
+    def _start_measuring(self, motion: LinearMove) -> None:
+        """Raises CncError 50052, and those of PathMotion.start."""
+        self._measuring.begin(motion, self._feedback)
+        if short := self._measuring.short_strokes(self._motion.braking(motion)):
+            self._note(STROKE_SHORT, short)
+        self._motion.start(motion)
+        self.phase = Phase.MOTION
 
     def _open_waits(self) -> Container[Moment]:
         """The moments before which the path has to stop; all in single block."""
@@ -456,13 +543,13 @@ class ProgramSequence:
 
     @property
     def awaits_blocks(self) -> bool:
-        """The path would go on if the interpreter knew how."""
+        """The path would continue if the interpreter knew how."""
         return self._following.busy
 
     @property
     def motion_begun(self) -> bool:
         """The motion of the block that is not through yet is active, or has finished."""
-        return self.phase in (Phase.MOTION, Phase.WAIT_AFTER)
+        return self.phase in (Phase.MOTION, Phase.WAIT_SIGNAL, Phase.WAIT_AFTER)
 
     def _finish_if_good(self, first_cycle: int) -> bool:
         """False while functions before a fault are still to go out. Raises ProgramError."""

@@ -29,11 +29,13 @@ from cnc_ptp.nc.canonical_text import format_function
 from cnc_ptp.nc.flow.lines import Line
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path
+from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.program import ModalState
 
 NOT_FOUND: Final = 22040
 NO_SUCH_PASS: Final = 22041
 NEEDS_THE_RUN: Final = 22042
+MEASURES: Final = 50718
 FILE_NOT_CALLED: Final = 22043
 ENDS_BEFORE: Final = 22044
 TOOL_AXES: Final = {17: "Z", 18: "Y", 19: "X"}
@@ -75,7 +77,7 @@ class ProgramStart:
         """The blocks of a `stream` that searches, without those before the start point.
 
         `start`: where the axes are (mm, deg), by name `axes`; `modal`: the state of the interpreter.
-        Raises CncError 22040 … 22044.
+        Raises CncError 22040 … 22044, 50718.
         """
         skipped = SkippedFunctions()
         offsets: OffsetReport | None = None
@@ -106,8 +108,9 @@ class ProgramStart:
         if awaits_path(block):
             source = block.source
             what = "homes axes" if isinstance(block.motion, HomeAxes) else "reads what only the run knows"
+            what = "measures" if measures(block.motion) else what
             reason = f"line {source.line} '{source.text.strip()}' {what}, and it is before {self.point.name}"
-            raise self._refused(NEEDS_THE_RUN, reason, source.file)
+            raise self._refused(MEASURES if measures(block.motion) else NEEDS_THE_RUN, reason, source.file)
         for function in block.functions:
             if isinstance(function, OrderedError) and function.severe:
                 reason = f"{function.text} in line {block.source.line} ends it before {self.point.name}"

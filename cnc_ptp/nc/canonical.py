@@ -57,7 +57,8 @@ class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
-    `transition` to the next motion.
+    `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
+    ends.
     """
 
     target: tuple[float, ...]
@@ -66,6 +67,7 @@ class LinearMove(NamedTuple):
     slope: str = ""
     full_override: bool = False
     transition: Transition = THROUGH
+    measures: tuple[int, ...] = ()
 
 
 Direction = tuple[float, ...]

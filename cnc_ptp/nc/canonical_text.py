@@ -100,7 +100,8 @@ def _motion(motion: Motion) -> str:
     slope += " G166" if motion.full_override else ""
     slope += _transition(motion.transition)
     if isinstance(motion, LinearMove):
-        return (f"rapid {target}" if motion.rapid else f"line {target} feed {number(motion.feed)}") + slope
+        kind = "measure" if motion.measures else "line"
+        return (f"rapid {target}" if motion.rapid else f"{kind} {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"
     if motion.directions is not None:
         plane += f" along {_numbers(motion.directions[0])} {_numbers(motion.directions[1])}"

@@ -94,6 +94,12 @@ DWELL_TWICE = Fault(20013, "dwell time given directly and by {word}")
 DWELL_NOT_ALONE = Fault(20685, "G04 must be alone in its block, not with {word}")
 PLANE_AXIS_MISSING = Fault(21031, "plane {g} needs the axes {needed}; axes of this channel: {known}")
 
+# Measuring
+MEASURING_WITHOUT_AXIS = Fault(21100, "{g} without an axis: its axis words are the end of the measuring run")
+MEASURING_NOWHERE = Fault(21101, "{g} goes nowhere: the axes are at the end of the measuring run already")
+MEASURING_IN_CYCLE = Fault(21102, "{g} while the drilling cycle G{cycle} is on; G80 ends it")
+MEASURING_CONTOURING = Fault(120652, "{g} while contouring ({code}) is on; G260 ends it")
+
 # Arcs
 CENTRE_NOT_IN_PLANE = Fault(21032, "centre word {word} is not in the plane {g} ({plane})")
 ARC_WITHOUT_CENTRE = Fault(21033, "{g} without a centre ({words}) and without a radius (R)")

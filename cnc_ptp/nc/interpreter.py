@@ -30,6 +30,7 @@ from cnc_ptp.nc.feeds import timed
 from cnc_ptp.nc.flow.execution import COMPUTES, FOUND, PAUSE, Execution, Limits, with_calls
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.functions import block_functions
+from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
@@ -134,10 +135,23 @@ def interpret(
                 if isinstance(motion, HomeAxes) and values.position:
                     state.position = values.position
                     refresh(channel, state)
+            if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
+                _take_measured(channel, values, motion, values.touch)
         if not state.reported:
             yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
     except ProgramError as error:
         raise with_calls(error, execution) from None
+
+
+def _take_measured(channel: Channel, values: Values, motion: LinearMove, touch: Touch) -> None:
+    """Behind a measuring run: where the axes stand, and what it has measured."""
+    state = values.state
+    reported, state.position = state.reported, values.position
+    refresh(channel, state)
+    state.reported = reported
+    point = touch.position or state.position
+    programmed = point if state.frame is None else state.frame.to_programmed(point)
+    values.measured = results(motion, touch, programmed, values.measured)
 
 
 def _with_offsets(channel: Channel, state: ModalState, block: CanonicalBlock) -> CanonicalBlock:
@@ -213,7 +227,9 @@ def _moved(
         return motion
     programmed = motion.target
     motion = timed(channel, state, place(channel, state, block, motion))
-    if motion.target == state.position and not isinstance(motion, CircularMove):
+    if isinstance(motion, LinearMove) and motion.measures:
+        motion = placed(motion, state.position, block)
+    elif motion.target == state.position and not isinstance(motion, CircularMove):
         state.programmed = programmed
         return None
     if check_target is not None:
@@ -223,7 +239,7 @@ def _moved(
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
-    if transition is not THROUGH:
+    if transition is not THROUGH and not measures(motion):
         motion = motion._replace(transition=transition)
     if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
         motion = motion._replace(full_override=True)
@@ -279,7 +295,7 @@ def _with_new_tool(
 
 def awaits_path(block: CanonicalBlock) -> bool:
     """Behind this block the interpreter needs what only the run knows."""
-    return isinstance(block.motion, HomeAxes) or reads_the_run(block)
+    return isinstance(block.motion, HomeAxes) or measures(block.motion) or reads_the_run(block)
 
 
 def reads_the_run(block: CanonicalBlock) -> bool:

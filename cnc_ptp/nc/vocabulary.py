@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, motions, spindles, transitions
+from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 from cnc_ptp.nc.tools.compensation import follow_plane
@@ -92,6 +92,7 @@ _G_CODES = (
     GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
+    GCode(100, "path", motion=measuring.measuring_run, modal=False),
     GCode(165, "centre correction"),
     GCode(FULL_OVERRIDE, "path override"),
     GCode(167, "spindle override", spindle=True),

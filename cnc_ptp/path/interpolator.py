@@ -92,6 +92,11 @@ class PathInterpolator:
         return 0.0 if self.done else self._length - self.state[0]
 
     @property
+    def end(self) -> float:
+        """Path length (mm) at which the path comes to rest, as it is planned now."""
+        return self._profile.end[0]
+
+    @property
     def next_offset(self) -> float:
         """s by which the next cycle's predecessor is behind the exact end of the last element; 0 or less."""
         return self._next_offset

@@ -193,6 +193,21 @@ class PathMotion:
         """The last cycle that was given out."""
         return self.states, self.velocity, self.distance_to_go
 
+    @property
+    def rest(self) -> tuple[float, ...]:
+        """Where the axes come to rest on the active element, as it is planned now."""
+        if self._evaluate is None or self._element is None:
+            return self.position
+        return tuple([state[0] for state in self._evaluate(self._interpolator.end, 0.0, 0.0, 0.0)])
+
+    def braking(self, motion: Path) -> tuple[float, ...]:
+        """Distance of each axis while the path brakes from the feed of a straight motion that starts here; mm, deg."""
+        plan = self.plan(motion, self.position)
+        planner, length = (STEPS if plan.steps else JERK_LIMITED), plan.element.length
+        way = planner.stopping_distance(min(plan.feed, plan.limits.velocity), 0.0, plan.limits)
+        ends = zip(self.position, motion.target, strict=True)
+        return tuple([abs(end - begin) / length * way if length > 0.0 else 0.0 for begin, end in ends])
+
     def place(self, index: int, position: float) -> None:
         """An axis is at `position`, to which something else has moved it."""
         if position != self.states[index][0]:

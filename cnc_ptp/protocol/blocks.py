@@ -216,6 +216,10 @@ class AxisBlock:
     modulo_length: float = 0.0
     torque_digits: float = 0.0
     couples_actual: bool = False
+    probe_on: bool = False
+    probe_switched: bool = False
+    probe_cycle: float = 0.0
+    probe_position: float = 0.0
 
 
 class Refusal(NamedTuple):

@@ -80,7 +80,7 @@ COMMAND_TEXTS: Mapping[str, Mapping[str, str]] = {
         "reset": "aborts the program; path and spindles stop on their ramps",
         "mdi": "executes NC text (manual data input)",
         "acknowledge": "acknowledges a handshake request",
-        "measuring_event": "the probe has switched (MNE_SNS)",
+        "measuring_event": "the probe has switched: ends a measuring run (G100), sends functions of type MNE_SNS",
         "set_zero_offset": "a value of a zero offset; it counts when the offset is selected next",
         "teach_zero_offset": "the present position becomes a zero offset",
         "set_clamp_position": "clamp position of the next program",

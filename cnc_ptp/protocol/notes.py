@@ -14,6 +14,8 @@ PROGRAM_MESSAGE = 22028
 """Event of #MSG."""
 START_STEP = 22045
 """Event: what is done at the start of a program that does not begin at its beginning."""
+MEASURED = 22050
+"""Event: what a measuring run has measured."""
 ORDERED_ERROR = 22029
 """Warning or error of #ERROR."""
 
@@ -51,7 +53,7 @@ class Note:
     @classmethod
     def of_event(cls, event: Any) -> Note | None:
         """`event`: an Event or its message; None for one that is neither a warning nor a message of a program."""
-        if event.severity == Severity.INFO and event.error_id in (PROGRAM_MESSAGE, START_STEP):
+        if event.severity == Severity.INFO and event.error_id in (PROGRAM_MESSAGE, START_STEP, MEASURED):
             return cls(event.error_id, event.text, message_at=event.cycle)
         return cls(event.error_id, event.text) if event.severity == Severity.WARNING else None
 

@@ -192,7 +192,7 @@ def test_a_measuring_event_that_nobody_waits_for_is_refused() -> None:
     bench = MachineBench("%P\nG01 X20 F3000 M03 S1200\nM30", machine=mill(m3=MNE_SNS), end_when_idle=False).run(0.1)
     assert bench.give("channel", "measuring_event").accepted
     assert bench.refused("channel", "measuring_event") == (
-        "P-ERR-22020 channel channel: measuring_event refused: no function of the running block waits for one; "
+        "P-ERR-22020 channel channel: measuring_event refused: nothing in the running block waits for one; "
         "nothing was changed"
     )
 

@@ -43,6 +43,7 @@ SLAVE_SCENARIO = """
 - {at: 1.4, to: x, do: stop}
 """
 
+PROBE = MILL.parents[1] / "examples" / "probe.yaml"
 Z_IN_CHANNEL = '          "2": {bezeichnung: Z, log_achs_nr: 3}\n'
 ON_A_PATH = """%CIRCLE
 N10 G01 X20 Y0 F6000
@@ -163,6 +164,39 @@ def test_programs_that_are_interpreted_while_they_run_equal_the_offline_run(fold
     assert states_equal(folder / "g.mcap", folder / "h.mcap") == []
     states = verified(folder / "h.mcap").states
     assert states["/z/state"]["set_position"][-1] == pytest.approx(-90.0 + 1.5 + 75.2 - 0.02, abs=1e-12)
+
+
+MEASURING = """%P
+N10 G60 G100 X60 F1200 M97
+N20 P1 = V.A.MEAS.PCS.VALUE.X
+N30 G91 G01 X-1 F3000
+N40 G90 X[P1 - 5]
+N50 G100 Y40 Z-60 F900
+N60 G00 Z[V.A.MESS.Y / 10]
+N70 G100 Z-60 F600
+N80 $IF V.A.MERF.Z
+N90 #MSG ["Y %f, Z %f", V.A.MESS.Y, V.A.MOFFS.Z]
+N100 $ENDIF
+M30
+"""
+MEASURING_SCENARIO = (
+    "- {at: 4.5, to: channel, do: measuring_event}\n- {at: 2.5, to: channel, do: set_override, percent: 70}\n"
+)
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_measuring_in_the_graph_equals_the_offline_run(folder, options):
+    """Signals of simulated probes and of the PLC: the same instants, positions and stops."""
+    (folder / "measuring.nc").write_text(MEASURING)
+    (folder / "measuring.yaml").write_text(MEASURING_SCENARIO)
+    job = (PROBE, "--program", folder / "measuring.nc", "--scenario", folder / "measuring.yaml")
+    told = run("simulate", *job, "--record", folder / "m.mcap").stdout
+    output = run("run", *job, *options, "--record", folder / "n.mcap").stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in told
+    messages = [line for line in told.splitlines() if line.startswith("message: ")]
+    assert len(messages) == 4 and [line for line in output.splitlines() if line.startswith("message: ")] == messages
+    assert states_equal(folder / "m.mcap", folder / "n.mcap") == []
+    assert len(verified(folder / "n.mcap").states) == 4
 
 
 CONTROLLED = """%P

@@ -12,6 +12,7 @@ from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.expressions.reading import Reading, Units, axis_of, in_mm, length
 from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.nc.measuring import NOT_MEASURED, Measured
 from cnc_ptp.nc.tools.readings import TOOL_READINGS
 from cnc_ptp.parameters.list_units import LARGEST_POSITION
 
@@ -156,6 +157,20 @@ def actual(values: Values, units: Units, column: int) -> Scalar:
     return length(values, axis, values.actual[axis])
 
 
+def measured(text: str, of: Callable[[Measured], float]) -> Reading:
+    """A result of the last measuring run of an axis (Measured), 0 before the first one."""
+
+    def read(values: Values, units: Units, column: int) -> Scalar:
+        axis = axis_of(values, units[0], column)
+        return length(values, axis, of(values.measured.get(axis, NOT_MEASURED)))
+
+    return Reading(text, read, synchronises=True)
+
+
+def reached(values: Values, units: Units, column: int) -> Scalar:
+    return float(values.measured.get(axis_of(values, units[0], column), NOT_MEASURED).reached)
+
+
 def spindle_speed(values: Values, units: Units, column: int) -> Scalar:
     return values.state.speeds.get(spindle_of(values, units[0], column), 0.0)
 
@@ -210,6 +225,18 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     "V.G.ACS_ACTIVE": (((), Reading("TRUE with #ACS ON", lambda values, u, c: min(1.0, systems(values, "#ACS")))),),
     "V.G.ACS_COUNT": (((), Reading("number of #ACS that are on", lambda values, u, c: systems(values, "#ACS"))),),
     "V.A.ACT_POS": ((("*",), Reading("actual position at the instant", actual, synchronises=True)),),
+    "V.A.MESS": ((("*",), measured("measured position, with all offsets", lambda axis: axis.machine)),),
+    "V.A.MERF": ((("*",), Reading("1 if the probe has switched in the measuring run", reached, synchronises=True)),),
+    "V.A.MOFFS": (
+        (("*",), measured("from the end of the measuring run to the measured position", lambda axis: axis.offset)),
+    ),
+    "V.A.MEAS": (
+        (("ACS", "VALUE", "*"), measured("measured position, with all offsets", lambda axis: axis.machine)),
+        (
+            ("PCS", "VALUE", "*"),
+            measured("the same without offsets, as programs name it", lambda axis: axis.programmed),
+        ),
+    ),
     "V.G.BLOCK_NR": (((), Reading("last N word", lambda values, u, c: float(values.block_number))),),
     "V.G.FEEDRATE": (
         (

@@ -7,6 +7,7 @@ from cnc_ptp.errors import nearest_name
 from cnc_ptp.nc.canonical import Source, number
 from cnc_ptp.nc.expressions import expression_faults as faults
 from cnc_ptp.nc.faults import Fault, ProgramError
+from cnc_ptp.nc.measuring import Measured, Touch
 from cnc_ptp.nc.program import Channel, ModalState
 
 Scalar = float | str
@@ -87,7 +88,11 @@ class Values:
         self.actual: tuple[float, ...] = ()
         """Positions of the axes at the last synchronisation."""
         self.position: tuple[float, ...] = ()
-        """Their set positions then, which a homing has changed."""
+        """Their set positions then, which a homing or a measuring run has changed."""
+        self.touch: Touch | None = None
+        """How the last measuring run has ended."""
+        self.measured: dict[int, Measured] = {}
+        """Results of measuring runs by axis."""
         self.timers: dict[int, float] = {}
         """V.G.TIMER, ms."""
         self.parameters: dict[int, float] = {}
@@ -109,6 +114,7 @@ class Values:
         other = Values(self.channel, state)
         other.parameters, other.arrays = dict(self.parameters), self.arrays
         other.timers = dict(self.timers)
+        other.measured = dict(self.measured)
         other.arguments = dict(self.arguments)
         other.program, other.shared = copies(self.program), copies(self.shared)
         other.local, other.cycle = copies(self.local), copies(self.cycle)

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from cnc_ptp.nc import feeds, functions, motions, transitions
+from cnc_ptp.nc import feeds, functions, measuring, motions, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
@@ -40,6 +40,7 @@ _G_CODES = (
     GCode(21, "units", prepare=codes.unit),
     GCode(28, "block", motion=own.reference_point, modal=False, prepare=own.require_axes),
     GCode(30, "block", later="a second reference point"),
+    GCode(31, "path", motion=measuring.skip, modal=False),
     GCode(33, "path", later="thread cutting"),
     GCode(40, "tool radius"),
     GCode(41, "tool radius", later="compensation of the tool radius"),

@@ -11,6 +11,7 @@ from cnc_ptp.parameters.view.encoder import encoder_increment
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.gears import active_gear, emergency_deceleration
 from cnc_ptp.parameters.view.homing_view import HomingParameters, homing_view
+from cnc_ptp.parameters.view.probe_view import ProbeParameters, probe_view
 from cnc_ptp.parameters.view.telegram import DriveType
 
 MODULO, MODULO_LINEAR = 0x4, 0x400
@@ -73,6 +74,7 @@ class AxisParameters:
     start_position: float
     """As the axis counts it: 0 for one that is not referenced."""
     homing: HomingParameters
+    probe: ProbeParameters
     control: ControlParameters
 
 
@@ -98,6 +100,7 @@ def axis_view(parameters: ParameterSet, cycle_time: float) -> AxisParameters:
         max_override_percent=parameters.percent(ids.KENNGR_MAX_VB_OVERRIDE),
         start_position=start_position(parameters),
         homing=homing_view(parameters, gear, high - low),
+        probe=probe_view(parameters),
         control=control_view(parameters, gear, cycle_time),
         **given_fields(AxisParameters, parameters, gear),
     )

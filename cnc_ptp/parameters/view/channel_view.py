@@ -118,6 +118,8 @@ class ChannelParameters:
     """Of #HSC ON, mm, 0 none …"""
     hsc_track_dev: Annotated[float, ids.HSC_TRACK_DEV] = 0.0
     """… and mm or deg of the other axes, 0 none."""
+    signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
+    """A measuring run without a signal of the probe is an error."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
