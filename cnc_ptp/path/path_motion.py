@@ -203,7 +203,7 @@ class PathMotion:
     def braking(self, motion: Path) -> tuple[float, ...]:
         """Distance of each axis while the path brakes from the feed of a straight motion that starts here; mm, deg."""
         plan = self.plan(motion, self.position)
-        planner, length = (STEPS if plan.steps else JERK_LIMITED), plan.element.length
+        planner, length = plan.planner, plan.element.length
         way = planner.stopping_distance(min(plan.feed, plan.limits.velocity), 0.0, plan.limits)
         ends = zip(self.position, motion.target, strict=True)
         return tuple([abs(end - begin) / length * way if length > 0.0 else 0.0 for begin, end in ends])
