@@ -18,6 +18,7 @@ from cnc_ptp.parameters import (
 from cnc_ptp.parameters.list_units import to_kernel
 from cnc_ptp.parameters.view.encoder import resolution
 from cnc_ptp.parameters.view.homing_view import HomingParameters
+from cnc_ptp.parameters.view.probe_view import ProbeParameters
 
 NONE = Synchronisation.NO_SYNCH
 
@@ -122,6 +123,7 @@ def test_machine_of_defaults() -> None:
             to_zero_pulse=0.001,
             pulse_distance=10.0,
         ),
+        probe=ProbeParameters(measures=False, stroke=0.0, below=-214748.3648, above=214748.3647),
         control=machine.axes["x"].control,
     )
 

@@ -14,7 +14,18 @@ MILL = ROOT / "config" / "mill.yaml"
 PTP = ROOT / "config" / "ptp.yaml"
 
 
-OF_THE_BLOCK = ("master", "target_velocity", "modulo_begin", "modulo_length", "torque_digits", "couples_actual")
+OF_THE_BLOCK = (
+    "master",
+    "target_velocity",
+    "modulo_begin",
+    "modulo_length",
+    "torque_digits",
+    "couples_actual",
+    "probe_on",
+    "probe_switched",
+    "probe_cycle",
+    "probe_position",
+)
 
 
 def call(*arguments):

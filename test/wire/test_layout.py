@@ -96,11 +96,13 @@ def test_layout_of_a_block_gives_the_bytes_of_encode(count, first, values):
         "torque_digits": 250.0,
     }
     of_the_block["couples_actual"] = True
+    probe = {"probe_on": True, "probe_switched": True, "probe_cycle": 3.25, "probe_position": -12.5}
+    of_the_block |= probe
     block = {"header": Header(), "first_cycle": first, "count": count, **of_the_block}
     block |= {name: [value] * count for name, value in zip(names, [*values, 3, 4, 5], strict=True)}
     row = Layout(schema, block | dict.fromkeys(names, [0] * count)).empty(1)
     row["first_cycle"] = first
-    for name in ("target_velocity", "modulo_begin", "modulo_length", "torque_digits", "couples_actual"):
+    for name in ("target_velocity", "modulo_begin", "modulo_length", "torque_digits", "couples_actual", *probe):
         row[name] = of_the_block[name]
     for name in names if count else ():
         row[name] = block[name]

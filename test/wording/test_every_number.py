@@ -18,6 +18,8 @@ APART = {
     22025: "channel/test_channel_spindle_ends.py",
     22026: "axis/test_feed_release.py",
     22045: "channel/test_program_start.py",
+    22050: "channel/test_measuring.py",
+    22053: "channel/test_measuring.py",
     23053: "axis/test_cam.py",
     25102: "plc/test_setpoint_file.py",
     25103: "axis/test_slave_kinds_cyclic.py",
