@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -458,3 +459,37 @@ def test_an_axis_that_rests_is_not_waited_for() -> None:
     block = AxisBlock(0, 10, actual_position=[10.0] * 10)
     measuring.begin(LinearMove((10.0,), False, 5.0, measures=(0,)), {"x": block})
     assert [measuring.settled({"x": block}, 10) for _ in range(2)] == [False, True]
+
+
+# properties
+
+
+@pytest.mark.parametrize("cycles", [1, 3, 25])
+def test_what_is_measured_does_not_depend_on_the_length_of_blocks(cycles: int) -> None:
+    machine = replace(probe(), block_cycles=cycles)
+    bench = MachineBench('G100 X60 Y30 F900\n#MSG ["%f %f", V.A.MESS.X, V.A.MESS.Y]\nM30', machine=machine).run()
+    assert_clean(bench)
+    assert numbers(bench) == pytest.approx([ABOVE, ABOVE / 2.0], abs=ENCODER)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_runs_measure_the_surface_within_the_limits(seed: int) -> None:
+    """Feed, place, direction, override and a hold at random: exact position, limits, and it stops behind the surface."""
+    dice = random.Random(seed)
+    place, feed = round(dice.uniform(3.0, 40.0), 4), dice.uniform(200.0, 6000.0)
+    sign, at = dice.choice([1, -1]), dice.uniform(0.1, 1.0)
+    surface = {"above": place, "below": -100.0} if sign > 0 else {"above": 100.0, "below": -place}
+    scenario = f"""
+- {{at: {at}, to: channel, do: set_override, percent: {dice.uniform(5, 100)}}}
+- {{at: {at + 0.2}, to: channel, do: feed_hold, enabled: true}}
+- {{at: {at + 0.5}, to: channel, do: feed_hold, enabled: false}}
+"""
+    program = f'G100 X{sign * 60} F{feed:.3f}\n#MSG ["%f", V.A.MESS.X]\nG91 X{-sign} F500\nM30'
+    bench = run(program, scenario, x={**surface, "stroke": 0.0})
+    assert_clean(bench)
+    assert numbers(bench) == pytest.approx([sign * place], abs=1e-6)
+    assert max(sign * p for p in bench.column("x", "set_position")) == pytest.approx(
+        sign * bench.position("x") + 1.0, abs=1e-9
+    )
+    assert sign * bench.position("x") + 1.0 >= place
+    assert_axis_smooth(bench.blocks["x"], acceleration=A, jerk=JERK)
