@@ -111,7 +111,7 @@ class BlockStream:
         return None if self._ended else BUSY
 
     def _interpret(self) -> None:
-        """One block more, or a computation of which none has come yet, which takes a cycle."""
+        """One block more, or a computation of which none has come yet, which takes all that is left of the cycles."""
         try:
             block = next(self._blocks, None)
         except ProgramError as fault:
@@ -120,7 +120,7 @@ class BlockStream:
         if block is None:
             self._ended = True
         elif block is BUSY:
-            self._left -= self._for_cycle
+            self._left = 0
         else:
             self._left -= 1
             self._ahead.append(block)

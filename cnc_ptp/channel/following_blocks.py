@@ -23,6 +23,8 @@ class FollowingBlocks:
     def __init__(self, functions: FunctionOutput, waits: Callable[[], Container[Moment]]) -> None:
         """`waits`: the moments before which the path has to stop."""
         self._functions, self._waits = functions, waits
+        self.optional_stop = False
+        """M01 stops like M00."""
         self.stream = NO_BLOCKS
         self.busy = False
         self._active: CanonicalBlock | None = None
@@ -57,7 +59,7 @@ class FollowingBlocks:
         self.busy = False
         place = self._accepted
         before = self._ahead[place - 1] if place else self._active
-        if before is None or before.stop or self._functions.goes_out_behind(before):
+        if before is None or self._stops(before) or self._functions.goes_out_behind(before):
             return None
         waits = self._waits()
         if any(moment in waits for moment in LATER_WAITS):
@@ -72,7 +74,7 @@ class FollowingBlocks:
             if isinstance(block.motion, (LinearMove, CircularMove)):
                 self._shown = place
                 return block.motion
-            if block.motion is not None or block.stop:
+            if block.motion is not None or self._stops(block):
                 return None
 
     def awaits_next(self, motion: Motion | None) -> bool:
@@ -84,6 +86,10 @@ class FollowingBlocks:
     def accept(self) -> None:
         """The path continues with the motion that `peek` has shown."""
         self._accepted = self._shown
+
+    def _stops(self, block: CanonicalBlock) -> bool:
+        """The program stops behind the block."""
+        return block.stop not in ("", "M01") or (block.stop == "M01" and self.optional_stop)
 
     def _synchronises(self, block: CanonicalBlock, place: int, waits: Container[Moment]) -> bool:
         """#EXPL SYN with something to wait for."""

@@ -123,7 +123,6 @@ class ProgramSequence:
         """From where the subroutine of the active block was called, the innermost first."""
         self.single_block = ""
         """As set_single_block has it."""
-        self.optional_stop = False
         self._block: CanonicalBlock | None = None
         self._following = FollowingBlocks(functions, self._open_waits)
         self._keep: Container[str] = ()
@@ -180,8 +179,20 @@ class ProgramSequence:
     def set_single_block(self, mode: str) -> None:
         """`block`: the program stops behind each block, `motion`: behind each motion, "": behind none."""
         self.single_block = mode
-        if mode and self.phase is Phase.MOTION:
-            self._motion.halt()
+        if self.phase is Phase.MOTION:
+            if mode:
+                self._motion.halt()
+            else:
+                self._motion.resume()
+
+    @property
+    def optional_stop(self) -> bool:
+        """M01 stops like M00."""
+        return self._following.optional_stop
+
+    @optional_stop.setter
+    def optional_stop(self, enabled: bool) -> None:
+        self._following.optional_stop = enabled
 
     def halted(self) -> None:
         """The path has halted at the end of the active block."""

@@ -21,10 +21,12 @@ from cnc_ptp.path.linked_path import can_follow
 from cnc_ptp.path.path_motion import PathMotion, Plan
 
 Motion = LinearMove | CircularMove | Dwell | HomeAxes
-BUDGET: Final = 40_000.0
+BUDGET: Final = 10_000.0
 """Cost of what is planned, in blocks."""
 COST_PER_SECOND: Final = 250.0
 """Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 4 ms."""
+LONG: Final = 5.0
+"""s of a motion from which on its time in the sketch is good enough."""
 WINDOW: Final = 1_000.0
 """Cost of a window."""
 CORNER: Final = 0.6
@@ -53,7 +55,7 @@ class TimeEstimate:
         costs = [cost(block, seconds) for block, seconds in zip(blocks, nominal, strict=True)]
         every = ceil(sum(costs) / BUDGET)
         if every <= 1:
-            return self._planned(blocks, places)
+            return self._planned(blocks, places, nominal)
         return self._sampled(blocks, places, nominal, costs, every)
 
     def _sampled(
@@ -71,7 +73,7 @@ class TimeEstimate:
             begin = len(seconds)
             end = end_of_window(costs, begin)
             if number % every == 0:
-                planned = self._planned(blocks[begin:end], places[begin:end])
+                planned = self._planned(blocks[begin:end], places[begin:end], nominal[begin:end])
                 factor = lengthening(blocks[begin:end], planned, nominal[begin:end], factor)
             for index in range(begin, end):
                 moves = isinstance(blocks[index].motion, (LinearMove, CircularMove))
@@ -79,8 +81,21 @@ class TimeEstimate:
             number += 1
         return seconds
 
-    def _planned(self, blocks: Sequence[CanonicalBlock], places: Sequence[tuple[float, ...]]) -> list[float]:
-        """Of blocks that begin at rest, and behind which the path stops."""
+    def _planned(
+        self, blocks: Sequence[CanonicalBlock], places: Sequence[tuple[float, ...]], nominal: Sequence[float]
+    ) -> list[float]:
+        """Of blocks that begin at rest, and behind which the path stops; long ones are not run through."""
+        seconds: list[float] = []
+        begin = 0
+        for index, block in enumerate(blocks):
+            if is_long(block, nominal[index]):
+                seconds += self._run(blocks[begin:index], places[begin:index])
+                seconds.append(nominal[index])
+                begin = index + 1
+        return seconds + self._run(blocks[begin:], places[begin:])
+
+    def _run(self, blocks: Sequence[CanonicalBlock], places: Sequence[tuple[float, ...]]) -> list[float]:
+        """Of blocks between two stops of the path."""
         seconds: list[float] = []
         self._following.begin(BlockStream.of(blocks))
         while (block := self._following.take()) is not None:
@@ -201,7 +216,14 @@ def places_of(blocks: Sequence[CanonicalBlock], start: tuple[float, ...]) -> lis
 
 def cost(block: CanonicalBlock, seconds: float) -> float:
     """Of planning a block, in blocks."""
-    return 1.0 + COST_PER_SECOND * seconds if isinstance(block.motion, (LinearMove, CircularMove)) else 0.0
+    if not isinstance(block.motion, (LinearMove, CircularMove)):
+        return 0.0
+    return 1.0 if is_long(block, seconds) else 1.0 + COST_PER_SECOND * seconds
+
+
+def is_long(block: CanonicalBlock, seconds: float) -> bool:
+    """A motion of which the ramps are a small part."""
+    return seconds > LONG and isinstance(block.motion, (LinearMove, CircularMove))
 
 
 def end_of_window(costs: Sequence[float], begin: int) -> int:

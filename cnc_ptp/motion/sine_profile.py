@@ -8,7 +8,7 @@ A ramp of the acceleration from a by D within T is, with x = t/T,
 
 At its end v is that of a ramp with constant jerk D/T, p is not; but a ramp up and one down of the same size and time
 make up for each other. So a table of constant-jerk segments, planned with 2/π of the jerk, becomes such a profile with
-the same velocities and the same end, if its acceleration is 0 at the start.
+the same velocities, and the same end where its ramps come in such pairs (`reaching` sees to the others).
 """
 
 from __future__ import annotations
@@ -31,6 +31,9 @@ from cnc_ptp.motion.to_velocity import plan_to_velocity
 
 JERK_PART: Final = 2.0 / pi
 """Part of the jerk with which the table is planned: the ramps take up to π/2 of that."""
+ROUNDS: Final = 20
+CLOSE: Final = 1e-10
+"""mm by which a profile may miss its target before its last row is set to it."""
 RAMP_DISTANCE: Final = 0.25 - 1.0 / (pi * pi)
 """p of a ramp from rest in D·T²."""
 
@@ -88,8 +91,29 @@ def sine_to_position(p: float, v: float, a: float, target: float, limits: Limits
     if a and target - ahead < stopping_distance(speed, 0.0, limits.deceleration, soft.jerk):
         rows = list(sine_to_rest(p, v, a, limits).rows)
         t, ahead, speed, _, _ = rows.pop()
-    table = plan_to_position(ahead, speed, 0.0, target, soft)
-    return SineProfile([*rows, *[(t + row[0], *row[1:]) for row in shaped(table, target)]])
+    following = reaching(ahead, speed, target, soft)
+    if following is None:
+        rows = list(sine_to_rest(p, v, a, limits).rows)
+        t, ahead, _, _, _ = rows.pop()
+        following = shaped(plan_rest_to_rest(ahead, target, soft), target)
+    return SineProfile([*rows, *[(t + row[0], *row[1:]) for row in following]])
+
+
+def reaching(p: float, v: float, target: float, soft: Limits) -> list[Segment] | None:
+    """Rows to rest at the target; None if none are found.
+
+    Where the path slows down and brakes in one go, its ramps differ, and the table has to aim beside the target.
+    """
+    aim = target
+    for _ in range(ROUNDS):
+        if aim - p < stopping_distance(v, 0.0, soft.deceleration, soft.jerk):
+            return None
+        rows = shaped(plan_to_position(p, v, 0.0, aim, soft))
+        miss = rows[-1][1] - target
+        if abs(miss) <= CLOSE:
+            return [*rows[:-1], (rows[-1][0], target, *rows[-1][2:])]
+        aim -= miss
+    return None
 
 
 def sine_to_rest(p: float, v: float, a: float, limits: Limits) -> Profile:

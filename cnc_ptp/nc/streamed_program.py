@@ -20,7 +20,7 @@ from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.vocabulary import TWINCAT
 
-LINES_AT_ONCE: Final = 5000
+LINES_AT_ONCE: Final = 500
 """Lines that are read ahead before the caller has its turn again."""
 AT_END: Final = faults.END_MISSING.number
 """The fault that counts when all lines have been executed."""

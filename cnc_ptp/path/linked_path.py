@@ -132,7 +132,7 @@ class LinkedPath:
     def halt(self) -> None:
         """Stops at the end of the first block at which the axes permit it."""
         kept = self._builder.kept - self.block
-        self.look_ahead.halt([end for block, end in enumerate(self._ends) if 0.0 < end and block < kept])
+        self.look_ahead.halt([end for block, end in enumerate(self._ends) if end > 0.0 and block < kept])
 
     def follow(self, count: int, cycle_time: float) -> list[LinkedPoint]:
         """The next `count` cycles of the active block; fewer when it ends before."""

@@ -137,12 +137,12 @@ def loaded(value: str) -> MachineParameters:
     )
 
 
-@pytest.mark.parametrize(("value", "slope"), [("0", "STEP"), ("1", "TRAPEZ"), ("2", "TRAPEZ"), ("3", "TRAPEZ")])
+@pytest.mark.parametrize(("value", "slope"), [("0", "STEP"), ("1", "TRAPEZ"), ("2", "SIN2"), ("3", "TRAPEZ")])
 def test_the_parameter_selects_the_slope(value: str, slope: str) -> None:
     machine = loaded(value)
     assert machine.channels["channel"].slope == slope
     told = [str(notice) for notice in machine.warnings if "P-CHAN-00071" in notice.parameter]
-    name = {"2": "sine squared (SIN2)", "3": "HSC"}.get(value)
+    name = {"3": "HSC"}.get(value)
     ends = [] if name is None else [f"value {value}, {name}, is not available; 1 (TRAPEZ) is used"]
     assert len(told) == len(ends) and all(text.endswith(end) for text, end in zip(told, ends, strict=True))
 

@@ -237,3 +237,27 @@ def test_offsets_are_reported_as_the_path_passes_their_block() -> None:
     cycle = next(cycle for cycle, line in reports if line > 3)
     assert abs(cycle - int(np.argmax(x > 20.0))) <= 1
     assert min(bench.column("channel", "path_velocity")[150:400]) > 0.0
+
+
+def test_rapid_traverse_behind_smoothed_blocks_begins_where_they_end() -> None:
+    """Also where contouring links the two."""
+    text = program(
+        "#HSC ON [BSPLINE PATH_DEV=0.01]", "G261", "G01 X1 F3000", "X2 Y0.1", "X3 Y0.1", "X4", "G00 X10 Z5", "G01 X11"
+    )
+    bench = MachineBench(text).run()
+    assert bench.errors() == []
+    steps = np.abs(np.diff(path(bench), axis=0)).max()
+    assert steps < 0.6 and path(bench)[-1] == pytest.approx((11.0, 0.1, 5.0), abs=1e-9)
+    smooth(bench)
+
+
+def test_m01_without_optional_stop_is_passed() -> None:
+    bench = MachineBench(program("G01 X50 F6000", "M01", "X100")).run()
+    assert min(moving(bench)) > 99.0
+
+
+def test_a_slow_block_behind_a_fast_one_is_divided_as_it_is_needed() -> None:
+    bench = MachineBench(program("G01 X100 F20000", "X200 F10"), end_when_idle=False)
+    bench.run(0.6)
+    linked = bench.units["channel"]._motion._linked
+    assert linked is not None and sum(map(len, linked.look_ahead._stretches)) < 1000

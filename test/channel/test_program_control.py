@@ -165,6 +165,15 @@ def test_a_path_that_has_halted_can_be_held_and_aborted() -> None:
     assert bench.position("x") == pytest.approx(20.0, abs=1e-9) and bench.last("channel").state[-1] == C.READY
 
 
+def test_single_block_that_is_switched_off_again_does_not_stop_the_path() -> None:
+    bench = MachineBench("G01 X10 F600\nX20\nX30\nM30", end_when_idle=False).run(0.1)
+    assert bench.give("channel", "single_block", enabled=True).accepted
+    bench.run(0.02)
+    assert bench.give("channel", "single_block", enabled=False).accepted
+    bench.run(4.0)
+    assert bench.position("x") == 30.0 and bench.last("channel").done
+
+
 def test_single_block_at_rest_in_feed_hold_counts_from_there() -> None:
     bench = MachineBench(STRAIGHT, end_when_idle=False).run(0.1)
     assert bench.give("channel", "feed_hold", enabled=True).accepted

@@ -14,7 +14,7 @@ from machine_support import CYCLE_TIME, MILL, MachineBench
 from cnc_ptp.channel import time_estimate
 from cnc_ptp.machine.offline import OfflineMachine
 from cnc_ptp.machine.program_files import read_program
-from cnc_ptp.machine.run_entries import program_folders, read_entries
+from cnc_ptp.machine.run_entries import program_search, read_entries
 from cnc_ptp.machine.wiring import build_units
 from cnc_ptp.nc.canonical import Dwell
 from cnc_ptp.parameters import read_machine
@@ -108,7 +108,7 @@ def test_examples_take_as_long_as_estimated(machine: str, file: str, dialect: st
     bench.run()
     moving = np.any([np.array(bench.column(axis.node, "set_velocity")) != 0.0 for axis in channel.axes], axis=0)
     unit = bench.units[channel.name]
-    unit.prepare(file, *read_program(path, program_folders(parameters)), dialect)
+    unit.prepare(file, *read_program(path, program_search(parameters)), dialect)
     dwells = [block.motion.seconds for block in unit._prepared.known.blocks if isinstance(block.motion, Dwell)]
     run = np.count_nonzero(moving) * parameters.cycle_time_us * 1e-6 + sum(dwells)
     assert estimate(bench) == pytest.approx(run, rel=0.02)
@@ -120,7 +120,8 @@ def estimated(text: str) -> tuple[float, float]:
     unit = MachineBench(text, start=False).units["channel"]
     unit.prepare("test.nc", text)
     known, start, estimate = unit._prepared.known.blocks, unit._prepared.start, unit._estimate
-    return sum(estimate.seconds(known, start)), sum(estimate._planned(known, time_estimate.places_of(known, start)))
+    places = time_estimate.places_of(known, start)
+    return sum(estimate.seconds(known, start)), sum(estimate._planned(known, places, estimate._sketch(known, places)))
 
 
 @pytest.mark.interpreted

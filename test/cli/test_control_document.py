@@ -61,7 +61,7 @@ PROGRAM = {
     21098: ("COMP_INCOMPLETE", "does not say", "incomplete"),
     21099: ("COMP_TWICE", "twice in one block", "twice in a block"),
     21110: ("SLOPE_UNKNOWN", "is not known", "unknown type"),
-    21111: ("SLOPE_NOT_AVAILABLE", "is not available", "SIN2 and HSC are not available"),
+    21111: ("SLOPE_NOT_AVAILABLE", "is not available", "HSC is not available"),
 }
 """Faults of the NC language: name, what their text says, what the document says."""
 NOTICES = {

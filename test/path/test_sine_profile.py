@@ -58,7 +58,7 @@ def test_a_long_line_takes_as_long_as_its_closed_form() -> None:
 
 def test_random_starts() -> None:
     chance = random.Random(7)
-    for _ in range(300):
+    for _ in range(40):
         v = chance.uniform(0.0, 100.0)
         a = chance.choice((0.0, chance.uniform(-0.2, 0.2) * 2000.0)) if v > 60.0 else 0.0
         if v + a * abs(a) / 40_000.0 > 100.0:
@@ -92,6 +92,23 @@ def test_overrides_and_holds_at_random_moments() -> None:
         assert np.abs(np.diff(a)).max() <= LIMITS.jerk * CYCLE_TIME * (1 + 1e-9)
         assert np.diff(v) == pytest.approx(0.5 * CYCLE_TIME * (a[1:] + a[:-1]), abs=1e-2)
         assert np.diff(s) == pytest.approx(0.5 * CYCLE_TIME * (v[1:] + v[:-1]), abs=1e-5)
+
+
+def test_a_lower_override_in_mid_acceleration_still_ends_at_the_target() -> None:
+    """There the path slows down and brakes in one go, with ramps of different sizes."""
+    chance = random.Random(3)
+    for _ in range(300):
+        path = PathInterpolator()
+        target = chance.uniform(2.0, 20.0)
+        path.start(Line((0.0,), (target,), frozenset((0,))), LIMITS, 100.0, planner=SINE)
+        rows = path.step(chance.randint(10, 90), CYCLE_TIME)
+        path.set_override(chance.uniform(0.02, 0.5))
+        while not path.done:
+            rows += path.step(100, CYCLE_TIME)
+        s, v, _, _ = np.array([row[:4] for row in rows]).T
+        assert s.max() <= target + 1e-9 and v.min() >= -1e-9
+        assert np.diff(s) == pytest.approx(0.5 * CYCLE_TIME * (v[1:] + v[:-1]), abs=1e-5)
+        assert target - s[-1] <= v[-1] * CYCLE_TIME + 1e-9
 
 
 def test_a_program_with_sin2_ends_at_its_target_and_is_slower_than_a_trapezium() -> None:

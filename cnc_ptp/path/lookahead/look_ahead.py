@@ -26,6 +26,8 @@ MOST_CELLS: Final = 4000
 FEWEST_CELLS: Final = 3
 CELLS_AHEAD: Final = 64
 """Cells that are known at least where parts are long, and by which they are divided."""
+MOST_OF_LONG: Final = 500
+"""Cells at which no more of a long part are made: 2 s at its velocity."""
 WINDOW: Final = 4.0
 """What is planned at once, in stopping distances on a straight path."""
 RENEWAL: Final = 0.5
@@ -135,9 +137,11 @@ class LookAhead:
                 self._undivided.popleft()
 
     def _lacks_cells(self) -> bool:
-        last = self._stretches[-1]
-        if len(last) < CELLS_AHEAD and sum(map(len, self._stretches)) < CELLS_AHEAD:
+        last, count = self._stretches[-1], sum(map(len, self._stretches))
+        if len(last) < CELLS_AHEAD and count < CELLS_AHEAD:
             return True
+        if count >= MOST_OF_LONG and self._undivided[0].cells > CELLS_AHEAD:
+            return False
         return not last or last[-1].end - self.state[0] < WINDOW * self._reach
 
     def locate(self, u: float) -> tuple[float, PathPart]:

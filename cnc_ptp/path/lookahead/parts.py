@@ -200,6 +200,11 @@ class UndividedPart:
         self._next = 0
 
     @property
+    def cells(self) -> int:
+        """All cells of the part."""
+        return self._division.cells
+
+    @property
     def begun(self) -> bool:
         """Some of its cells have been taken."""
         return self._next > 0

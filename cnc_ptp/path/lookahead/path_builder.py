@@ -154,7 +154,8 @@ class PathBuilder:
 
 def smoothed_together(motion: LinkedMotion, following: LinkedMotion) -> bool:
     """Two motions of one smooth curve."""
-    return following.transition.smoothing == motion.transition.smoothing and isinstance(following.span.element, Line)
+    alike = following.transition.smoothing == motion.transition.smoothing and following.feed < inf
+    return alike and isinstance(following.span.element, Line)
 
 
 def narrower(axes: Sequence[AxisLimits], others: Sequence[AxisLimits]) -> list[AxisLimits]:
