@@ -257,10 +257,10 @@ class LookAhead:
             self.done = True
             self.remaining_time = surplus
             return
-        self._divide()
         self._stretches[0] = [cell for cell in self._cells if cell.middle > self._planned_end]
         if not self._cells and len(self._stretches) > 1:
             self._stretches.popleft()
+        self._divide()
         if self._planned_end >= self._halt:
             self.halted = True
             self.state = (nextafter(self._halt, 0.0), 0.0, 0.0, 0.0)  # still in the part that ends there
