@@ -8,6 +8,8 @@ from machine_support import MachineBench
 from path_checker import Findings
 from random_paths import RandomProgram, run_of
 
+from cnc_ptp.protocol.channel_states import ChannelStateCode
+
 BLOCK = 0.01
 """s between commands."""
 LARGEST = 1.2 * 1.01
@@ -76,11 +78,17 @@ def single_blocks(bench: MachineBench, draw: random.Random, seconds: float, mome
     bench.give("channel", "single_block", enabled=True)
     for _ in range(moments):
         bench.run(draw.choice((0.05, 0.5, 2.0)))
-        bench.give("channel", "start")
+        resume(bench)
     bench.give("channel", "single_block", enabled=False)
     for _ in range(int(LONGEST)):
-        bench.give("channel", "start")
+        resume(bench)
         bench.run(1.0)
         if bench.last("channel").done:
             return
     found.texts.append("the run does not end")
+
+
+def resume(bench: MachineBench) -> None:
+    """Where the program has stopped; one that is finished would begin again."""
+    if bench.last("channel").state[-1] == ChannelStateCode.STOPPED:
+        bench.give("channel", "start")
