@@ -17,21 +17,32 @@ class ProgramError(CncError):
     """
 
     def __init__(self, number: int, reason: str, source: Source, column: int, /, **values: Value) -> None:
-        where = f"{source.file} line {source.line} column {column} '{source.text.strip()}'"
-        super().__init__(number, reason, where=where, **values)
+        where = f"{source.file} line {source.line} column {column} '{visible(source.text.strip())}'"
+        super().__init__(number, visible(reason), where=where, **values)
         self.source = source
         self.file = source.file
         self.line = source.line
         self.column = column
-        self.text = source.text
+        self.text = visible(source.text)
         self.calls: list[str] = []
         """From where the subroutine was called that has the fault, the innermost first."""
 
     @property
     def caret(self) -> str:
         """The program line and below it a caret under the column (1-based)."""
-        indent = "".join("\t" if character == "\t" else " " for character in self.text[: self.column - 1])
+        indent = "".join(
+            "\t" if character == "\t" else " " for character in visible(self.source.text[: self.column - 1])
+        )
         return f"{self.text}\n{indent}^"
+
+
+def visible(text: str) -> str:
+    """A text of a program as it may go to a terminal: control characters but the tab as \\x1b and the like."""
+    if text.isprintable():
+        return text
+    return "".join(
+        [each if each.isprintable() or each == "\t" else each.encode("unicode_escape").decode() for each in text]
+    )
 
 
 class Fault(NamedTuple):

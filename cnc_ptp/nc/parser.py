@@ -236,6 +236,10 @@ class ProgramReader:
     def _is_subroutine(self) -> None:
         """M99 shows that the program before the main one is a subroutine."""
         section = self.sections.pop()._replace(kind="subroutine")
+        twin = next((other for other in self.sections if other.name.upper() == section.name.upper()), None)
+        if twin is not None:
+            fault = faults.SECOND_PROGRAM
+            self.errors.append(fault.at(section.source, program=section.title, line=twin.source.line))
         self.sections.append(section)
         self.program.subroutines[section.name] = section
         self.ended = True
