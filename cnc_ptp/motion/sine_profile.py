@@ -88,9 +88,6 @@ def sine_to_position(p: float, v: float, a: float, target: float, limits: Limits
     """To rest at the target; an acceleration at the start ends first. Where there is no room for that, with a stop."""
     rows, t, ahead, speed = ended(p, v, a, limits)
     soft = softer(limits)
-    if a and target - ahead < stopping_distance(speed, 0.0, limits.deceleration, soft.jerk):
-        rows = list(sine_to_rest(p, v, a, limits).rows)
-        t, ahead, speed, _, _ = rows.pop()
     following = reaching(ahead, speed, target, soft)
     if following is None:
         rows = list(sine_to_rest(p, v, a, limits).rows)

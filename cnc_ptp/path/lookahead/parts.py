@@ -220,8 +220,7 @@ class UndividedPart:
         begin = self._division.end(self._next - 1)
         last = min(self._next + most, self._division.cells)
         while self._next < last:
-            last_one = self._next == self._division.cells - 1
-            end = self.part.length if last_one else self._division.end(self._next)  # exactly: the path ends there
+            end = self._division.end(self._next)
             cells.append(cell_of(self.part, self.origin, begin, end))
             begin = end
             self._next += 1
