@@ -27,9 +27,6 @@ EXACT = 1e-9
 """mm."""
 ROUNDING = 2e-8
 """mm; programmed numbers have nine digits behind the point, an arc may miss its target by their rounding."""
-WITH_KINKS = 1.0
-"""Kinks that are passed without contouring (G359) take half of the jerk and of the acceleration, each for itself, while
-the planner may take all of both beside them: differences of the positions may show that much of a limit."""
 SHORTEST = 2e-3
 """mm; a stop between two shorter segments may lie between cycles of which neither belongs to its ramps."""
 WINDOW, POINTS = 32, 512
@@ -125,8 +122,6 @@ class PathChecker:
             [s.track_everywhere + max(s.track, b.track) for b, s in zip(before, self.segments, strict=True)]
         )
         self.feed = np.array([s.feed for s in self.segments])
-        through = [s.deviation == s.everywhere == 0.0 and not s.stop for s in self.segments]
-        self.kinks = WITH_KINKS if any(through) else 1.0
         self.along = [bool(np.abs(s.end - s.start)[self.path].max() > 0.0 or s.arc) for s in self.segments]
 
     def check(self, run: Run, *, complete: bool = True) -> Findings:
@@ -152,12 +147,12 @@ class PathChecker:
             growing = a * v > 0.0
             found.above(f"{name} a", np.where(growing, np.abs(a), 0.0), axis.acceleration)
             found.above(f"{name} a-", np.where(growing, 0.0, np.abs(a)), strongest if self.steps else axis.deceleration)
-            found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest * self.kinks, 1e-6)
+            found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6)
             if not self.steps:
                 found.above(f"{name} j", np.abs(j), axis.jerk)
-                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk * self.kinks, 1e-3)
+                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3)
                 mean = 0.5 * CYCLE * (v[1:] + v[:-1]) - CYCLE**2 * (a[1:] - a[:-1]) / 12.0
-                kink = self.kinks * 0.5 * axis.jerk * CYCLE**3
+                kink = 0.5 * axis.jerk * CYCLE**3
                 found.above(f"{name} states and positions", np.abs(np.diff(p) - mean), kink, 1e-9)
 
     # path
