@@ -18,13 +18,18 @@ from cnc_ptp.channel.waits import Moment
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, HomeAxes, LinearMove
 from cnc_ptp.path.linked_path import can_follow
+from cnc_ptp.path.lookahead.parts import CELL_TIME
 from cnc_ptp.path.path_motion import PathMotion, Plan
 
 Motion = LinearMove | CircularMove | Dwell | HomeAxes
 BUDGET: Final = 10_000.0
 """Cost of what is planned, in blocks."""
-COST_PER_SECOND: Final = 250.0
-"""Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 4 ms."""
+COST_PER_SECOND: Final = 125.0
+"""Blocks that cost as much as a second of motion, which the look-ahead divides into cells of 8 ms."""
+SHORT: Final = 1_500.0
+"""Cost of a program up to which its cells are as short as those of the run."""
+LONG_CELL: Final = 0.008
+"""s of the longest cell in other programs."""
 LONG: Final = 5.0
 """s of a motion from which on its time in the sketch is good enough."""
 WINDOW: Final = 1_000.0
@@ -44,6 +49,7 @@ class TimeEstimate:
     def __init__(self, path: PathMotion, functions: FunctionOutput) -> None:
         self._path = path
         self._following = FollowingBlocks(functions, no_waits)
+        self._cell_time = CELL_TIME
 
     def seconds(self, blocks: Sequence[CanonicalBlock], start: Sequence[float]) -> list[float]:
         """Of each block in turn, motions and dwells; they begin at `start` (mm, deg).
@@ -53,7 +59,9 @@ class TimeEstimate:
         places = places_of(blocks, tuple(start))
         nominal = self._sketch(blocks, places)
         costs = [cost(block, seconds) for block, seconds in zip(blocks, nominal, strict=True)]
-        every = ceil(sum(costs) / BUDGET)
+        whole = sum(costs)
+        self._cell_time = CELL_TIME if whole <= SHORT else LONG_CELL
+        every = ceil(whole / BUDGET)
         if every <= 1:
             return self._planned(blocks, places, nominal)
         return self._sampled(blocks, places, nominal, costs, every)
@@ -109,7 +117,7 @@ class TimeEstimate:
     def _of_path(self, motion: LinearMove | CircularMove, start: tuple[float, ...]) -> list[float]:
         """Of a motion and of the blocks behind it up to the next stop."""
         try:
-            first, *others = self._path.durations(motion, start, self._following)
+            first, *others = self._path.durations(motion, start, self._following, self._cell_time)
         except CncError:
             return [0.0]
         seconds = [first]

@@ -232,13 +232,13 @@ class PathMotion:
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
 
-    def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource) -> list[float]:
+    def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource, cell_time: float) -> list[float]:
         """Seconds of a motion from `start`, at rest, and of those that are linked to it, with override 100 %.
 
-        Raises as `start`.
+        They are planned in cells of at most `cell_time` s. Raises as `start`.
         """
         plan = self.plan(motion, start)
-        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0))
+        path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time))
         return [plan.duration] if path is None else path.durations()
 
     def plan(self, motion: Path, start: tuple[float, ...]) -> Plan:

@@ -83,7 +83,7 @@ def test_random_programs_take_as_long_as_estimated(seed: int) -> None:
     cycles = max(place for place, finished in enumerate(done) if not finished) * MILL.block_cycles
     last = bench.blocks["channel"][cycles // MILL.block_cycles].state.count(ChannelStateCode.RUNNING)
     run = (cycles + last) * CYCLE_TIME
-    assert estimate(bench) == pytest.approx(run, rel=0.02, abs=0.03)
+    assert estimate(bench) == pytest.approx(run, rel=0.03, abs=0.03)
     assert_progress(bench)
 
 

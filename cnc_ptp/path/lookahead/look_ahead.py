@@ -14,7 +14,7 @@ from typing import Final
 
 from cnc_ptp.motion import stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
-from cnc_ptp.path.lookahead.parts import PathPart, UndividedPart, division_of, whole_cell
+from cnc_ptp.path.lookahead.parts import CELL_TIME, PathPart, UndividedPart, division_of, whole_cell
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import BETWEEN, PathPiece, PathProfile, pieces_of
 from cnc_ptp.path.lookahead.velocity_plan import MovingStart, VelocityPlan, earliest, plan_velocity, stop_soon
@@ -47,8 +47,9 @@ class LookAhead:
     remaining_time  s from the end to the cycle in which it was reached
     """
 
-    def __init__(self, override: float, offset: float) -> None:
-        """`offset`: s by which the first cycle is behind the start (0 or less)."""
+    def __init__(self, override: float, offset: float, cell_time: float = CELL_TIME) -> None:
+        """`offset`: s by which the first cycle is behind the start (0 or less); `cell_time`: s of the longest cell."""
+        self._cell_time = cell_time
         self.override = override
         self.end = 0.0
         self.closed = False
@@ -117,7 +118,7 @@ class LookAhead:
         self._parts.append((self.end, part))
         whole = whole_cell(part)
         begins = self.end == 0.0 or part.entry <= 0.0
-        division = division_of(part, whole, FEWEST_CELLS if begins else 1)
+        division = division_of(part, whole, FEWEST_CELLS if begins else 1, self._cell_time)
         self._undivided.append(UndividedPart(part, self.end, division))
         self.end += part.length
         speed = sqrt(min(whole.limit, whole.feed))

@@ -12,7 +12,7 @@ from cnc_ptp.path.lookahead.path_cell import AxisLoad, PathCell, largest_square
 from cnc_ptp.path.shape import AxisState, Bounds, Shape
 
 CELL_TIME: Final = 0.004
-"""s that a cell may take at the largest velocity."""
+"""s that a cell takes at most at the largest velocity."""
 FIRST_CELL_TIME: Final = 0.005
 """s from rest with full jerk in the first cell of a straight part; the cells grow from there."""
 GROWTH: Final = 1.6
@@ -163,10 +163,13 @@ class Division(NamedTuple):
         return self.tail[index - self.equal]
 
 
-def division_of(part: PathPart, whole: PathCell, fewest: int = 1) -> Division:
-    """The cells of a part (`whole`: its whole_cell), at least `fewest`; short ones at both ends of a straight part."""
+def division_of(part: PathPart, whole: PathCell, fewest: int = 1, cell_time: float = CELL_TIME) -> Division:
+    """The cells of a part (`whole`: its whole_cell), at least `fewest`; short ones at both ends of a straight part.
+
+    `cell_time`: s that a cell may take at the largest velocity.
+    """
     length = part.length
-    largest = min(CELL_TIME * sqrt(min(whole.limit, whole.feed)), length / fewest)
+    largest = min(cell_time * sqrt(min(whole.limit, whole.feed)), length / fewest)
     turn = sqrt(sum([load.second * load.second for load in whole.loads]))
     if turn > 0.0:
         return Division([], max(1, ceil(length / min(largest, CELL_TURN / turn))), 0.0, length, [])
