@@ -17,6 +17,7 @@ from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
 from cnc_ptp.channel.path_axes import NOT_AT_END, PathAxes
+from cnc_ptp.channel.path_spindle import PathSpindle
 from cnc_ptp.channel.program_check import PreparedProgram, ProgramCheck, ProgramState
 from cnc_ptp.channel.program_sequence import NO_SOURCE, OFF_PATH, Phase, ProgramSequence
 from cnc_ptp.channel.program_start import ProgramStart
@@ -37,6 +38,7 @@ from cnc_ptp.nc.vocabulary import MAX_SKIP_LEVEL
 from cnc_ptp.parameters import AxisParameters, ChannelParameters, SpindleParameters
 from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
+from cnc_ptp.path.shape import AxisState
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
@@ -89,16 +91,19 @@ class ChannelUnit(Unit):
         super().__init__(parameters.name)
         self._parameters = parameters
         nodes = [axis.node for axis in parameters.axes]
-        self._motion = PathMotion(parameters, [axes[node] for node in nodes], cycle_time)
-        self._axes = PathAxes(nodes, axes, self._motion)
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
+        self._path_spindle = PathSpindle(parameters.name, functions.spindles)
+        on_path = [axes[node] for node in nodes]
+        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits)
+        self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
         absolute = [axis.name for axis in parameters.axes if axes[axis.node].homing.kind == IGNORE_ABSOLUTE]
         homing = AxisHoming({axis.name: axis.node for axis in parameters.axes}, absolute)
         names, required = [axis.name for axis in parameters.axes], parameters.signal_required
         measuring = Measuring(names, [axes[node] for node in nodes], cycle_time, required=required)
-        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, measuring, Timers(cycle_time))
+        timers, spindle = Timers(cycle_time), self._path_spindle
+        self._sequence = ProgramSequence(self._motion, functions, nodes, homing, measuring, timers, spindle)
         self._estimate = TimeEstimate(self._motion, functions)
         self._check = ProgramCheck(parameters, axes, spindles)
         self._offsets = OffsetMemory(parameters.name, self._check.nc)
@@ -333,8 +338,9 @@ class ChannelUnit(Unit):
         self._read_feedback(first_cycle, inputs)
         self._watch_handshake(first_cycle)
         outgoing = self._sequence.take_outgoing(first_cycle)
+        spindle = self._path_spindle.node
         on_path = self._unfinished or self._sequence.phase not in OFF_PATH
-        rows = CycleRows()
+        rows = CycleRows(with_spindle=bool(spindle))
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
         if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
@@ -352,7 +358,10 @@ class ChannelUnit(Unit):
         self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
         if self._sequence.phase is Phase.IDLE:
             self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
-        return self._channel_block(tick, rows, outgoing, path_active=on_path)
+        block = self._channel_block(tick, rows, outgoing, path_active=on_path)
+        if spindle:
+            add_spindle(block, spindle, rows.spindle[:count])
+        return block
 
     def _update_progress(self) -> None:
         sequence = self._sequence
@@ -426,7 +435,7 @@ class ChannelUnit(Unit):
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
         """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
         points = self._motion.follow(missing)
-        self._add(rows, points)
+        self._add(rows, points, self._motion.spindle_states)
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
             self._reach_offsets(cycle + len(points))
@@ -463,11 +472,13 @@ class ChannelUnit(Unit):
         for number, note, line in notes:
             self.event(cycle, Severity.WARNING, number, f"channel {self.name}: {note}", line)
 
-    def _add(self, rows: CycleRows, points: Sequence[PathPoint]) -> None:
-        """Adds the cycles of `points`, all of the same phase and program line."""
+    def _add(self, rows: CycleRows, points: Sequence[PathPoint], spindle: Sequence[AxisState] = ()) -> None:
+        """Adds the cycles of `points`, all of the same phase and program line; `spindle`: of that on the path."""
         count = len(points)
         state = self._state_code()
         held = state == C.RUNNING and self._motion.held
+        if rows.with_spindle:
+            rows.spindle += spindle or [self._motion.spindle_state] * count
         for axes, velocity, distance_to_go in points:
             rows.axes.append(axes)
             rows.path_velocity.append(velocity)
@@ -546,7 +557,8 @@ class ChannelUnit(Unit):
 
     def _apply_override(self) -> None:
         held = self._feed_hold or bool(self._axes.withheld)
-        self._motion.set_override(0.0 if held else self._override_percent / 100.0, held=held)
+        percent = min(self._override_percent * self._path_spindle.override, self._parameters.max_override_percent)
+        self._motion.set_override(0.0 if held else percent / 100.0, held=held)
         self._sequence.set_override(0.0 if self._feed_hold else min(100.0, self._override_percent))
 
     def _read_releases(self, cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
@@ -577,6 +589,8 @@ class ChannelUnit(Unit):
                 self._check_refused(first_cycle, node, block)
         try:
             self._sequence.read(first_cycle, inputs)
+            if self._path_spindle.read(first_cycle):
+                self._apply_override()
         except CncError as error:
             self._fault_in_line(first_cycle, error)
         self._warn(first_cycle)
@@ -691,6 +705,14 @@ class ChannelUnit(Unit):
     def _refuse(self, command: str, number: int, reason: str, /, **values: Value) -> NoReturn:
         where = f"channel {self.name}: {command} refused"
         raise CncError(number, reason, "nothing was changed", where=where, **values)
+
+
+def add_spindle(block: ChannelBlock, node: str, states: Sequence[AxisState]) -> None:
+    """The setpoints of the spindle on the path."""
+    block.path_spindles = [node]
+    travel, speed, acceleration, jerk = map(list, zip(*states, strict=True))
+    block.spindle_travel, block.spindle_speed = travel, speed
+    block.spindle_acceleration, block.spindle_jerk = acceleration, jerk
 
 
 def start_point(

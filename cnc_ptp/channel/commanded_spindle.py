@@ -25,6 +25,7 @@ from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, com
 from cnc_ptp.nc.canonical import SpindleFunction
 from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
+from cnc_ptp.spindle.tool_limits import ToolLimits
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
 BEFORE_THE_RUN = -1
@@ -56,6 +57,8 @@ class CommandedSpindle:
         self.block: SpindleBlock | None = None
         """Its last report."""
         self.direction = ""
+        self.tool = ToolLimits()
+        """Of the last tool that has some for it."""
         self.starts_anew = False
         self.full_override = False
         self.turning_rank = self.coupling_rank = 0
@@ -92,6 +95,11 @@ class CommandedSpindle:
     def responsible(self) -> bool:
         """The channel has started it and has to stop it with its program."""
         return self._sent_cycle is not None
+
+    @property
+    def pending(self) -> bool:
+        """A command has not gone out yet, or its outcome is not reported."""
+        return self._responsible_next is not None or bool(self._expected_next) or (self.responsible and not self.turns)
 
     @property
     def stops_at_program_end(self) -> bool:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from cnc_ptp.path.path_motion import AxisStates
+from cnc_ptp.path.shape import AxisState
 
 
 class CycleRows:
     """The cycles of a block as they are made: the state of each axis, and the columns of ChannelState."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, with_spindle: bool) -> None:
+        """`with_spindle`: a spindle is an axis of the path."""
+        self.with_spindle = with_spindle
         self.axes: list[AxisStates] = []
+        self.spindle: list[AxisState] = []
+        """Of the spindle on the path."""
         self.line: list[int] = []
         self.block_number: list[int] = []
         self.path_velocity: list[float] = []

@@ -447,7 +447,8 @@ def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindlePara
     table = tuple(_spindle(spindle, spindles.get(spindle.node)) for spindle in ordered)
     groups = catalogue().arrays["koppel_gruppe"].size
     coupled = tuple(Pair(slave, master) for slave, master in channel.coupled)
-    return SpindleTable(table, channel.main_spindle or "S", channel.gear_change, coupled, groups)
+    main = channel.main_spindle or "S"
+    return SpindleTable(table, main, channel.gear_change, coupled, groups, channel.pitch_tolerance)
 
 
 def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle:
@@ -461,6 +462,8 @@ def _spindle(spindle: ChannelSpindle, unit: SpindleParameters | None) -> Spindle
         gear=unit.gear if unit else 1,
         plc_control=spindle.plc_control,
         limits=speed_limits(unit) if unit else (),
+        positioned=unit is not None and unit.has_position,
+        path_gear=unit.path_gear if unit else 0,
     )
 
 

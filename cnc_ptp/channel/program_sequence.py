@@ -26,6 +26,7 @@ from cnc_ptp.channel.following_blocks import FollowingBlocks
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.handshake import Handshake
 from cnc_ptp.channel.measuring import STROKE_SHORT, Measuring
+from cnc_ptp.channel.path_spindle import PathSpindle
 from cnc_ptp.channel.spindle_reports import Condition, Expectation
 from cnc_ptp.channel.timers import Timers
 from cnc_ptp.channel.waits import Moment, Outgoing, Wait
@@ -41,6 +42,9 @@ from cnc_ptp.nc.canonical import (
     OffsetReport,
     OrderedError,
     Source,
+    SpindleCommand,
+    SpindleFunction,
+    SpindleLink,
     Timer,
     WaitForPath,
 )
@@ -106,8 +110,10 @@ class ProgramSequence:
         homing: AxisHoming,
         measuring: Measuring,
         timers: Timers,
+        path_spindle: PathSpindle,
     ) -> None:
         """`axes`: nodes of the channel's axes, in its order."""
+        self._path_spindle = path_spindle
         self._motion = motion
         self._homing = homing
         self._measuring = measuring
@@ -224,8 +230,14 @@ class ProgramSequence:
         else:
             self.motion_ended()
 
+    def _release_spindle(self) -> None:
+        """The path no longer moves a spindle."""
+        self._path_spindle.release()
+        self._motion.release_spindle()
+
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
+        self._release_spindle()
         self._functions.expect_nothing(self._keep)
         self._queue(self._functions.at_abort(self.source, self._keep))
 
@@ -278,6 +290,7 @@ class ProgramSequence:
         outgoing, self._outgoing = self._outgoing, Outgoing()
         for request in outgoing.requests:
             request.cycle = first_cycle
+        outgoing.commands = self._path_spindle.take_commands(first_cycle) + outgoing.commands
         for wait in self._waits:
             if wait.sent_cycle is None:
                 wait.sent_cycle = first_cycle
@@ -447,6 +460,8 @@ class ProgramSequence:
             self._wait(Phase.WAIT_END, Moment.AFTER, *ALL_LATE)
             return True
         self._reach(block)
+        if leaves_spindle(block):
+            self._release_spindle()
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before(cycle)
@@ -493,6 +508,8 @@ class ProgramSequence:
         elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
+        elif isinstance(motion, LinearMove) and motion.tap is not None and not self._path_spindle.ready(motion.tap.spindle):
+            return False
         elif not (isinstance(motion, LinearMove) and motion.measures):
             if self._following.awaits_next(motion):
                 return False
@@ -578,6 +595,7 @@ class ProgramSequence:
         self.finished = True
 
     def _end_program(self) -> None:
+        self._release_spindle()
         self._motion.feed = 0.0
         self._block = None
         self._waits = []
@@ -609,6 +627,14 @@ class ProgramSequence:
     def _add_waits(self, waits: Sequence[Wait]) -> None:
         """The list is in the order of the moments."""
         self._waits = sorted([*self._waits, *waits], key=lambda wait: ORDER[wait.until])
+
+
+def leaves_spindle(block: CanonicalBlock) -> bool:
+    """A spindle that the path moves is released before the block: it has another motion, or commands for spindles."""
+    motion = block.motion
+    if isinstance(motion, (LinearMove, CircularMove, HomeAxes)):
+        return not (isinstance(motion, LinearMove) and motion.tap is not None)
+    return any(isinstance(function, (SpindleFunction, SpindleCommand, SpindleLink)) for function in block.functions)
 
 
 def actual_positions(feedback: Mapping[str, CycleBlock], axes: Sequence[str]) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import count
+from math import inf
 from typing import Any
 
 from cnc_ptp.channel.commanded_spindle import CommandedSpindle
@@ -16,8 +17,11 @@ from cnc_ptp.channel.spindle_reports import Condition, Expectation, turns
 from cnc_ptp.nc.canonical import GearChange, SpindleCommand, SpindleFunction, SpindleLink
 from cnc_ptp.nc.spindles import DIRECTIONS
 from cnc_ptp.parameters import ChannelParameters, SpindleParameters, Synchronisation
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.parameters.view.channel_view import ToolLimits as ChannelToolLimits
 from cnc_ptp.protocol.blocks import Command, CycleBlock
 from cnc_ptp.protocol.commands import COMMANDS
+from cnc_ptp.spindle.tool_limits import ToolLimits
 
 
 class SpindleFunctions:
@@ -144,6 +148,9 @@ class SpindleFunctions:
         limits = self._channel.tools.get(tool) if tool else None
         if limits is None:
             return []
+        for spindle in self:
+            if spindle.node == limits.node:
+                spindle.tool = in_kernel_units(limits)
         named = zip(("min_speed_rpm", "max_speed_rpm", "max_acceleration"), limits[1:], strict=True)
         return [Command(limits.node, "set_limits", {name: value for name, value in named if value is not None})]
 
@@ -191,6 +198,16 @@ class SpindleFunctions:
         spindle.forget()
         spindle.expect(Expectation(spindle.node))
         return [] if spindle.unit is None else [self._command(spindle, "stop", own=True, homes=homes)]
+
+
+def in_kernel_units(limits: ChannelToolLimits) -> ToolLimits:
+    """Limits of a tool in deg/s and deg/s²."""
+    _, low, high, acceleration = limits
+    return ToolLimits(
+        inf if high is None else high * DEG_S_PER_RPM,
+        0.0 if low is None else low * DEG_S_PER_RPM,
+        inf if acceleration is None else acceleration,
+    )
 
 
 def expected(spindle: CommandedSpindle, function: SpindleFunction) -> Expectation:

@@ -17,7 +17,7 @@ from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, Dwell, HomeAxes, LinearMove
-from cnc_ptp.path.linked_path import can_follow
+from cnc_ptp.path.linked_path import can_follow, taps
 from cnc_ptp.path.lookahead.parts import CELL_TIME
 from cnc_ptp.path.path_motion import PathMotion, Plan
 
@@ -141,16 +141,16 @@ class TimeEstimate:
             if motion is None:
                 continue
             plan = self._plan(motion, places[index])
+            on_axes = plan if isinstance(motion, (LinearMove, CircularMove)) and not taps(motion) else None
             before = blocks[last].motion if last >= 0 else None
             if last_plan is not None:
-                begins = NO_DIRECTION if plan is None else direction(plan, 0.0)
+                begins = NO_DIRECTION if on_axes is None else direction(on_axes, 0.0)
                 slow = slowing(before, motion, turn(last_direction, begins))
                 seconds[last] = between(last_plan, stop, slow)
                 stop = slow
             last, last_plan = index, plan
-            if plan is not None:
-                last_direction = direction(plan, plan.element.length)
-            else:
+            last_direction = NO_DIRECTION if on_axes is None else direction(on_axes, on_axes.element.length)
+            if plan is None:
                 stop = 1.0
         if last_plan is not None:
             seconds[last] = between(last_plan, stop, 1.0)

@@ -53,12 +53,19 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: SIN2, 3: "HSC"}
 """The slope for each value of P-CHAN-00071."""
 
 
+class Tap(NamedTuple):
+    """A spindle that is an axis of the path: how far it turns for each mm of it, with its sign (G63, G331, G332)."""
+
+    spindle: str
+    degrees_per_mm: float
+
+
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
-    ends.
+    ends; `tap`: the spindle that turns with it.
     """
 
     target: tuple[float, ...]
@@ -68,6 +75,7 @@ class LinearMove(NamedTuple):
     full_override: bool = False
     transition: Transition = THROUGH
     measures: tuple[int, ...] = ()
+    tap: Tap | None = None
 
 
 Direction = tuple[float, ...]

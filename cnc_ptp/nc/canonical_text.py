@@ -101,6 +101,8 @@ def _motion(motion: Motion) -> str:
     slope += _transition(motion.transition)
     if isinstance(motion, LinearMove):
         kind = "measure" if motion.measures else "line"
+        if motion.tap is not None:
+            slope = f" {motion.tap.spindle} {number(motion.tap.degrees_per_mm)} deg/mm{slope}"
         return (f"rapid {target}" if motion.rapid else f"{kind} {target} feed {number(motion.feed)}") + slope
     plane = f"{motion.plane[0]}{motion.plane[1]}"
     if motion.directions is not None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
+from cnc_ptp.nc import tapping
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import (
@@ -203,7 +204,9 @@ def _resolve(
     if moves and (block.words or path.own_words) and path.motion is not None:
         motion = path.motion(channel, state, block, path)
     functions: tuple[Function, ...] = ()
-    if block.functions and (path.spindle or not path.own_words):
+    if path.number in tapping.CODES:
+        functions = tapping.functions(channel, state, block, path)
+    elif block.functions and (path.spindle or not path.own_words):
         functions = block_functions(channel, state, block)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
@@ -239,7 +242,7 @@ def _moved(
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
-    if transition is not THROUGH and not measures(motion):
+    if transition is not THROUGH and not ends_on_its_own(motion):
         motion = motion._replace(transition=transition)
     if block.codes and any(code.number == FULL_OVERRIDE for code in block.codes):
         motion = motion._replace(full_override=True)
@@ -247,6 +250,11 @@ def _moved(
         _require_speed(state, motion)
     state.position, state.programmed = motion.target, programmed
     return motion
+
+
+def ends_on_its_own(motion: Motion) -> bool:
+    """A measuring run or tapping: no transition of the program changes its end."""
+    return isinstance(motion, LinearMove) and (bool(motion.measures) or motion.tap is not None)
 
 
 def _followed(

@@ -161,6 +161,8 @@ class Spindle(NamedTuple):
     gear          stage at start-up, from 1
     plc_control   the PLC moves it through the channel's interface (P-CHAN-00069)
     limits        largest speed of each gear stage, rpm (P-AXIS-00212); stages beyond the last entry have none
+    positioned    it has an actual position, so that it can be an axis of the path
+    path_gear     gear stage as an axis of the path (P-AXIS-00052), 0: any
     """
 
     key: str
@@ -172,6 +174,8 @@ class Spindle(NamedTuple):
     gear: int = 1
     plc_control: bool = False
     limits: tuple[float, ...] = ()
+    positioned: bool = True
+    path_gear: int = 0
 
 
 class Pair(NamedTuple):
@@ -191,6 +195,7 @@ class SpindleTable(NamedTuple):
 
     `main_name`: what programs call whichever spindle is the main one (P-CHAN-00053). `gear_change`: M40 to M45 change
     its gear (P-CHAN-00052). `default_link`: coupling group 0 (P-CHAN-00037, 00038); `link_groups`: number of groups.
+    `pitch_tolerance`: ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020).
     """
 
     spindles: tuple[Spindle, ...]
@@ -198,6 +203,7 @@ class SpindleTable(NamedTuple):
     gear_change: bool = False
     default_link: Pairs = ()
     link_groups: int = 4
+    pitch_tolerance: float = 0.001
 
 
 class NcBlock(NamedTuple):
@@ -236,6 +242,16 @@ class Step(NamedTuple):
     motion: Motion | None
     functions: tuple[Function, ...] = ()
     machine: bool = False
+
+
+class Tapping(NamedTuple):
+    """What stays from one block with G63, G331, G332 to the next: the last S was negative; last pitch, mm, 0 none."""
+
+    reversed: bool = False
+    pitch: float = 0.0
+
+
+NO_TAPPING: Final = Tapping()
 
 
 class Drilling(NamedTuple):
@@ -356,6 +372,7 @@ class ModalState:
     programmed: tuple[float, ...] = ()
     reported: bool = field(default=False, compare=False)
     drilling: Drilling = NO_DRILLING
+    tapping: Tapping = NO_TAPPING
     transition: Transition = THROUGH
     once: Transition | None = None
     contour: Contour = DEFAULT_CONTOUR

@@ -39,6 +39,26 @@ GEAR_TWICE = Fault(21073, "gear stages M{first} and M{second} in one block")
 GEAR_IN_BRACKET = Fault(21074, "{word} in brackets: gears are changed in DIN syntax only (M40 to M45 and S)")
 GEAR_AND_HOMING = Fault(20942, "M{stage} and G74 in one block")
 
+# Tapping
+TAPPING_AND_M = Fault(21640, "{word} with {g}: the path turns the spindle; end {g} with another path function first")
+TAPPING_WITHOUT_POSITION = Fault(
+    21641, "{g} needs a spindle with an actual position (P-AXIS-00320, P-SIM-00050) that the NC moves, {spindle} is none"
+)
+TAPPING_WHILE_TURNING = Fault(
+    21654, "{g} while spindle {spindle} turns: it must be at a standstill (M05 or M19 in a block before)"
+)
+TAPPING_FEED_MODE = Fault(21642, "{g} needs a feed in mm/min (G94), G{mode} is active")
+TAPPING_FEED_ZERO = Fault(21643, "{g} with feed 0: it needs F = S times the pitch")
+TAPPING_SPEED_ZERO = Fault(21644, "{g} with speed 0 of spindle {spindle}: it needs S = F / pitch")
+TAPPING_PITCH_MISSING = Fault(21645, "{g} without a pitch (I, J or K in mm per turn)")
+PITCH_TWICE = Fault(21646, "pitches {first} and {second} in one block")
+PITCH_ZERO = Fault(21647, "pitch {word}0 of {g} must not be 0")
+PITCH_DIFFERS = Fault(
+    21648,
+    "feed {feed} mm/min with speed {speed} rpm makes a pitch of {made} mm, not {pitch} mm: it needs F{needed}"
+    " (within {limit} %, P-CHAN-90020)",
+)
+
 # Commands
 COMMAND_NOT_ALONE = Fault(21075, "{command} must be alone in its block, not with '{word}'")
 COMMAND_ARGUMENTS = Fault(21076, "{command} is written {syntax}")

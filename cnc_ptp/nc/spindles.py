@@ -98,7 +98,7 @@ def spindle_functions(channel: Channel, state: ModalState, block: NcBlock) -> li
         for function in _SpindleBlock(channel, state, block, words, place, spindle).functions():
             together = [function, *_parallel(state, function)]
             for each in together:
-                _check_speed(channel, state, block, place, each)
+                require_permitted_speed(channel, state, block, place, each)
                 _check_position(channel, state, block, words, place, each)
             functions += together
     return functions
@@ -169,6 +169,11 @@ def _check_coupling(
                 raise spindle_faults.COUPLED.at(block.source, column, spindle=words.name, master=leader, group=group)
 
 
+def is_slave(state: ModalState, key: str) -> bool:
+    """The spindle follows another one."""
+    return any(pair.slave == key for group in state.spindle.active for pair in state.spindle.links[group])
+
+
 def _parallel(state: ModalState, function: Function) -> list[Function]:
     """The same function for the slaves of its spindle (2.8.3, parallel commanding); gears stay with the master."""
     if not state.spindle.active or not isinstance(function, (SpindleFunction, SpindleCommand)):
@@ -201,7 +206,9 @@ def _of_slave(function: SpindleFunction | SpindleCommand, pair: Pair) -> Spindle
     return function._replace(spindle=pair.slave, m=m, **values)
 
 
-def _check_speed(channel: Channel, state: ModalState, block: NcBlock, place: str, function: Function) -> None:
+def require_permitted_speed(
+    channel: Channel, state: ModalState, block: NcBlock, place: str, function: Function
+) -> None:
     """Raises ProgramError 22010 for a speed that the gear of the spindle does not permit (P-AXIS-00212)."""
     if not isinstance(function, SpindleFunction) or function.speed_rpm is None:
         return
@@ -287,6 +294,7 @@ class _SpindleBlock:
         if speed < 0.0:
             raise self._fault(faults.SPEED_NEGATIVE, value=number(speed))
         self.state.speeds[self.key] = speed
+        self.state.tapping = self.state.tapping._replace(reversed=False)
         self.state.spindle.speedless.pop(self.key, None)
 
     def _check_homing_alone(self) -> None:

@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, transitions
+from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, tapping, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 from cnc_ptp.nc.tools.compensation import follow_plane
@@ -79,7 +79,7 @@ _G_CODES = (
     GCode(61, "block transition", prepare=transitions.once),
     GCode(260, "block transition", select=transitions.through),
     GCode(261, "block transition", select=transitions.contouring),
-    GCode(63, "path", later="tapping"),
+    *(GCode(code, "path", motion=tapping.tap, words=frozenset(tapping.PITCH_WORDS)) for code in tapping.CODES),
     GCode(70, "units", prepare=codes.unit),
     GCode(71, "units", prepare=codes.unit),
     GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),

@@ -46,7 +46,12 @@ def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
     alike = motion.full_override == following.full_override and motion.slope == following.slope
     blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
-    return alike and blended and not motion.transition.stops
+    return alike and blended and not motion.transition.stops and not taps(following)
+
+
+def taps(motion: Path) -> bool:
+    """A spindle turns with the motion (G63)."""
+    return isinstance(motion, LinearMove) and motion.tap is not None
 
 
 def is_rapid(motion: Path) -> bool:

@@ -12,7 +12,7 @@ from cnc_ptp.nc.canonical import STEP, Dwell, LinearMove
 from cnc_ptp.parameters import AxisParameters, ChannelParameters
 from cnc_ptp.path.geometry import NEGLIGIBLE_MM, Arc, AxisLimits, Line
 from cnc_ptp.path.interpolator import PathInterpolator
-from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid
+from cnc_ptp.path.linked_path import LinkedPath, MotionSource, Path, is_rapid, taps
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import PLANNERS, Planner
@@ -22,6 +22,9 @@ CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
 Evaluation = Callable[[float, float, float, float], AxisStates]
 """States of the axes from path length, velocity, acceleration and jerk."""
+SpindleLimits = Callable[[str], AxisLimits]
+"""Limits of a spindle as an axis of the path, by its name in programs; deg, s."""
+AT_REST: AxisState = (0.0, 0.0, 0.0, 0.0)
 PathPoint = tuple[AxisStates, float, float]
 """One cycle on the path: the state of each axis, path velocity (mm/s), distance to the end of the element (mm)."""
 
@@ -68,14 +71,31 @@ class PathMotion:
     velocity         path velocity, mm/s
     distance_to_go   mm to the end of the element
     feed             programmed feed, mm/s; in rapid traverse the velocity that the axes allow
+    spindle_states   of the spindle that is an axis of the path (deg since the path took it over), in the cycles that
+                     `follow` has given out last; empty if the motion has none
+    spindle_state    the last of them; at rest between motions
     """
 
-    def __init__(self, channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> None:
-        """`axes` in the order of the channel, standing at their start positions; `cycle_time` in s."""
+    def __init__(
+        self,
+        channel: ChannelParameters,
+        axes: Sequence[AxisParameters],
+        cycle_time: float,
+        spindle_limits: SpindleLimits | None = None,
+    ) -> None:
+        """`axes` in the order of the channel, standing at their start positions; `cycle_time` in s.
+
+        `spindle_limits`: those of a spindle, by its name in programs, as an axis of the path.
+        """
         self._cycle_time = cycle_time
         self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._path_axes = path_axes(channel)
+        self._spindle_limits = spindle_limits
+        self.spindle_states: list[AxisState] = []
+        self.spindle_state = AT_REST
+        self._taps = False
+        """The spindle is the last coordinate of the active element."""
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
@@ -228,6 +248,7 @@ class PathMotion:
         self._set_full_override(motion.full_override)
         if source is not None and self._link(plan, motion, source):
             return
+        self._taps = taps(motion)
         self._interpolator.start(element, plan.limits, feed, planner=plan.planner)
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
@@ -245,6 +266,8 @@ class PathMotion:
         """How a motion from `start` is run on its own. Raises as `start`."""
         element, rapid, slope = self._make_element(start, motion), is_rapid(motion), motion.slope or self._default_slope
         axis_limits = self._rapid_limits if rapid else self._feed_limits
+        if isinstance(motion, LinearMove) and motion.tap is not None and self._spindle_limits is not None:
+            axis_limits = [*axis_limits, self._spindle_limits(motion.tap.spindle)]
         if slope == STEP:
             axis_limits = [axis._replace(jerk=math.inf) for axis in axis_limits]
         limits = element.limits(math.inf if rapid else motion.feed, axis_limits, 1.0 if rapid else self._max_override)
@@ -253,7 +276,12 @@ class PathMotion:
 
     def _make_element(self, start: tuple[float, ...], motion: Path) -> Line | Arc:
         if isinstance(motion, LinearMove):
-            return Line(start, motion.target, self._path_axes)
+            line = Line(start, motion.target, self._path_axes)
+            if motion.tap is None:
+                return line
+            angle = self.spindle_state[0]
+            travel = motion.tap.degrees_per_mm * line.length
+            return Line((*start, angle), (*motion.target, angle + travel), self._path_axes)
         turn = (motion.center, motion.plane, motion.radius, motion.sweep)
         return Arc(start, motion.target, *turn, self._path_axes, motion.directions)
 
@@ -286,9 +314,18 @@ class PathMotion:
         feed = math.inf if rapid else motion.feed
         return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
 
+    def release_spindle(self) -> None:
+        """No spindle is an axis of the path."""
+        self.spindle_state = AT_REST
+
     def follow(self, count: int) -> list[PathPoint]:
         """The next `count` cycles of the active motion; fewer when it ends before."""
         points = self._points(count)
+        self.spindle_states = []
+        if self._taps:
+            self.spindle_states = [states[-1] for states, _, _ in points]
+            points = [(states[:-1], velocity, distance) for states, velocity, distance in points]
+            self.spindle_state = self.spindle_states[-1] if points else self.spindle_state
         if points:
             self.states, self.velocity, self.distance_to_go = points[-1]
         return points
@@ -338,8 +375,14 @@ class PathMotion:
             self._interpolator.go_on(linked.look_ahead.remaining_time - self._cycle_time if linked.done else 0.0)
             self._linked = None
         else:
-            self.states = standing(element.target if element and self._interpolator.done else self.position)
-        self._element = None
+            done = element is not None and self._interpolator.done
+            target = element.target if element is not None and done else self.position
+            if self._taps:
+                angle = target[-1] if done else self.spindle_state[0]
+                self.spindle_state = (angle, 0.0, 0.0, 0.0)
+                target = target[: len(self.states)]
+            self.states = standing(target)
+        self._element, self._taps = None, False
         self._set_full_override(False)
         self.velocity = self.distance_to_go = 0.0
 

@@ -147,6 +147,8 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
         "couple": {"master": TEXT, "factor_num": OPTIONAL_NUMBER, "factor_den": OPTIONAL_NUMBER, **OWNER},
         "coupling_answer": {"granted": SWITCH, "reason": TEXT},
         "decouple": {**OWNER},
+        "follow_path": {**FOR},
+        "leave_path": {**FOR},
         "set_feedforward": FEEDFORWARD,
         "reset_feedforward": {},
         "reset": {},
@@ -190,7 +192,18 @@ COMMANDS: Mapping[str, Mapping[str, Arguments]] = {
 }
 COUPLINGS = frozenset({"couple", "couple_gantry", "couple_cyclic", "couple_flying_saw", "couple_cam"})
 """Commands that make a slave of an axis."""
-INTERNAL = frozenset({"upstream_lost", "abort", "lead", "group_error", "coupling_answer", "set_homing_override"})
+INTERNAL = frozenset(
+    {
+        "upstream_lost",
+        "abort",
+        "lead",
+        "group_error",
+        "coupling_answer",
+        "set_homing_override",
+        "follow_path",
+        "leave_path",
+    }
+)
 """Commands that only watchdogs, harnesses and other units give; a scenario may not."""
 OF_PLC = frozenset({"above", "master_stands", "master_lost"})
 """Arguments of couplings that the PLC fills in; only a refusal can come of them, so that they are not recorded."""

@@ -32,6 +32,8 @@ class SpindleBit(IntEnum):
     JOB_ERROR = 1 << 7
     ORDERS_WAIT = 1 << 8
     """Commands wait for their turn."""
+    ON_PATH = 1 << 9
+    """The path of a channel moves it."""
 
 
 def held_by_override(block: SpindleBlock) -> bool:

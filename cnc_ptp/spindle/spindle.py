@@ -16,6 +16,7 @@ from cnc_ptp.protocol.transitions import Transition, require_source
 from cnc_ptp.spindle import transitions as T
 from cnc_ptp.spindle.exact_stop import ExactStop
 from cnc_ptp.spindle.faults import NOT_READY
+from cnc_ptp.spindle.path_travel import PathTravel
 from cnc_ptp.spindle.position_loop import PositionLoop
 from cnc_ptp.spindle.procedure import Work
 from cnc_ptp.spindle.speed_ramp import plan_speed
@@ -57,6 +58,8 @@ class Spindle:
         self._table = plan_speed(parameters.start_position, 0.0, 0.0, self.limits.ramp)
         self._origin = 0
         self._shift = 0.0
+        self.travel: PathTravel | None = None
+        """What the path of a channel adds to its own motion."""
         self.powered = parameters.powered_at_start
         self.state = S.STANDSTILL if self.powered else S.DISABLED
         self.mode = SpindleMode.STOP
@@ -95,11 +98,23 @@ class Spindle:
 
     def motion(self, cycle: int) -> Motion:
         """Set position, speed and acceleration at `cycle`, before a command that acts there."""
+        position, speed, acceleration = self._own_motion(cycle)
+        if self.travel is None:
+            return position, speed, acceleration
+        travel = self.travel.at(cycle)
+        return position + travel[0], speed + travel[1], acceleration + travel[2]
+
+    def _own_motion(self, cycle: int) -> Motion:
+        """Without what a path adds."""
         position, speed, acceleration = self._table.state_at((cycle - self._origin) * self.cycle_time)
         return position + self._shift, speed, acceleration
 
+    def jerk(self, cycle: int) -> float:
+        """Of the path; the spindle's own motion has none that is fed forward."""
+        return 0.0 if self.travel is None else self.travel.at(cycle)[3]
+
     def motions(self, first_cycle: int, count: int) -> Setpoints:
-        """`motion` of many cycles, as setpoints of the control loop (no jerk is fed forward)."""
+        """`motion` of many cycles, as setpoints of the control loop; on no path."""
         cycle_time, shift, first = self.cycle_time, self._shift, first_cycle - self._origin
         times = [cycle * cycle_time for cycle in range(first, first + count)]
         if not self.finished(first_cycle):
@@ -141,8 +156,8 @@ class Spindle:
         self.unsettled = True
 
     def ramp_to(self, cycle: int, speed: float) -> None:
-        """A speed ramp from the state at `cycle`."""
-        position, before, _ = self.motion(cycle)
+        """A speed ramp from the state of its own motion at `cycle`."""
+        position, before, _ = self._own_motion(cycle)
         self.follow(cycle, plan_speed(position, before, speed, self.limits.ramp))
 
     def shift_coordinates(self, distance: float) -> None:
@@ -243,10 +258,25 @@ class Spindle:
             cycle, in_position=abs(away) <= gear.position_window, at_rest=abs(speed) <= gear.zero_speed
         )
 
+    # path of a channel
+
+    def leave_path(self, cycle: int) -> None:
+        """The path no longer moves it: it continues with its own motion, and on its ramp with what it had of the path."""
+        assert self.travel is not None
+        position, speed, _ = self.motion(cycle)
+        own = self._own_motion(cycle)[1]
+        self.travel = None
+        self.follow(cycle, plan_speed(position, speed, own if self.finished(cycle) else 0.0, self.limits.ramp))
+        if self.state == S.SYNCHRONIZED_MOTION:
+            self.mode = SpindleMode.STOP
+            self.take(T.LEAVE_PATH)
+
     # position loop
 
     def _open_loop(self, cycle: int) -> None:
         """The speed of a controlled spindle continues from the command of the position controller."""
+        if self.travel is not None:
+            return
         speed = self.loop.open()
         if speed is not None:
             self.follow(cycle, plan_speed(self.loop.position, speed, speed, self.limits.ramp))
@@ -287,7 +317,8 @@ class Spindle:
         self.job_error = had_job
         self.take(T.FAULT)
         self.when_faulted()
-        text = f"spindle {self.name}: {reason}; the spindle stops on its ramp (ErrorStop)"
+        how = "on its ramp" if self.travel is None else "with the path"
+        text = f"spindle {self.name}: {reason}; the spindle stops {how} (ErrorStop)"
         self.report_error(cycle, error_id, text)
 
     def fail(self, command: str, cycle: int, number: int, reason: str, /, **values: Value) -> NoReturn:

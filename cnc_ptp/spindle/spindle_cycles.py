@@ -30,6 +30,7 @@ SETTLED = (S.STANDSTILL, S.CONTINUOUS_MOTION, S.DISABLED, S.ERROR_STOP)
     TOOL_LIMITS,
     JOB_ERROR,
     ORDERS_WAIT,
+    ON_PATH,
 ) = map(int, SpindleBit)
 """As plain numbers: operations on members of an IntEnum take microseconds."""
 
@@ -75,9 +76,10 @@ class SpindleCycles:
         elif speed == 0.0 and spindle.state == S.STOPPING:
             spindle.take(T.FINISH)
         actual = loop.actual_position(position, speed)
-        setpoint = position, speed, acceleration, 0.0
+        setpoint = position, speed, acceleration, spindle.jerk(cycle)
         self._watch_following_error(cycle, setpoint)
-        reached = self._speed_reached(actual_speed)
+        travel = spindle.travel
+        reached = self._speed_reached(actual_speed if travel is None else actual_speed - travel.at(cycle)[1])
         self._watch_speed(cycle, reached)
         self._procedures.hold(cycle, actual, actual_speed)
         target = position if spindle.target is None else spindle.target
@@ -172,6 +174,8 @@ class SpindleCycles:
             bits |= JOB_ERROR
         if self._queue.waiting:
             bits |= ORDERS_WAIT
+        if spindle.travel is not None:
+            bits |= ON_PATH
         return bits
 
     def _note_settled(self, cycle: int) -> None:
@@ -193,6 +197,8 @@ class SpindleCycles:
     def _undisturbed(self, first_cycle: int, last_cycle: int) -> bool:
         """True when only the following error can change state, mode or loop in these cycles."""
         spindle = self._spindle
+        if spindle.travel is not None:
+            return False
         if not spindle.unsettled:
             return True
         if spindle.work.procedure is not None or self._queue.waiting:

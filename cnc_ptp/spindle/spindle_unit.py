@@ -20,6 +20,7 @@ from cnc_ptp.spindle.command_queue import MOTION, CommandQueue, QueuedCommand
 from cnc_ptp.spindle.coupling_commands import PASSED_ON, CouplingCommands, can_follow
 from cnc_ptp.spindle.faults import COMMAND_WAITS, GEAR_CHANGE_OVERTAKEN, HOMING_LOST, MASTER_IN_ERROR, SLAVE_CANNOT
 from cnc_ptp.spindle.gear_commands import GearCommands
+from cnc_ptp.spindle.path_commands import PathCommands
 from cnc_ptp.spindle.position_commands import PositionCommands
 from cnc_ptp.spindle.power_commands import PowerCommands
 from cnc_ptp.spindle.procedures import Procedures
@@ -62,6 +63,7 @@ class SpindleUnit(Unit):
         self._coupling = CouplingCommands(self.spindle, spindles or (parameters.name,))
         self._rotation = RotationCommands(self.spindle, procedures)
         self._power = PowerCommands(self.spindle)
+        self._path = PathCommands(self.spindle)
         self._groups = (
             self,
             self._rotation,
@@ -69,6 +71,7 @@ class SpindleUnit(Unit):
             GearCommands(self.spindle, procedures),
             self._power,
             self._coupling,
+            self._path,
             FeedforwardCommands(self.spindle.loop, f"spindle {parameters.name}"),
         )
         self._cycles = SpindleCycles(self.spindle, procedures, self._queue, self._rotation)
@@ -128,6 +131,7 @@ class SpindleUnit(Unit):
         self, command: str, cycle: int, *, source: str = "", own: bool = False, **arguments: Any
     ) -> str | None:
         """`own`: a stop that counts only while nobody else has commanded the spindle since."""
+        self._path.check(command)
         commander = self._queue.commander
         if own and commander and commander != source:
             self._queue.forget(source)
@@ -238,6 +242,8 @@ class SpindleUnit(Unit):
 
     def do_reset(self, cycle: int) -> None:
         """See PowerCommands.do_reset; waiting commands are dropped, and slaves stop too."""
+        if self.spindle.state != S.ERROR_STOP:
+            self._path.check("reset")
         self._report_lost_homings(cycle, "reset")
         self._power.do_reset(cycle)
         self._queue.clear()
@@ -271,6 +277,8 @@ class SpindleUnit(Unit):
         master = inputs.get(self._coupling.master)
         if isinstance(master, SpindleBlock):
             self._follow(first_cycle, master)
+        if self.spindle.travel is not None:
+            self._path.take_setpoints(first_cycle, inputs.get(self.spindle.travel.channel))
         self._take_turns(first_cycle)
         block = self._cycles.block(first_cycle, count)
         warning = feedforward_warning(self.spindle.loop.feedforward, block.set_speed_rpm[-1] * DEG_S_PER_RPM, "deg")

@@ -22,5 +22,7 @@ CHANGE_GEAR = transition("at the position of the gear change", S.DISCRETE_MOTION
 FINISH = transition("finished", *PROCEDURE, S.STANDSTILL, S.DISABLED, to=S.STANDSTILL)
 FINISH_WITHOUT_POWER = transition("finished without power", S.DISABLED, to=S.DISABLED)
 FAULT = transition("fault", *S, to=S.ERROR_STOP)
+FOLLOW_PATH = transition("taken over by the path (G63)", S.STANDSTILL, to=S.SYNCHRONIZED_MOTION)
+LEAVE_PATH = transition("released by the path", S.SYNCHRONIZED_MOTION, to=S.STANDSTILL)
 RESET = transition("reset", S.ERROR_STOP, to=S.STANDSTILL)
 RESET_WITHOUT_POWER = transition("reset without power", S.ERROR_STOP, to=S.DISABLED)

@@ -200,6 +200,7 @@ CONTOUR_PATH_DEV = "P-CHAN-90012"  # prog_start.contour.path_dev
 CONTOUR_TRACK_DEV = "P-CHAN-90013"  # prog_start.contour.track_dev
 HSC_PATH_DEV = "P-CHAN-90014"  # prog_start.hsc.path_dev
 HSC_TRACK_DEV = "P-CHAN-90015"  # prog_start.hsc.track_dev
+TAPPING_PITCH_TOLERANCE = "P-CHAN-90020"  # tapping.pitch_tolerance
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

@@ -120,6 +120,8 @@ class ChannelParameters:
     """… and mm or deg of the other axes, 0 none."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
+    pitch_tolerance: float = 0.001
+    """Ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020)."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
@@ -142,6 +144,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         slope={0: "STEP", 2: "SIN2"}.get(int(channel.number(ids.SLOPE_PROFILE)), "TRAPEZ"),
         offsets=offset_tables(channel, len(axes)),
         cycles=cycles(channel),
+        pitch_tolerance=channel.number(ids.TAPPING_PITCH_TOLERANCE) / 1000.0,
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),
     )

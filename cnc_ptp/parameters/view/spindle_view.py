@@ -93,6 +93,8 @@ class SpindleParameters:
     """Under position control for positioning and homing only, if at all (P-AXIS-00320)."""
     feedback: str
     """Actual value that the drive sends: POSITION, SPEED or NONE."""
+    path_gear: Annotated[int, ids.KENNGR_CAX_GEAR_STAGE]
+    """Gear stage as an axis of the path; 0: any."""
     speed_reached_band: Annotated[float, ids.KENNGR_VB_PROZENT]
     """Speed reached within (1 ± band) times the commanded speed."""
     preferred_direction: int
