@@ -45,6 +45,7 @@ from cnc_ptp.nc.canonical import (
     SpindleCommand,
     SpindleFunction,
     SpindleLink,
+    Tap,
     Timer,
     WaitForPath,
 )
@@ -230,14 +231,17 @@ class ProgramSequence:
         else:
             self.motion_ended()
 
-    def _release_spindle(self) -> None:
-        """The path no longer moves a spindle."""
-        self._path_spindle.release()
-        self._motion.release_spindle()
+    def _spindle_follows(self, tap: Tap) -> bool:
+        """The spindle is an axis of the path; it is asked to become one. Raises CncError 22060."""
+        spindle, asked = self._path_spindle, self._path_spindle.active
+        follows = spindle.ready(tap.spindle)
+        if spindle.active and not asked:
+            self._motion.take_spindle()
+        return follows
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""
-        self._release_spindle()
+        self._path_spindle.release()
         self._functions.expect_nothing(self._keep)
         self._queue(self._functions.at_abort(self.source, self._keep))
 
@@ -461,7 +465,7 @@ class ProgramSequence:
             return True
         self._reach(block)
         if leaves_spindle(block):
-            self._release_spindle()
+            self._path_spindle.release()
         gear = self._functions.gear_change(block)
         if not gear.commands:
             self._functions_before(cycle)
@@ -508,7 +512,7 @@ class ProgramSequence:
         elif isinstance(motion, HomeAxes):
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
-        elif isinstance(motion, LinearMove) and motion.tap is not None and not self._path_spindle.ready(motion.tap.spindle):
+        elif isinstance(motion, LinearMove) and motion.tap is not None and not self._spindle_follows(motion.tap):
             return False
         elif not (isinstance(motion, LinearMove) and motion.measures):
             if self._following.awaits_next(motion):
@@ -595,7 +599,7 @@ class ProgramSequence:
         self.finished = True
 
     def _end_program(self) -> None:
-        self._release_spindle()
+        self._path_spindle.release()
         self._motion.feed = 0.0
         self._block = None
         self._waits = []

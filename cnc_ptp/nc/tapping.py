@@ -17,6 +17,7 @@ from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.motions import target_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Spindle
 from cnc_ptp.nc.spindles import current_main, is_slave, require_permitted_speed, require_spindle
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 TAPPING: Final = 63
 TAPPING_IN: Final = 331
@@ -58,15 +59,23 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     target = target_of(channel, state, block, code)
     if target is None:
         return None
-    if not main.positioned:
-        raise _fault(spindle_faults.TAPPING_WITHOUT_POSITION, block, code.name, g=code.name, spindle=main.key)
+    require_main(channel, state, block, code)
     if main.key in state.spindle.turning and not is_slave(state, main.key):
         raise _fault(spindle_faults.TAPPING_WHILE_TURNING, block, code.name, g=code.name, spindle=main.key)
     if state.feed_mode != feeds.PER_MINUTE:
         raise _fault(spindle_faults.TAPPING_FEED_MODE, block, code.name, g=code.name, mode=state.feed_mode)
     turn = _by_feed(channel, state, block, code, main) if code.number == TAPPING else _by_pitch(state, block, code, main)
-    degrees_per_mm = turn.sense * turn.speed * 6.0 / turn.feed
+    degrees_per_mm = turn.sense * turn.speed * DEG_S_PER_RPM / turn.feed
     return LinearMove(tuple(target), False, turn.feed, transition=EXACT_STOP, tap=Tap(main.key, degrees_per_mm))
+
+
+def require_main(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """Raises ProgramError for a main spindle that cannot be an axis of the path, or has no speed."""
+    require_spindle(channel, block, code.name)
+    main = current_main(channel, state)
+    if not main.positioned:
+        raise _fault(spindle_faults.TAPPING_WITHOUT_POSITION, block, code.name, g=code.name, spindle=main.key)
+    _speed(state, block, code, main)
 
 
 def _take_speed(channel: Channel, state: ModalState, block: NcBlock, main: Spindle) -> None:

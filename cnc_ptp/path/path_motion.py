@@ -314,8 +314,8 @@ class PathMotion:
         feed = math.inf if rapid else motion.feed
         return LinkedMotion(plan.element, limits, feed, block, motion.transition, plan.feed)
 
-    def release_spindle(self) -> None:
-        """No spindle is an axis of the path."""
+    def take_spindle(self) -> None:
+        """A spindle becomes an axis of the path: its travel counts from here."""
         self.spindle_state = AT_REST
 
     def follow(self, count: int) -> list[PathPoint]:

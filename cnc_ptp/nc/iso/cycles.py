@@ -1,4 +1,4 @@
-"""Drilling cycles G73, G81 to G83, G85, G86, G89: one line makes all motions of its holes.
+"""Drilling cycles G73, G74, G81 to G86, G89: one line makes all motions of its holes.
 
 R and Z are levels of the drill axis (Z in G17, Y in G18, X in G19), kept until G80 or G00 to G03: absolute with G90,
 with G91 R counts from the level before the cycle and Z from R. Q and P are kept until the next cycle. Each hole: rapid
@@ -11,18 +11,21 @@ from collections.abc import Callable, Iterator
 from math import ceil
 from typing import Final, NamedTuple
 
-from cnc_ptp.nc import feeds, motions
-from cnc_ptp.nc.canonical import Dwell, LinearMove, SpindleFunction, number
+from cnc_ptp.nc import feeds, motions, tapping
+from cnc_ptp.nc.canonical import Dwell, LinearMove, SpindleFunction, Tap, number
+from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.iso import iso_faults as faults
 from cnc_ptp.nc.iso.offsets import integer
 from cnc_ptp.nc.program import Channel, Drilling, GCode, ModalState, NcBlock, Step
 from cnc_ptp.nc.spindles import current_main, require_spindle
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 BACKED_OFF: Final = 0.254
 """mm above the bottom of the hole so far, to which G73 lifts and G83 returns at rapid speed (LinuxCNC: 0.01 inch)."""
 MOST_REPEATS: Final = 9999
 MOST_MOTIONS: Final = 10_000
 """Of one block."""
+TAPPING: Final = (74, 84)
 DRILL_AXES: Final = {17: "Z", 18: "Y", 19: "X"}
 NEEDED: Final = {73: "Q", 83: "Q", 82: "P", 89: "P"}
 MEANING: Final = {
@@ -69,6 +72,8 @@ def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> N
     work = CYCLES[code.number]
     if code.number == 86:
         _require_turning(channel, state, block, code)
+    elif code.number in TAPPING:
+        tapping.require_main(channel, state, block, code)
     state.following = _holes(channel, state, hole, target, step, _repeats(block, code, words, hole), work)
 
 
@@ -145,6 +150,11 @@ class _Drill:
     def feed(self, level: float) -> Step:
         return self._move(level, False)
 
+    def tap(self, level: float, tap: Tap) -> Step:
+        """At the feed while the spindle turns with the path."""
+        self.here[self.hole.axis] = level
+        return Step(LinearMove(tuple(self.here), False, self.hole.feed, transition=EXACT_STOP, tap=tap))
+
     def _move(self, level: float, rapid: bool) -> Step:
         self.here[self.hole.axis] = level
         return Step(LinearMove(tuple(self.here), rapid, 0.0 if rapid else self.hole.feed))
@@ -210,6 +220,30 @@ def _boring_stopped(tool: _Drill, hole: Hole) -> Iterator[Step]:
     yield Step(None, (SpindleFunction(key, tool.state.spindle.turning[key], tool.state.speeds[key]),))
 
 
+def _tapping(tool: _Drill, hole: Hole) -> Iterator[Step]:
+    """G84: the spindle turns clockwise with the path to the bottom, and back; it turns again as before."""
+    yield from _tapped(tool, hole, 1.0)
+
+
+def _tapping_left(tool: _Drill, hole: Hole) -> Iterator[Step]:
+    """G74: as G84 the other way round."""
+    yield from _tapped(tool, hole, -1.0)
+
+
+def _tapped(tool: _Drill, hole: Hole, sense: float) -> Iterator[Step]:
+    """The pitch is F / S."""
+    key = current_main(tool.channel, tool.state).key
+    speed, turning = tool.state.speeds[key], tool.state.spindle.turning.get(key)
+    if turning is not None:
+        yield Step(None, (SpindleFunction(key, 5, None),))
+    yield tool.tap(hole.bottom, Tap(key, sense * speed * DEG_S_PER_RPM / hole.feed))
+    if hole.p > 0.0:
+        yield Step(Dwell(hole.p))
+    yield tool.tap(hole.r, Tap(key, -sense * speed * DEG_S_PER_RPM / hole.feed))
+    if turning is not None:
+        yield Step(None, (SpindleFunction(key, turning, speed),))
+
+
 def pecks(hole: Hole) -> float:
     """How often a drill goes down, Q each time."""
     return max(1.0, ceil((hole.r - hole.bottom) / hole.q - 1e-9))
@@ -238,9 +272,11 @@ def _chip_breaking(tool: _Drill, hole: Hole) -> Iterator[Step]:
 
 CYCLES: Final[dict[int, Callable[[_Drill, Hole], Iterator[Step]]]] = {
     73: _chip_breaking,
+    74: _tapping_left,
     81: _drilling,
     82: _plain,
     83: _deep,
+    84: _tapping,
     85: _reaming,
     86: _boring_stopped,
     89: _boring,

@@ -22,7 +22,6 @@ def _cycle(number: int, words: str = "") -> GCode:
 
 
 _ARC_WORDS: Final = frozenset("IJKR")
-_TAPPING: Final = "tapping"
 _BORING: Final = "boring with an oriented spindle"
 
 _G_CODES = (
@@ -57,13 +56,13 @@ _G_CODES = (
     GCode(61, "block transition", minor=1, select=transitions.stop_always),
     GCode(64, "block transition", prepare=offsets.path_tolerance, words=frozenset("PQ")),
     _cycle(73, "PQ"),
-    GCode(74, "path", later=_TAPPING),
+    _cycle(74, "P"),
     GCode(76, "path", later=_BORING),
     GCode(80, "cycle end", select=own.without_motion),
     _cycle(81),
     _cycle(82, "P"),
     _cycle(83, "PQ"),
-    GCode(84, "path", later=_TAPPING),
+    _cycle(84, "P"),
     _cycle(85),
     _cycle(86, "P"),
     GCode(87, "path", later=_BORING),
