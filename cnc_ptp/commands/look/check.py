@@ -44,7 +44,7 @@ def check(
     begin: StartPoint | None = None,
     as_subroutine: bool = False,
 ) -> int:
-    """Prints all syntax errors and the first modal one, and the warnings of the machine file.
+    """Prints the syntax and modal errors, and the warnings of the machine file.
 
     Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too, with `begin`
     those from the start point on. `dialect`: vocabulary of the program; None: that of the machine file, or twincat.
@@ -91,6 +91,11 @@ def print_result(errors: Sequence[ProgramError], good: str) -> int:
     """Prints the errors, or what is to be said without any; the status of the command."""
     for error in errors:
         print_error(error)
+        if error.unchecked:
+            print(
+                f"note: nothing behind line {error.line} of {error.file} was checked: {error.unchecked}",
+                file=sys.stderr,
+            )
         if error.number == RETURN_IN_MAIN.number:
             print("note: --as-subroutine checks a file that other programs call", file=sys.stderr)
     if good and not errors:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc import faults
@@ -28,6 +29,15 @@ class Limits(NamedTuple):
 EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 """Statements that evaluate what other lines of their structure say."""
 MODAL_BLOCK: Final = "MODAL_BLOCK"
+
+
+READS_STATE: Final = re.compile(r"V\s*\.\s*(?:A|G|SPDL_PROG)\s*\.", re.ASCII | re.IGNORECASE)
+"""Readable state, which blocks before the line have changed."""
+DECIDES: Final = re.compile(
+    r"[$#@%]|\bLL?\s|G\s*8\d|\b[PV]\s*[\d.\[]|M\s*(?:0*2|17|29|30|99)\b", re.ASCII | re.IGNORECASE
+)
+"""What a line that cannot be read may do to the order of execution and to values."""
+ENDLESS: Final = (faults.CALL_DEPTH.number, flow_faults.LOOP_LIMIT.number)
 
 
 class Pending(NamedTuple):
@@ -94,6 +104,12 @@ class Execution(Flow):
         self._pending: list[Pending] = []
         """Calls that are due, the next one last."""
         self._paused = -1
+        self._read: Line | None = None
+        """The line that was looked at last."""
+        self.uncertain = False
+        """Blocks were left out: it ends before a line that reads the state."""
+        self.reads_unknown = False
+        """It has ended so."""
         self._modal: Call | None = None
         """The call that follows each motion or block."""
         self._modal_line: Line | None = None
@@ -135,6 +151,10 @@ class Execution(Flow):
             if line.skip & self.block_skip:
                 self.number, self.offset = line.next_number, line.next_offset
                 continue
+            self._read = line
+            if self.uncertain and READS_STATE.search(line.source.text):
+                self.ended = self.reads_unknown = True
+                return None
             if line.error is not None:
                 raise line.error
             if self._pauses(line.synchronises or self._structure_waits(line), self.number):
@@ -154,6 +174,25 @@ class Execution(Flow):
                 return block
             if line.call is not None:
                 self._pending.append(Pending(line.call, line, len(self.frames), line.call.count))
+
+    @property
+    def at_end(self) -> bool:
+        """The line that was looked at last ends the program or subroutine."""
+        return self._read is not None and self._read.flow != ""
+
+    def skip(self, error: ProgramError) -> bool:
+        """Leaves out the line that has just raised; False if it decides which lines follow, or about their values."""
+        line = self._read
+        if line is None or (error.file, error.line) != (line.source.file, line.source.line) or error.number in ENDLESS:
+            return False
+        if line.control is not None or line.jump or line.call is not None:
+            return False
+        if line.error is not None and DECIDES.search(line.source.text):
+            return False
+        if line.statement is not None and not line.statement.independent:
+            return False
+        self.number, self.offset = line.next_number, line.next_offset
+        return True
 
     def _pauses(self, needed: bool, place: int) -> bool:
         """Whether the path must stand before what follows; once for each time that it is executed."""
