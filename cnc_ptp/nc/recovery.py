@@ -1,6 +1,6 @@
-"""How a check goes on behind a faulty block: the block is left out, the modal state stays as it was before it.
+"""How a check continues behind a faulty block: the block is left out, modal state and position are those before it.
 
-What a block that is left out would have changed is not known any more. So errors that may come from that alone are not
+What a block that is left out would have changed is unknown. So errors that may come from that alone are not
 shown (FOLLOW), and the check ends at a line that reads the state (V.A., V.G., V.SPDL_PROG.).
 """
 
@@ -59,7 +59,7 @@ class Recovery:
             self._take(error)
 
     def go_on(self, error: ProgramError, execution: Execution, state: ModalState, before: ModalState | None) -> bool:
-        """Whether the check goes on behind an error.
+        """Whether the check continues behind an error.
 
         `before`: the modal state before the block; None: the error came before there was a block.
         """
