@@ -434,7 +434,8 @@ class ProgramSequence:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
             actual = actual_positions(self._feedback, self._axes)
-            self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch)
+            override = round(100.0 * self._motion.override, 9)
+            self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch, override)
         block: CanonicalBlock | None = None
         try:
             block = self._following.take()

@@ -27,6 +27,8 @@ class ProgramError(CncError):
         self.text = visible(source.text)
         self.calls: list[str] = []
         """From where the subroutine was called that has the fault, the innermost first."""
+        self.note = ""
+        """What helps to mend it; a line of its own."""
         self.unchecked = ""
         """Why a check did not look at what follows; empty where it did."""
 

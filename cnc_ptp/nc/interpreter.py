@@ -362,7 +362,7 @@ def check(
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and its modal errors, one per line, in the order of the lines.
 
-    The modal check runs the program from `start` (default 0). Behind an error it continues as Recovery says, and ends at
+    The modal check runs the program from `start` (default 0). Behind an error it continues as Recovery says. It ends at
     a line that reads what only the run knows, since everything after that would be a guess; so are targets after G74.
     #ERROR that stops the program is an error. An error that `check_target` raises comes out as it is, unless it is a
     ProgramError.

@@ -166,6 +166,13 @@ def test_a_refused_start_names_the_callers() -> None:
     assert bench.refusals() == [f"P-ERR-20396 {place}"]
 
 
+def test_the_override_of_the_path_is_read_when_the_path_stands() -> None:
+    bench = MachineBench("G00 X1\nG00 Y[V.RTG.OVERRIDE.VEL.TOTAL / 10]\nM30", end_when_idle=False)
+    assert bench.give("channel", "set_override", percent=57).accepted
+    bench.run(4.0)
+    assert bench.errors() == [] and bench.position("y") == 5.7
+
+
 def test_h_functions_go_to_the_plc_and_the_path_does_not_wait() -> None:
     bench = MachineBench("G00 X1 H5\nH65535\nX2\nM30").run()
     requests = [(request.kind, request.number) for block in bench.blocks["channel"] for request in block.requests]

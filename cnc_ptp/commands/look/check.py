@@ -57,6 +57,8 @@ def check(
     checked = None if parameters is None else ProgramCheck.of_first_channel(parameters, program)
     if parameters is not None:
         print_notices(parameters)
+        for folder in search.missing:
+            print(f"warning: search folder {folder} (P-CHAN-90004) does not exist", file=sys.stderr)
     own = VOCABULARIES["twincat"] if checked is None else checked.vocabulary
     vocabulary = own if dialect is None else VOCABULARIES[dialect]
     given: dict[str, Any] = {"files": files, "cycles": search.cycles, "vocabulary": vocabulary}
@@ -68,6 +70,8 @@ def check(
             return print_result(errors, f"{name}: no syntax errors in {lines} lines{without_values(read)}")
         text, program, given["files"] = f"L CYCLE [NAME={name}]\nM30", "call of " + name, {**files, name: text}
     errors = errors_of(text, program, checked, given)
+    for error in errors:
+        search.explain(error, program)
     if begin is not None and not errors:
         print_start(ProgramStart(begin, parse_program(text, program, **given)), parameters, canonical=canonical)
     elif canonical:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from typing import Final, NamedTuple
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.coordinates.placement import refresh
+from cnc_ptp.nc.expressions.expression_faults import PARAMETER_UNSET
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
@@ -31,7 +33,7 @@ EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 MODAL_BLOCK: Final = "MODAL_BLOCK"
 
 
-READS_STATE: Final = re.compile(r"V\s*\.\s*(?:A|G|SPDL_PROG)\s*\.", re.ASCII | re.IGNORECASE)
+READS_STATE: Final = re.compile(r"V\s*\.\s*(?:A|G|RTG|SPDL_PROG)\s*\.", re.ASCII | re.IGNORECASE)
 """Readable state, which blocks before the line have changed."""
 DECIDES: Final = re.compile(
     r"[$#@%]|\bLL?\s|G\s*8\d|\b[PV]\s*[\d.\[]|M\s*(?:0*2|17|29|30|99)\b", re.ASCII | re.IGNORECASE
@@ -52,9 +54,9 @@ class Pending(NamedTuple):
 class Frame:
     """Where a subroutine was called, and what its caller had."""
 
-    def __init__(self, program: Program, number: int, offset: int, source: Source, name: str) -> None:
+    def __init__(self, program: Program, number: int, offset: int, source: Source, call: Call) -> None:
         self.program, self.number, self.offset = program, number, offset
-        self.source, self.name = source, name
+        self.source, self.name, self.column = source, call.name, call.column
         self.local: dict[str, Variable] = {}
         self.cycle: dict[str, Variable] = {}
         self.arguments: dict[str, Scalar] = {}
@@ -273,7 +275,7 @@ class Execution(Flow):
         values = self.values
         values.source = line.source
         arguments = {name: node.scalar(values) for name, node in call.arguments.items()}
-        frame = Frame(self.program, self.number, self.offset, line.source, call.name)
+        frame = Frame(self.program, self.number, self.offset, line.source, call)
         frame.local, frame.cycle, frame.arguments = values.local, values.cycle, values.arguments
         if call.cycle:
             frame.modal = values.state.copy()
@@ -309,6 +311,13 @@ class Execution(Flow):
 
 
 def with_calls(error: ProgramError, execution: Execution) -> ProgramError:
-    """The error with its call stack."""
-    error.calls = list(execution.calls)
+    """The error with its call stack; a parameter that a call does not give is an error of the call."""
+    calls = list(execution.calls)
+    name = str(error.values.get("name", ""))
+    if execution.frames and error.number == PARAMETER_UNSET.number and name.startswith("@"):
+        frame = execution.frames[-1]
+        words: dict[str, Value] = {"call": frame.name, "name": name, "file": error.file, "line": error.line}
+        error = flow_faults.ARGUMENT_MISSING.at(frame.source, frame.column, **words)
+        calls.pop(0)
+    error.calls = calls
     return error
