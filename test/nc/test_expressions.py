@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from nc_support import run
+from nc_support import lines, run
 
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
@@ -142,8 +142,4 @@ def test_the_limit_of_repeats_is_a_parameter(count):
 
 
 def test_the_unit_of_lengths_is_read():
-    assert lines("G00 X[V.G.MASS_MM + 1]\nG70\nG91 G71 Y[V.G.MASS_MM + 2]\nG70\nG71 Z5") == [
-        "rapid (1, 0, 0)",
-        "rapid (1, 3, 0)",
-        "rapid (1, 3, 5)",
-    ]
+    assert lines("G71\nX[V.G.MASS_MM + 1]\nG70\nX[V.G.MASS_MM]") == ["rapid (1, 0, 0)", "rapid (25.4, 0, 0)"]

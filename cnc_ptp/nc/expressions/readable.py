@@ -1,6 +1,7 @@
 """What programs can read of axes, spindles and channel: V.A., V.G., V.SPDL_PROG.; a new name is a new row here.
 
-Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables; V.RTG. its real-time cycles. Lengths are in mm, or in inch with G70.
+Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables; V.RTG. of its real-time
+cycles. Lengths are in mm, or in inch with G70.
 """
 
 from collections.abc import Callable
