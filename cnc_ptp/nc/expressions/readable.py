@@ -252,6 +252,7 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     "V.G.MASS_MM": (
         ((), Reading("0 with G71, 1 with G70", lambda values, u, c: float(values.state.coordinates.unit != 1.0))),
     ),
+    "V.G.PLANE": (((), Reading("17, 18 or 19 (a name of our own)", lambda values, u, c: float(values.state.plane))),),
     "V.G.PROG_ABS": (((), Reading("TRUE with G90", lambda values, u, c: 1.0 if values.state.absolute else 0.0)),),
     "V.G.PROG_LEVEL": (((), Reading("1 in the main program", lambda values, u, c: float(values.level))),),
     "V.G.R": (
