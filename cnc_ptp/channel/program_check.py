@@ -38,6 +38,7 @@ from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
@@ -161,8 +162,17 @@ class ProgramCheck:
             raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
         return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
 
+    @property
+    def checked_text(self) -> int:
+        """P-CHAN-90005: characters up to which a program is held in memory."""
+        return self._channel.checked_text
+
     def errors(
-        self, text: str, file: str, files: Mapping[str, str] = NO_FILES, vocabulary: Vocabulary | None = None
+        self,
+        text: str | ProgramText,
+        file: str,
+        files: Mapping[str, str] = NO_FILES,
+        vocabulary: Vocabulary | None = None,
     ) -> list[ProgramError]:
         """Syntax and modal errors of a program, as if it were started from the start positions; as `check`."""
         found = check(
@@ -188,7 +198,7 @@ class ProgramCheck:
         of_functions = self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
         return found + [error for error in of_functions if (error.file, error.line) not in places]
 
-    def parsed(self, text: str, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
+    def parsed(self, text: str | ProgramText, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
         """A program, whose faulty lines raise when they are reached."""
         return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
 

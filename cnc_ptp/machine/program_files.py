@@ -25,6 +25,9 @@ UTF_16: Final = "it is UTF-16 text; save it as UTF-8"
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
+LONGEST: Final = 4000
+"""Characters of a block over several lines."""
+
 _NAME = r'[^\s"\],#$\[();]+'
 _CALLED = re.compile(rf'(?<![A-Z0-9_])L\s+(?:CYCLE\s*\[.*?NAME\s*=\s*"?({_NAME})|({_NAME}))', re.ASCII | re.IGNORECASE)
 _CONTINUED = re.compile(r"\\\s*\n")
@@ -96,6 +99,42 @@ def read_program(path: str, search: Search = NO_SEARCH) -> tuple[str, dict[str, 
     """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122."""
     text = read_file("NC program", path)
     return text, search.called(text, folder_of(path))
+
+
+def is_longer(path: str, characters: int) -> bool:
+    """Whether a file may have more characters than that; False for one that is not there."""
+    try:
+        return Path(path).stat().st_size > characters
+    except OSError:
+        return False
+
+
+def scan_program(path: str, search: Search) -> tuple[int, dict[str, str]]:
+    """Number of lines of a program of any size, and by name the texts of the programs that it calls.
+
+    Raises CncError 26110, 26122, as read_program.
+    """
+    count, before = 0, ""
+    names: dict[str, str] = {}
+    try:
+        with Path(path).open(encoding="utf-8") as lines:
+            for line in lines:
+                count += 1
+                if count == 1 and "\0" in line[:2]:
+                    raise CncError(UNREADABLE, f"NC program {path} cannot be read: {UTF_16}", "nothing was started")
+                text, before = before + line, ""
+                if line.endswith("\\\n") and len(text) < LONGEST:
+                    before = text
+                elif "L" in text or "l" in text or "8" in text:
+                    names.update({name.upper(): name for name in called_names(text, search.cycles)})
+    except OSError as error:
+        text = f"NC program {path} cannot be read: {error.strerror}"
+        raise CncError(UNREADABLE, text, "nothing was started") from None
+    except UnicodeDecodeError:
+        text = f"NC program {path} cannot be read: it is not UTF-8 text; save it as UTF-8"
+        raise CncError(UNREADABLE, text, "nothing was started") from None
+    calls = "\n".join(f'L CYCLE [NAME="{name}"]' for name in names.values())
+    return count, search.called(calls, folder_of(path))
 
 
 def called_programs(text: str, folders: Sequence[str], cycles: Mapping[str, str] = NO_SEARCH.cycles) -> dict[str, str]:

@@ -1,6 +1,7 @@
 """Blocks -> canonical stream: modal state, calls and returns, block skip, veto of targets; check of a whole program."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.block_search import BlockSearch
@@ -33,6 +34,7 @@ from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
+from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
@@ -341,7 +343,7 @@ def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_
 
 
 def check(
-    text: str,
+    text: str | ProgramText,
     file: str,
     axes: tuple[str, ...],
     spindles: tuple[str, ...] | SpindleTable = ("S",),
@@ -362,45 +364,50 @@ def check(
 ) -> list[ProgramError]:
     """All syntax errors of a program (one per line) and its modal errors, one per line, in the order of the lines.
 
-    The modal check runs the program from `start` (default 0). Behind an error it continues as Recovery says. It ends at
+    The modal check runs the program from `start` (default 0); if there is an error once more, to continue behind it as
+    Recovery says, which takes a copy of the state for each block. It ends at
     a line that reads what only the run knows, since everything after that would be a guess; so are targets after G74.
     #ERROR that stops the program is an error. An error that `check_target` raises comes out as it is, unless it is a
     ProgramError.
     """
     program, errors = parse_all(text, file, files=files, cycles=cycles, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
-    homed = False
-
-    recovery = Recovery(errors)
+    recovery, recovers, homed = Recovery(errors), False, False
 
     def check_known(target: tuple[float, ...], source: Source) -> None:
         if check_target is not None and not homed:
             try:
                 check_target(target, source)
             except ProgramError as error:
+                if not recovers:
+                    raise
                 recovery.note(error)
 
-    blocks = interpret(
-        program,
-        begin,
-        axes,
-        spindles,
-        check_target=check_known,
-        centre_offset=centre_offset,
-        centre_offset_ratio=centre_offset_ratio,
-        rotary=rotary,
-        offsets=offsets,
-        soft_limits=soft_limits,
-        tools=tools,
-        references=references,
-        limits=limits,
-        runs=True,
-        recovery=recovery,
-    )
-    for block in blocks:
-        recovery.ordered(block)
-        homed = homed or isinstance(block.motion, HomeAxes)
-        if reads_the_run(block):
+    for recovers in (False, True):
+        recovery, homed = Recovery(errors), False
+        blocks = interpret(
+            program,
+            begin,
+            axes,
+            spindles,
+            check_target=check_known,
+            centre_offset=centre_offset,
+            centre_offset_ratio=centre_offset_ratio,
+            rotary=rotary,
+            offsets=offsets,
+            soft_limits=soft_limits,
+            tools=tools,
+            references=references,
+            limits=limits,
+            runs=True,
+            recovery=recovery if recovers else None,
+        )
+        with suppress(ProgramError):
+            for block in blocks:
+                recovery.ordered(block)
+                homed = homed or isinstance(block.motion, HomeAxes)
+                if reads_the_run(block):
+                    break
             break
     found = [*errors, *recovery.errors]
     recovery.mark(found)

@@ -8,10 +8,10 @@ from nc_support import lines, run
 from cnc_ptp.nc.canonical import LinearMove, WaitForPath
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow import sections
 from cnc_ptp.nc.interpreter import CENTRE_OFFSET, CENTRE_OFFSET_RATIO, check, interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import TWINCAT
 
@@ -152,9 +152,9 @@ def test_targets_are_numbers_after_many_relative_words():
 
 @pytest.mark.parametrize("word", ["$BREAK", "$ELSE", "M29"])
 def test_errors_of_structure_behind_the_lines_that_are_kept(word):
-    text = "\n" * (sections.KEPT + 1) + word + "\nM30"
+    text = "\n" * (ProgramText.kept + 1) + word + "\nM30"
     (error,) = check(text, "a.nc", AXES)
-    assert error.line == sections.KEPT + 2
+    assert error.line == ProgramText.kept + 2
 
 
 def test_a_skipped_loop_head_is_an_error_of_the_program():

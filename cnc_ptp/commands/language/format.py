@@ -54,7 +54,7 @@ def format_program(program: str, in_place: bool, check_only: bool, dialect: str 
 def format_text(text: str) -> str:
     """The lines in capitals with one blank between words, indented by structures.
 
-    Comments, texts, names of programs and what is behind a second % stay as they were.
+    Comments, texts, names of programs and what is behind a second % do not change.
     """
     return "".join(f"{line}\n" for line in formatted_lines(text.removeprefix("\ufeff").splitlines()))
 
