@@ -3,7 +3,7 @@
 A word is a letter with a number (`X10`, `G01`, `X=10`), with or without blanks around it. A longer name needs an equals
 sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`) and a position (`S.POS=90`), `LL name` calls
 a subroutine, a bare number belongs to G04.
-`( )` comments nest and end at the line's end at the latest, `;` starts a comment up to the line's end.
+`( )` comments nest and end in their line, `;` starts a comment up to the line's end.
 """
 
 import re
@@ -151,7 +151,7 @@ def plain_number(line: str, at: int, end: int) -> tuple[int, float]:
 def normalise(source: Source) -> str:
     """The line in upper case with blanks in place of comments, so that columns stay; texts in quotation marks stay.
 
-    Raises ProgramError for a ')' without '(' and for a character that is not ASCII.
+    Raises ProgramError for a bracket of a comment without the other one and for a character that is not ASCII.
     """
     text = source.text
     if "(" in text or ";" in text or ")" in text:
@@ -181,7 +181,7 @@ def _upper_outside_quotes(text: str, source: Source) -> str:
 
 
 def _blank_comments(source: Source) -> str:
-    depth = 0
+    depth = opened = 0
     quoted = False
     kept: list[str] = []
     for column, character in enumerate(source.text, start=1):
@@ -194,8 +194,12 @@ def _blank_comments(source: Source) -> str:
             break
         if character == ")" and depth == 0:
             raise faults.COMMENT_NOT_OPEN.at(source, column)
+        if character == "(" and depth == 0:
+            opened = column
         depth += (character == "(") - (character == ")")
         kept.append(" " if depth or character == ")" else character)
+    if depth:
+        raise faults.COMMENT_OPEN.at(source, opened)
     return "".join(kept)
 
 
@@ -215,7 +219,13 @@ class TokenReader:
         found: list[Token] = []
         position = begin
         while position < self.length:
-            token, position = self.next(position)
+            try:
+                token, position = self.next(position)
+            except faults.ProgramError:
+                bare = next((each for each in found if each.kind == "bare" and "G" not in self.line), None)
+                if bare is None:
+                    raise
+                raise faults.NUMBER_WITHOUT_WORD.at(self.source, bare.column, word=bare.shown) from None
             found.append(token)
         return found
 
@@ -269,7 +279,9 @@ class TokenReader:
         if operator is None and _DWELL.search(self.line, 0, begin):
             return self._bare(position)
         if operator is None:
-            raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown)
+            hint = _EXTENDED.search(self.line, 0, begin)
+            wanted = f"; zero offsets by number are written G159={shown[1:]}" if hint and shown[1:].isdigit() else ""
+            raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown, hint=wanted)
         value, after = self._read(operator.end())
         combined = _COMBINED.get(operator[1])
         if combined is not None:
@@ -404,6 +416,8 @@ _COMPUTED: Final = (
     (_COMPUTED_NAME, "named"),
     (_COMPUTED_WORD, "word"),
 )
+_EXTENDED = re.compile(r"G\s*0*5[4-9](?![\d.])", re.ASCII)
+"""Controls with other languages write G54 P2, G54.1 P2."""
 _DWELL = re.compile(r"G\s*0*4(?!\d)", re.ASCII)
 _BARE = re.compile(r"\s*\[", re.ASCII)
 _NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)

@@ -56,6 +56,8 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     require_spindle(channel, block, code.name)
     main = current_main(channel, state)
     _take_speed(channel, state, block, main)
+    if code.number != TAPPING:
+        _take_pitch(state, block, code)
     target = target_of(channel, state, block, code)
     if target is None:
         return None
@@ -99,12 +101,9 @@ def _by_feed(channel: Channel, state: ModalState, block: NcBlock, code: GCode, m
 
 def _by_pitch(state: ModalState, block: NcBlock, code: GCode, main: Spindle) -> Turn:
     """G331, G332: the feed is S times the pitch, which stays until the next one."""
-    speed, pitch = _speed(state, block, code, main), _pitch(state, block, code)
-    if pitch is None:
-        pitch = state.tapping.pitch
+    speed, pitch = _speed(state, block, code, main), state.tapping.pitch
     if pitch == 0.0:
         raise _fault(spindle_faults.TAPPING_PITCH_MISSING, block, code.name, g=code.name)
-    state.tapping = state.tapping._replace(pitch=pitch)
     right = (pitch > 0.0) != state.tapping.reversed
     inwards = code.number == TAPPING_IN
     return Turn(speed, speed / 60.0 * abs(pitch), 1.0 if right == inwards else -1.0)
@@ -116,6 +115,13 @@ def _speed(state: ModalState, block: NcBlock, code: GCode, main: Spindle) -> flo
         word = "S" if "S" in block.source.names else code.name
         raise _fault(spindle_faults.TAPPING_SPEED_ZERO, block, word, g=code.name, spindle=main.key)
     return speed
+
+
+def _take_pitch(state: ModalState, block: NcBlock, code: GCode) -> None:
+    """It stays until the next one."""
+    pitch = _pitch(state, block, code)
+    if pitch is not None:
+        state.tapping = state.tapping._replace(pitch=pitch)
 
 
 def _pitch(state: ModalState, block: NcBlock, code: GCode) -> float | None:
@@ -146,5 +152,5 @@ def _check_pitch(tolerance: float, state: ModalState, block: NcBlock, code: GCod
         )
 
 
-def _fault(fault: faults.Fault, block: NcBlock, word: str, **values: Value) -> faults.ProgramError:
-    return fault.at(block.source, block.source.column(word), **values)
+def _fault(fault: faults.Fault, block: NcBlock, place: str, /, **values: Value) -> faults.ProgramError:
+    return fault.at(block.source, block.source.column(place), **values)

@@ -55,6 +55,7 @@ TABLES = {
     "automatic": three_spindles(ranges=GEARS, automatic=True),
     "plc": three_spindles(plc_control=True)._replace(gear_change=True),
     "limited": limited_spindles(),
+    "unpositioned": three_spindles(positioned=False),
     "linked": three_spindles()._replace(default_link=(Pair("S2", "S"),)),
     "wrongly_linked": three_spindles()._replace(default_link=(Pair("S", "S2"),)),
 }
