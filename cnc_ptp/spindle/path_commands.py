@@ -75,4 +75,4 @@ class PathCommands:
         moved = travel.at(cycle)[1] != 0.0
         spindle.leave_path(cycle)
         if moved and not spindle.error_id:
-            spindle.fault(cycle, PATH_ENDED, f"the path of channel '{travel.channel}' gives no setpoints any more")
+            spindle.fault(cycle, PATH_ENDED, f"the path of channel '{travel.channel}' no longer gives setpoints")

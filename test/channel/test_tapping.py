@@ -189,7 +189,7 @@ def test_spindle_that_others_turn_is_refused() -> None:
     bench = run("G00 X20\nG63 Z-4 F250 S200\nM30\n", "- {at: 0.0, to: s, do: start, direction: cw, speed_rpm: 120}")
     assert bench.failed
     assert [event.text for event in bench.events_of("channel") if event.severity == 2] == [
-        "channel channel: spindle s turns at 120 rpm; it must be at a standstill (M05 or M19 before) in line 2"
+        "channel channel: spindle s turns at 120 rpm; it must be at a standstill (M05 or M19 before) in test.nc line 2"
         " 'G63 Z-4 F250 S200'; the path stops on its ramp and the program is aborted"
     ]
 

@@ -53,6 +53,7 @@ def test_a_spindle_of_defaults() -> None:
         drive_type=4,
         plc_controlled=False,
         automatic_homing=True,
+        path_gear=0,
         open_loop=False,
         feedback="POSITION",
         speed_reached_band=0.1,
