@@ -36,6 +36,11 @@ class CncError(Exception):
         effect = f"; {self.effect}" if self.effect else ""
         return f"{place}{self.reason}{effect}"
 
+    @property
+    def full_message(self) -> str:
+        """`message`, and of a program from where the line was called."""
+        return self.message
+
     def __str__(self) -> str:
         return f"P-ERR-{self.number} {self.message}"
 

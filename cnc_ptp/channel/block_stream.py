@@ -83,13 +83,14 @@ class BlockStream:
         position: tuple[float, ...],
         timers: Mapping[int, float],
         touch: Touch | None = None,
+        override: float = 100.0,
     ) -> None:
         """Actual and set positions of the axes at this instant, the timers that were read (ms), how a measuring run
-        has ended.
+        has ended; the override of the path (percent).
         """
         if self._values is not None:
             self._values.actual, self._values.position, self._values.touch = actual, position, touch
-            self._values.timers = dict(timers)
+            self._values.timers, self._values.override = dict(timers), override
 
     def next(self) -> CanonicalBlock | None:
         """The next block, BUSY while the interpreter computes, or None at the end of the program.

@@ -28,7 +28,7 @@ from cnc_ptp.channel.waits import Outgoing
 from cnc_ptp.errors import CncError, Value
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.expressions.values import Variable
-from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.parser import NO_FILES, parse_program
 from cnc_ptp.nc.program import Pairs, Vocabulary
@@ -651,8 +651,8 @@ class ChannelUnit(Unit):
     def _fault_in_line(self, cycle: int, error: CncError) -> None:
         """Error of the active block; what the program has told before comes before it."""
         self._warn(cycle)
-        source = self._sequence.source
-        self._fault(cycle, error.number, f"{error.message} in line {source.line} '{source.text}'")
+        where = line_of_program(self._sequence.source, self._sequence.calls)
+        self._fault(cycle, error.number, f"{error.message} in {where}")
 
     def _fault(self, cycle: int, error_id: int, reason: str) -> None:
         """Error reaction: the path ramps down, the program is aborted, its spindles stop; state ERROR until reset."""
@@ -672,7 +672,7 @@ class ChannelUnit(Unit):
         line, text = self._sequence.source.line, self._sequence.source.text.strip()
         where = f"the path stands behind line {line} '{text}'" if line else "nothing has moved"
         self._error_id = error.number
-        reason = f"{error.message}; {where} and the program is aborted"
+        reason = f"{error.full_message}; {where} and the program is aborted"
         self.event(cycle, Severity.ERROR, error.number, f"channel {self.name}: {reason}", error.line)
         self._sequence.ramp_down()
 

@@ -37,6 +37,8 @@ from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
@@ -159,11 +161,20 @@ class ProgramCheck:
             raise CncError(NO_CHANNEL, f"the machine has no channel to run {file}; nothing was started")
         return cls(next(iter(machine.channels.values())), machine.axes, machine.spindles)
 
+    @property
+    def checked_text(self) -> int:
+        """P-CHAN-90005: characters up to which a program is held in memory."""
+        return self._channel.checked_text
+
     def errors(
-        self, text: str, file: str, files: Mapping[str, str] = NO_FILES, vocabulary: Vocabulary | None = None
+        self,
+        text: str | ProgramText,
+        file: str,
+        files: Mapping[str, str] = NO_FILES,
+        vocabulary: Vocabulary | None = None,
     ) -> list[ProgramError]:
-        """All syntax errors of a program and the first modal one, as if it were started from the start positions."""
-        return check(
+        """Syntax and modal errors of a program, as if it were started from the start positions; as `check`."""
+        found = check(
             text,
             file,
             self._axis_names,
@@ -181,22 +192,33 @@ class ProgramCheck:
             soft_limits=self._soft_limits,
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
-        ) or self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
+        )
+        places = {(error.file, error.line) for error in found}
+        of_functions = self._function_errors(self.parsed(text, file, files, vocabulary or self.vocabulary))
+        return found + [error for error in of_functions if (error.file, error.line) not in places]
 
-    def parsed(self, text: str, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
+    def parsed(self, text: str | ProgramText, file: str, files: Mapping[str, str], vocabulary: Vocabulary) -> Program:
         """A program, whose faulty lines raise when they are reached."""
         return parse_all(text, file, files=files, cycles=self.cycles, vocabulary=vocabulary)[0]
 
     def _function_errors(self, program: Program) -> list[ProgramError]:
         """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
-        unreferenced, state = self.unreferenced_at_start, self.state({}, {}, {})
+        missing, state = self._names(self.unreferenced_at_start), self.state({}, {}, {})
+        found: dict[tuple[str, int], ProgramError] = {}
         try:
-            for block in self.running(program, self.start, state, unreferenced, required=False):
-                if isinstance(block.motion, HomeAxes) or reads_the_run(block):
+            for block in self._interpreted(
+                program, self.start, state, None, set(missing), required=False, checks=False
+            ):
+                try:
+                    self._require_block(block, set(missing))
+                except ProgramError as error:
+                    error.calls = list(block.calls)
+                    found.setdefault((error.file, error.line), error)
+                if isinstance(block.motion, HomeAxes) or reads_the_run(block) or len(found) == MOST_ERRORS:
                     break
-        except ProgramError as error:
-            return [error]
-        return []
+        except ProgramError:
+            pass  # it is among those that the interpretation has found
+        return list(found.values())
 
     @property
     def axis_names(self) -> tuple[str, ...]:
@@ -317,8 +339,9 @@ class ProgramCheck:
         missing: set[str],
         *,
         required: bool,
+        checks: bool = True,
     ) -> Iterator[CanonicalBlock]:
-        """`missing`: names of axes that are not referenced; homing takes them out."""
+        """`missing`: names of axes that are not referenced; homing takes them out. `checks`: as `_require_block`."""
         stream = interpret(
             program,
             tuple(start),
@@ -341,18 +364,23 @@ class ProgramCheck:
         )
         position = tuple(start)
         for block in stream:
-            for function in block.functions:
-                self._function(function, block.source)
-            if isinstance(block.motion, LinearMove):
-                self._require_measuring_axes(block.motion, block.source)
-            if isinstance(block.motion, HomeAxes):
-                missing.difference_update(self._homed(block.motion, block.source))
-            elif missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
+            if checks:
+                self._require_block(block, missing)
+            if missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
                 position = block.motion.target
             yield block
             if (isinstance(block.motion, HomeAxes) or measures(block.motion)) and state.values.position:
                 position = state.values.position
+
+    def _require_block(self, block: CanonicalBlock, missing: set[str]) -> None:
+        """Raises ProgramError for what the machine does not have; axes that the block homes are no longer `missing`."""
+        for function in block.functions:
+            self._function(function, block.source)
+        if isinstance(block.motion, LinearMove):
+            self._require_measuring_axes(block.motion, block.source)
+        if isinstance(block.motion, HomeAxes):
+            missing.difference_update(self._homed(block.motion, block.source))
 
     def _names(self, nodes: Collection[str]) -> set[str]:
         """Names in programs of the axes with these nodes."""

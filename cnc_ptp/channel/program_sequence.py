@@ -44,7 +44,7 @@ from cnc_ptp.nc.canonical import (
     Timer,
     WaitForPath,
 )
-from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.path.path_motion import PathMotion
 from cnc_ptp.protocol.blocks import AxisBlock, CycleBlock, EventValue
@@ -434,7 +434,8 @@ class ProgramSequence:
             return False  # the axes report where they are once in a block
         if self.stream.awaited:
             actual = actual_positions(self._feedback, self._axes)
-            self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch)
+            override = round(100.0 * self._motion.override, 9)
+            self.stream.give(actual, self._motion.position, self._timers.read, self._measuring.touch, override)
         block: CanonicalBlock | None = None
         try:
             block = self._following.take()
@@ -481,7 +482,7 @@ class ProgramSequence:
             elif isinstance(function, OrderedError):
                 if function.severe:
                     raise CncError(ORDERED_ERROR, function.text)
-                self._note(ORDERED_ERROR, function.text)
+                self._note(ORDERED_ERROR, f"{function.text} in {line_of_program(self.source, self.calls)}")
 
     def _start_motion(self, first_cycle: int, cycle: int) -> bool:
         """False while the interpreter computes the block with which it is linked, and while a measuring run waits for

@@ -37,6 +37,8 @@ def print_error(error: CncError) -> None:
         console.print(caret, markup=False)
     for place in getattr(error, "calls", ()):
         console.print(f"called in {place}", markup=False)
+    if getattr(error, "note", ""):
+        console.print(f"note: {getattr(error, 'note', '')}", markup=False)
 
 
 def print_note_of_idle_run(*job: object, options: str = "--program, --scenario or --duration") -> None:

@@ -13,14 +13,20 @@ from typing import Final, NamedTuple
 
 import cnc_ptp
 from cnc_ptp.errors import CncError
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.cycle_files import cycle_file
+from cnc_ptp.nc.flow.flow_faults import CYCLE_FILE, FILE_UNKNOWN
 
 UNREADABLE = 26110
 TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
+UTF_16: Final = "it is UTF-16 text; save it as UTF-8"
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
+
+LONGEST: Final = 4000
+"""Characters of a block over several lines."""
 
 _NAME = r'[^\s"\],#$\[();]+'
 _CALLED = re.compile(rf'(?<![A-Z0-9_])L\s+(?:CYCLE\s*\[.*?NAME\s*=\s*"?({_NAME})|({_NAME}))', re.ASCII | re.IGNORECASE)
@@ -31,13 +37,28 @@ _CYCLE_CODE = re.compile(r"G\s*(8\d)(?![\d.])", re.ASCII | re.IGNORECASE)
 def read_file(what: str, path: str) -> str:
     """Text of a file. Raises CncError 26110."""
     try:
-        return Path(path).read_text(encoding="utf-8")
+        text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
-    except UnicodeDecodeError:
-        raise CncError(
-            UNREADABLE, f"{what} {path} cannot be read: it is not UTF-8 text", "nothing was started"
-        ) from None
+    except UnicodeDecodeError as error:
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {not_utf_8(error)}", "nothing was started") from None
+    if text[:1] and "\0" in text[:2]:
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {UTF_16}", "nothing was started")
+    return text
+
+
+def not_utf_8(error: UnicodeDecodeError) -> str:
+    """Where a text is none in UTF-8, and what it may be instead."""
+    data, place = error.object, error.start
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
+        return UTF_16
+    line, column = (
+        data.count(b"\n", 0, place) + 1,
+        len(data[data.rfind(b"\n", 0, place) + 1 : place].decode("utf-8")) + 1,
+    )
+    character = data[place : place + 1].decode("latin-1")
+    meant = f" ('{character}' in Latin-1)" if character.isprintable() else ""
+    return f"it is not UTF-8 text, byte 0x{data[place]:02X} in line {line} column {column}{meant}; save it as UTF-8"
 
 
 class Search(NamedTuple):
@@ -49,6 +70,22 @@ class Search(NamedTuple):
 
     folders: tuple[str, ...] = ()
     cycles: Mapping[str, str] = {}
+
+    @property
+    def missing(self) -> list[str]:
+        """Folders that are not there."""
+        return [folder for folder in self.folders if not Path(folder).is_dir()]
+
+    def described(self, program: str) -> str:
+        """The folders in which the programs that a program calls are looked for, in their order."""
+        folders = [folder_of(program), *self.folders]
+        shown = [folder if Path(folder).is_dir() else f"{folder} (does not exist)" for folder in folders]
+        return ", ".join([*shown, f"{SHIPPED} (cycles that ship with cnc_ptp)"])
+
+    def explain(self, error: ProgramError, program: str) -> None:
+        """Adds the folders to an error about a called program that is in none of them."""
+        if error.number in (CYCLE_FILE.number, FILE_UNKNOWN.number):
+            error.note = f"searched: {self.described(program)}"
 
     def called(self, text: str, folder: str) -> dict[str, str]:
         """The programs that a text in this folder calls. Raises CncError 26110, 26122."""
@@ -62,6 +99,42 @@ def read_program(path: str, search: Search = NO_SEARCH) -> tuple[str, dict[str, 
     """The text of a program, and by name the texts of those that it calls. Raises CncError 26110, 26122."""
     text = read_file("NC program", path)
     return text, search.called(text, folder_of(path))
+
+
+def is_longer(path: str, characters: int) -> bool:
+    """Whether a file may have more characters than that; False for one that is not there."""
+    try:
+        return Path(path).stat().st_size > characters
+    except OSError:
+        return False
+
+
+def scan_program(path: str, search: Search) -> tuple[int, dict[str, str]]:
+    """Number of lines of a program of any size, and by name the texts of the programs that it calls.
+
+    Raises CncError 26110, 26122, as read_program.
+    """
+    count, before = 0, ""
+    names: dict[str, str] = {}
+    try:
+        with Path(path).open(encoding="utf-8") as lines:
+            for line in lines:
+                count += 1
+                if count == 1 and "\0" in line[:2]:
+                    raise CncError(UNREADABLE, f"NC program {path} cannot be read: {UTF_16}", "nothing was started")
+                text, before = before + line, ""
+                if line.endswith("\\\n") and len(text) < LONGEST:
+                    before = text
+                elif "L" in text or "l" in text or "8" in text:
+                    names.update({name.upper(): name for name in called_names(text, search.cycles)})
+    except OSError as error:
+        text = f"NC program {path} cannot be read: {error.strerror}"
+        raise CncError(UNREADABLE, text, "nothing was started") from None
+    except UnicodeDecodeError:
+        text = f"NC program {path} cannot be read: it is not UTF-8 text; save it as UTF-8"
+        raise CncError(UNREADABLE, text, "nothing was started") from None
+    calls = "\n".join(f'L CYCLE [NAME="{name}"]' for name in names.values())
+    return count, search.called(calls, folder_of(path))
 
 
 def called_programs(text: str, folders: Sequence[str], cycles: Mapping[str, str] = NO_SEARCH.cycles) -> dict[str, str]:

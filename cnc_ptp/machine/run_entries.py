@@ -11,6 +11,7 @@ from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.machine.program_files import NO_SEARCH, Search, folder_of, read_file, read_program
 from cnc_ptp.machine.wiring import unit_kinds
 from cnc_ptp.nc.block_search import StartPoint
+from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.parser import NO_FILES
 from cnc_ptp.parameters import MachineParameters
 from cnc_ptp.plc.scenario import BAD_SCENARIO, Entry, ScenarioError, parse_scenario
@@ -35,8 +36,13 @@ def read_entries(
     """
     entries: list[Entry] = []
     if program is not None:
-        text, files = read_program(program, program_search(machine))
-        check_program(machine, text, program, files, dialect, begin)
+        search = program_search(machine)
+        text, files = read_program(program, search)
+        try:
+            check_program(machine, text, program, files, dialect, begin)
+        except ProgramError as error:
+            search.explain(error, program)
+            raise
         channel = next(iter(machine.channels))
         entries.append(Entry(0.0, Command(channel, "load", load_arguments(program, text, files, dialect))))
         entries.append(Entry(0.0, Command(channel, "start", start_arguments(begin))))

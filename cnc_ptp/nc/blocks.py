@@ -210,7 +210,7 @@ class ComputedWords(Statement):
     """Words with expressions, and assignments among them, in their order."""
 
     def __init__(self, column: int, tokens_: Sequence[Token]) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=all(token.target is None for token in tokens_))
         self.tokens = tokens_
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:

@@ -3,6 +3,7 @@
 Numbers are those of the vendor's diagnosis manual where it has the fault (20xxx and 21024, 21542), else 21001 and up.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from cnc_ptp.errors import CncError, Value
@@ -26,6 +27,14 @@ class ProgramError(CncError):
         self.text = visible(source.text)
         self.calls: list[str] = []
         """From where the subroutine was called that has the fault, the innermost first."""
+        self.note = ""
+        """What helps to mend it; a line of its own."""
+        self.unchecked = ""
+        """Why a check did not look at what follows; empty where it did."""
+
+    @property
+    def full_message(self) -> str:
+        return self.message + called_in(self.calls)
 
     @property
     def caret(self) -> str:
@@ -34,6 +43,16 @@ class ProgramError(CncError):
             "\t" if character == "\t" else " " for character in visible(self.source.text[: self.column - 1])
         )
         return f"{self.text}\n{indent}^"
+
+
+def called_in(calls: Sequence[str]) -> str:
+    """From where a subroutine was called, for the end of a text; empty in the main program."""
+    return "".join([f", called in {place}" for place in calls])
+
+
+def line_of_program(source: Source, calls: Sequence[str]) -> str:
+    """The place of a fault that a block causes while it is executed: file, line, text, callers."""
+    return f"{source.file} line {source.line} '{visible(source.text.strip())}'{called_in(calls)}"
 
 
 def visible(text: str) -> str:
@@ -104,6 +123,9 @@ DWELL_WITHOUT_SPEED = Fault(21041, "G04 S counts revolutions, but spindle {spind
 DWELL_TWICE = Fault(20013, "dwell time given directly and by {word}")
 DWELL_NOT_ALONE = Fault(20685, "G04 must be alone in its block, not with {word}")
 PLANE_AXIS_MISSING = Fault(21031, "plane {g} needs the axes {needed}; axes of this channel: {known}")
+
+# The program itself
+ORDERED = Fault(22029, "{text}; the program is aborted there")
 
 # Measuring
 MEASURING_WITHOUT_AXIS = Fault(21100, "{g} without an axis: its axis words are the end of the measuring run")

@@ -44,7 +44,8 @@ def require_feed(state: ModalState, block: NcBlock, code: GCode) -> None:
     """Raises ProgramError 20008 for a motion without a feed."""
     if state.feed if state.feed_mode == PER_MINUTE else state.block_time:
         return
-    raise faults.FEED_MISSING.at(block.source, block.source.column(code.name), g=code.name)
+    word = "F" if "F" in block.words else code.name
+    raise faults.FEED_MISSING.at(block.source, block.source.column(word), g=code.name)
 
 
 def timed(channel: Channel, state: ModalState, motion: LinearMove | CircularMove) -> LinearMove | CircularMove:

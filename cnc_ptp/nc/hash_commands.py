@@ -186,7 +186,7 @@ def slope(channel: Channel, state: ModalState, block: NcBlock, command: HashComm
         raise arguments_fault(block, command, f"{available}, or #SLOPE DEFAULT")
     if words[1] not in AVAILABLE_SLOPES:
         fault = faults.SLOPE_NOT_AVAILABLE if words[1] in SLOPES.values() else faults.SLOPE_UNKNOWN
-        raise fault.at(block.source, command.column, slope=words[1], known=", ".join(SLOPES.values()))
+        raise fault.at(block.source, command.column, slope=words[1], known=", ".join(AVAILABLE_SLOPES))
     state.slope = words[1]
     return ()
 

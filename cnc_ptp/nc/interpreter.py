@@ -33,6 +33,8 @@ from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
+from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
@@ -71,6 +73,7 @@ def interpret(
     values: Values | None = None,
     runs: bool = False,
     search: BlockSearch | None = None,
+    recovery: Recovery | None = None,
 ) -> Iterator[CanonicalBlock]:
     """Canonical blocks of a program, one by one, from the position `start` (mm, in the order of `axes`).
 
@@ -88,6 +91,7 @@ def interpret(
     it, and BUSY in long computations. Otherwise such a line is the error 21438.
     `values`: parameters and variables to continue with, of the same `state`.
     `search`: a place; BEGIN comes in place of a block when it is reached, before its line is executed.
+    `recovery`: takes the errors, of which it decides whether the next block follows, in place of raising them.
     Raises ProgramError; state and values are then undefined, so MDI continues with copies taken before.
     """
     index = {axis: position for position, axis in enumerate(axes)}
@@ -109,38 +113,51 @@ def interpret(
         values.channel, values.state = channel, state
     execution = Execution(program, values, limits=limits, block_skip=block_skip, search=search)
     source = program.main.source
-    try:
-        while (block := execution.next_block()) is not None:
-            if block is COMPUTES:
-                if runs:
-                    yield BUSY
-                continue
-            if block is FOUND:
-                yield BEGIN
-                continue
-            if block is PAUSE:
-                if not runs:
-                    raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
-                yield CanonicalBlock(values.source, (WaitForPath(True),), None, "", calls=execution.calls)
-                continue
-            source = block.source
-            canonical = _resolve(channel, state, block, check_target, execution.calls)
-            motion = None if canonical is None else canonical.motion
-            execution.moved = isinstance(motion, (LinearMove, CircularMove))
-            if state.following is not None:
-                steps, state.following = state.following, None
-                yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
-            elif canonical is not None:
-                yield _reported(channel, state, canonical)
-                if isinstance(motion, HomeAxes) and values.position:
-                    state.position = values.position
-                    refresh(channel, state)
-            if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
-                _take_measured(channel, values, motion, values.touch)
-        if not state.reported:
-            yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
-    except ProgramError as error:
-        raise with_calls(error, execution) from None
+    before: ModalState | None = None
+    goes_on = True
+    while goes_on:
+        try:
+            while (block := execution.next_block()) is not None:
+                if block is COMPUTES:
+                    if runs:
+                        yield BUSY
+                    continue
+                if block is FOUND:
+                    yield BEGIN
+                    continue
+                if block is PAUSE:
+                    if not runs:
+                        raise expression_faults.ONLY_WHILE_RUNNING.at(values.source)
+                    yield CanonicalBlock(values.source, (WaitForPath(True),), None, "", calls=execution.calls)
+                    continue
+                source = block.source
+                if recovery is not None:
+                    before = state.copy()
+                canonical = _resolve(channel, state, block, check_target, execution.calls)
+                motion = None if canonical is None else canonical.motion
+                execution.moved = isinstance(motion, (LinearMove, CircularMove))
+                if state.following is not None:
+                    steps, state.following = state.following, None
+                    yield from _followed(channel, state, block, canonical, steps, check_target, execution.calls)
+                elif canonical is not None:
+                    yield _reported(channel, state, canonical)
+                    if isinstance(motion, HomeAxes) and values.position:
+                        state.position = values.position
+                        refresh(channel, state)
+                if isinstance(motion, LinearMove) and motion.measures and values.touch is not None:
+                    _take_measured(channel, values, motion, values.touch)
+                before = None
+            if not state.reported:
+                yield _with_offsets(channel, state, CanonicalBlock(source, (), None, ""))
+            goes_on = False
+        except ProgramError as error:
+            error = with_calls(error, execution)
+            if recovery is None:
+                raise error from None
+            goes_on = recovery.go_on(error, execution, state, before)
+            before = None
+    if recovery is not None:
+        recovery.finish(execution)
 
 
 def _take_measured(channel: Channel, values: Values, motion: LinearMove, touch: Touch) -> None:
@@ -325,7 +342,7 @@ def _check_move(start: tuple[float, ...], motion: Motion, source: Source, check_
 
 
 def check(
-    text: str,
+    text: str | ProgramText,
     file: str,
     axes: tuple[str, ...],
     spindles: tuple[str, ...] | SpindleTable = ("S",),
@@ -344,21 +361,29 @@ def check(
     limits: Limits = LIMITS,
     vocabulary: Vocabulary = TWINCAT,
 ) -> list[ProgramError]:
-    """All syntax errors of a program (one per line) and the first modal error, in the order of the lines.
+    """All syntax errors of a program (one per line) and its modal errors, one per line, in the order of the lines.
 
-    The modal check runs the program from `start` (default 0) up to its first error, the first line with a syntax
-    error, or one that reads what only the run knows, since everything after that would be a guess; so are targets
-    after G74. An error that `check_target` raises comes out as it is, unless it is a ProgramError.
+    The modal check runs the program from `start` (default 0); if there is an error once more, to continue behind it as
+    Recovery says, which takes a copy of the state for each block. It ends at
+    a line that reads what only the run knows, since everything after that would be a guess; so are targets after G74.
+    #ERROR that stops the program is an error. An error that `check_target` raises comes out as it is, unless it is a
+    ProgramError.
     """
     program, errors = parse_all(text, file, files=files, cycles=cycles, vocabulary=vocabulary)
     begin = (0.0,) * len(axes) if start is None else start
-    homed = False
+    recovery, recovers, homed = Recovery(errors), False, False
 
     def check_known(target: tuple[float, ...], source: Source) -> None:
         if check_target is not None and not homed:
-            check_target(target, source)
+            try:
+                check_target(target, source)
+            except ProgramError as error:
+                if not recovers:
+                    raise
+                recovery.note(error)
 
-    try:
+    for recovers in (False, True):
+        recovery, homed = Recovery(errors), False
         blocks = interpret(
             program,
             begin,
@@ -374,12 +399,19 @@ def check(
             references=references,
             limits=limits,
             runs=True,
+            recovery=recovery if recovers else None,
         )
-        for block in blocks:
-            homed = homed or isinstance(block.motion, HomeAxes)
-            if reads_the_run(block):
-                break
-    except ProgramError as error:
-        if all((error.file, error.line) != (known.file, known.line) for known in errors):
-            errors.append(error)
-    return sorted(errors, key=lambda error: (error.file != file, error.file, error.line))
+        failed = False
+        try:
+            for block in blocks:
+                recovery.ordered(block)
+                homed = homed or isinstance(block.motion, HomeAxes)
+                if reads_the_run(block):
+                    break
+        except ProgramError:
+            failed = True
+        if not failed:
+            break
+    found = [*errors, *recovery.errors]
+    recovery.mark(found)
+    return sorted(found, key=lambda error: (error.file != file, error.file, error.line))

@@ -215,7 +215,13 @@ class TokenReader:
         found: list[Token] = []
         position = begin
         while position < self.length:
-            token, position = self.next(position)
+            try:
+                token, position = self.next(position)
+            except faults.ProgramError:
+                bare = next((each for each in found if each.kind == "bare" and "G" not in self.line), None)
+                if bare is None:
+                    raise
+                raise faults.NUMBER_WITHOUT_WORD.at(self.source, bare.column, word=bare.shown) from None
             found.append(token)
         return found
 
@@ -269,7 +275,9 @@ class TokenReader:
         if operator is None and _DWELL.search(self.line, 0, begin):
             return self._bare(position)
         if operator is None:
-            raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown)
+            hint = _EXTENDED.search(self.line, 0, begin)
+            wanted = f"; zero offsets by number are written G159={shown[1:]}" if hint and shown[1:].isdigit() else ""
+            raise flow_faults.VALUE_MISSING.at(self.source, begin + 1, target=shown, hint=wanted)
         value, after = self._read(operator.end())
         combined = _COMBINED.get(operator[1])
         if combined is not None:
@@ -404,6 +412,8 @@ _COMPUTED: Final = (
     (_COMPUTED_NAME, "named"),
     (_COMPUTED_WORD, "word"),
 )
+_EXTENDED = re.compile(r"G\s*0*5[4-9](?![\d.])", re.ASCII)
+"""Controls with other languages write G54 P2, G54.1 P2."""
 _DWELL = re.compile(r"G\s*0*4(?!\d)", re.ASCII)
 _BARE = re.compile(r"\s*\[", re.ASCII)
 _NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)

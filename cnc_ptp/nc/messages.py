@@ -36,7 +36,7 @@ class MessageStatement(Statement):
 
     def __init__(self, column: int, parts: Sequence[str], values: Sequence[Node], kinds: str) -> None:
         """`parts`: the text around the values; `kinds` of these: d, f, s."""
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.parts, self.values, self.kinds = parts, values, kinds
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
@@ -66,7 +66,7 @@ class ErrorStatement(Statement):
     """#ERROR."""
 
     def __init__(self, column: int, options: dict[str, Node]) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.options = options
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:

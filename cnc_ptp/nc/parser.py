@@ -64,7 +64,7 @@ def parse_program(
 
 
 def parse_all(
-    text: str,
+    text: str | ProgramText,
     file: str,
     *,
     mdi: bool = False,
@@ -77,9 +77,8 @@ def parse_all(
 
     `subroutine`: other programs call this one, so that it ends with M17, M29 or M99.
     """
-    return parse_text(
-        ProgramText(text), file, mdi=mdi, files=files, cycles=cycles, vocabulary=vocabulary, subroutine=subroutine
-    )
+    lines = ProgramText(text) if isinstance(text, str) else text
+    return parse_text(lines, file, mdi=mdi, files=files, cycles=cycles, vocabulary=vocabulary, subroutine=subroutine)
 
 
 def parse_text(

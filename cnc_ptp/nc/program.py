@@ -1,7 +1,7 @@
 """Types between parser and interpreter: the rows of the vocabulary, the parsed blocks and the modal state."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Final, NamedTuple
 
 from cnc_ptp.nc.canonical import CompensationSwitch, Function, Motion, Source, SpindleFeedforward, code_name
@@ -367,6 +367,11 @@ class ModalState:
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
         spindle, coordinates = self.spindle.copy(), self.coordinates.copy()
         return replace(self, speeds=dict(self.speeds), spindle=spindle, coordinates=coordinates, tool=self.tool.copy())
+
+    def take_over(self, other: "ModalState") -> None:
+        """All of another state, which is void then."""
+        for each in fields(self):
+            setattr(self, each.name, getattr(other, each.name))
 
     def restore(self, other: "ModalState") -> None:
         """After a cycle: codes, feed, radius, coordinates, D of its caller; position, T, spindles, tables are kept."""

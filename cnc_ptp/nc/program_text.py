@@ -1,6 +1,6 @@
 """The text of a program, line by line: from memory, or from a file of any size."""
 
-from typing import BinaryIO, Final
+from typing import BinaryIO, ClassVar, Final
 
 END: Final = -1
 """Offset behind the last line."""
@@ -8,6 +8,9 @@ END: Final = -1
 
 class ProgramText:
     """Lines by their offset, in memory."""
+
+    kept: ClassVar[int] = 100_000
+    """Lines that a program keeps as they were read; those behind them are read again each time."""
 
     def __init__(self, text: str) -> None:
         self._text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
@@ -27,6 +30,8 @@ class ProgramText:
 
 class ProgramFile(ProgramText):
     """Lines of a file that is read as it is executed; it must not change meanwhile."""
+
+    kept: ClassVar[int] = 10_000
 
     def __init__(self, stream: BinaryIO) -> None:
         """`stream` as opened in mode rb; its owner closes it."""

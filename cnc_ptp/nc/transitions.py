@@ -57,7 +57,7 @@ class ContourMode(Statement):
     """#CONTOUR MODE."""
 
     def __init__(self, column: int, switch: str, mode: str, options: dict[str, Node]) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.switch, self.mode, self.options = switch, mode, options
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:
@@ -77,7 +77,7 @@ class SmoothingMode(Statement):
     """#HSC ON, #HSC OFF."""
 
     def __init__(self, column: int, options: dict[str, Node] | None) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.options = options
 
     def run(self, execution: Flow, line: Line) -> NcBlock | None:

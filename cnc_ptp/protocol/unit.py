@@ -54,7 +54,7 @@ class Unit(ABC):
             self._dispatch(command.command, command.arguments, cycle)
         except CncError as error:
             refusal = error
-            self.event(cycle, Severity.WARNING, error.number, error.message)
+            self.event(cycle, Severity.WARNING, error.number, error.full_message)
         shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
         record = CommandRecord(
             cycle,
@@ -63,7 +63,7 @@ class Unit(ABC):
             shown.arguments_json,
             accepted=refusal is None,
             error_id=refusal.number if refusal else 0,
-            message=refusal.message if refusal else self._warning,
+            message=refusal.full_message if refusal else self._warning,
             id=command.id,
             values=refusal.values if refusal else {},
         )

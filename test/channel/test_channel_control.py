@@ -590,7 +590,7 @@ def test_a_motion_that_cannot_be_planned_is_a_fault_with_its_line() -> None:
     assert bench.errors() == [
         "P-ERR-23001 channel channel: motion limit velocity = 2.4999999999999996e-10 must be between 1e-09 and "
         "1e+12; the "
-        "motion is refused in line 3 'N20 G01 X20 F0.00000001'; the path stops on its ramp and the program is aborted"
+        "motion is refused in test.nc line 3 'N20 G01 X20 F0.00000001'; the path stops on its ramp and the program is aborted"
     ]
     assert bench.failed and bench.position("x") == 10.0 and bench.events[-1].line == 3
     assert_all_smooth(bench)

@@ -41,7 +41,7 @@ def mill(**types: Synchronisation) -> MachineParameters:
 def aborted(bench: MachineBench, does: str, line: int, text: str) -> None:
     """The program was aborted because spindle s `does`; the path has not moved."""
     assert bench.errors() == [
-        f"P-ERR-22021 channel channel: spindle s does not {does}; the path waited for it in line {line} '{text}'; "
+        f"P-ERR-22021 channel channel: spindle s does not {does}; the path waited for it in test.nc line {line} '{text}'; "
         "the path stops on its ramp and the program is aborted"
     ]
     assert moves(bench) == [] and bench.last("channel").state[-1] == C.ERROR
@@ -145,7 +145,7 @@ def test_a_slave_that_somebody_stops() -> None:
     bench = run(LINK + "M3 S10000\nG01 X20 F6000", machine_of(*three()), "- {at: 0.2, to: t, do: stop}")
     assert bench.errors() == [
         "P-ERR-22021 channel channel: spindle t does not turn at 10000 rpm as commanded, it is in Stopping; the path "
-        "waited for it in line 4 'M3 S10000'; the path stops on its ramp and the program is aborted"
+        "waited for it in test.nc line 4 'M3 S10000'; the path stops on its ramp and the program is aborted"
     ]
     assert moves(bench) == []
 

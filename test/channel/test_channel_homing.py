@@ -138,7 +138,7 @@ def test_a_reset_stops_the_axes_that_home() -> None:
 def test_a_stop_of_one_axis_aborts_the_program() -> None:
     bench = run("N10 G74 X1 Y1\nN20 G0 X10\nM30", "- {at: 0.5, to: x, do: stop}\n")
     assert bench.errors() == [
-        "P-ERR-22035 channel channel: the homing of axis x was aborted, it is in Stopping in line 1 'N10 G74 X1 Y1'; "
+        "P-ERR-22035 channel channel: the homing of axis x was aborted, it is in Stopping in test.nc line 1 'N10 G74 X1 Y1'; "
         "the path stops on its ramp and the program is aborted"
     ]
     assert bench.states("y")[-2:] == [S.STOPPING, S.STANDSTILL]
@@ -157,7 +157,7 @@ def test_a_refusal_of_an_axis_aborts_the_program() -> None:
     on_cam = replace(x, homing=replace(x.homing, without_reversing=True, cam_position=10.0))
     bench = MachineBench("N10 G74 X1\nM30", machine=replace(parameters, axes={**parameters.axes, "x": on_cam})).run()
     assert bench.errors() == [
-        "P-ERR-22035 channel channel: axis x has refused to home, it is in Standstill in line 1 'N10 G74 X1'; "
+        "P-ERR-22035 channel channel: axis x has refused to home, it is in Standstill in test.nc line 1 'N10 G74 X1'; "
         "the path stops on its ramp and the program is aborted"
     ]
 

@@ -155,7 +155,7 @@ def test_a_coupling_that_the_plc_does_not_grant_is_an_error() -> None:
     bench.give("second", "mdi", text="#MAIN SPINDLE[S2]\n#SET AX LINK[1, S1=S]\n#ENABLE AX LINK[1]")
     bench.run(0.2)
     assert bench.errors() == [
-        "P-ERR-22019 channel second: spindle s was not coupled to t in line 3 '#ENABLE AX LINK[1]'; "
+        "P-ERR-22019 channel second: spindle s was not coupled to t in mdi line 3 '#ENABLE AX LINK[1]'; "
         "the path stops on its ramp and the program is aborted"
     ]
     assert bench.last("t").master == "s" and bench.last("s").master == ""

@@ -150,7 +150,7 @@ def test_no_signal_is_an_error_at_the_end() -> None:
     bench = run("N10 G100 X20 Y5 F600\nN20 Z5\nM30")
     text = "the measuring run has ended at X 20, Y 5 without a signal of the probe (P-CHAN-00176)"
     (error,) = bench.errors()
-    assert error == f"P-ERR-22051 channel channel: {text} in line 1 'N10 G100 X20 Y5 F600'; {STOPS}"
+    assert error == f"P-ERR-22051 channel channel: {text} in test.nc line 1 'N10 G100 X20 Y5 F600'; {STOPS}"
     assert [bench.position(axis) for axis in "xyz"] == [20.0, 5.0, 0.0]
 
 
@@ -174,7 +174,7 @@ def test_a_signal_counts_while_the_axis_still_follows_the_path(behind: float) ->
 def test_a_probe_that_is_on_before_is_an_error_and_nothing_moves() -> None:
     bench = run("N10 G0 X30\nG04 1\nN20 G100 X60 F600\nM30")
     text = "the probe of axis X is on already, at 30 mm, before the measuring run"
-    assert bench.errors() == [f"P-ERR-50052 channel channel: {text} in line 3 'N20 G100 X60 F600'; {STOPS}"]
+    assert bench.errors() == [f"P-ERR-50052 channel channel: {text} in test.nc line 3 'N20 G100 X60 F600'; {STOPS}"]
     assert bench.position("x") == 30.0
     first = run("G100 X60 F600\nM30", x={"below": 5.0})
     assert "P-ERR-50052" in first.errors()[0] and set(first.column("x", "set_position")) == {0.0}
@@ -190,7 +190,7 @@ def test_the_stroke_of_the_probe() -> None:
     assert run(f"G100 X200 F{feed}\nM30", x={"stroke": way + 1e-3}).errors() == []
     bench = run(f"G100 X200 F{feed}\nY9\nM30", x={"stroke": 1.5})
     text = f"axis X comes to rest {way:.4f} mm behind the measured point, the stroke of its probe is 1.5 mm"
-    line = f"in line 1 'G100 X200 F{feed}'"
+    line = f"in test.nc line 1 'G100 X200 F{feed}'"
     assert bench.errors() == [f"P-ERR-22052 channel channel: {text} (P-AXIS-00086) {line}; {STOPS}"]
     assert bench.position("x") == pytest.approx(free.position("x"), abs=1e-9) and bench.position("y") == 0.0
     assert messages(bench) == ["measured: X 27.7 mm"]

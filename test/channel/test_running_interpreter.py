@@ -119,7 +119,12 @@ def test_messages_and_ordered_warnings_go_out_when_the_path_reaches_them() -> No
     assert told == [
         (0, 22028, "begin", 1),
         (0, 22028, "P1 is 2.500000, or 3; 5 %", 4),
-        (1, 22029, "channel channel: #ERROR 7 of the program: PV1 = 2.5", 5),
+        (
+            1,
+            22029,
+            "channel channel: #ERROR 7 of the program: PV1 = 2.5 in test.nc line 5 '#ERROR [ID=7 RC=0 PV1=P1]'",
+            5,
+        ),
     ]
     first, second, _ = (event.cycle for event in bench.events_of("channel"))
     positions = bench.column("x", "set_position")
@@ -130,9 +135,42 @@ def test_an_ordered_error_stops_the_program() -> None:
     bench = MachineBench("G00 X1\n#ERROR [ID=455 PV1=3]\nX2\nM30").run()
     (text,) = bench.errors()
     effect = "the path stops on its ramp and the program is aborted"
-    place = "in line 2 '#ERROR [ID=455 PV1=3]'"
+    place = "in test.nc line 2 '#ERROR [ID=455 PV1=3]'"
     assert text == f"P-ERR-22029 channel channel: #ERROR 455 of the program: PV1 = 3 {place}; {effect}"
     assert bench.position("x") == 1.0
+
+
+CALLED = "%%L DEEP\n%s\nM29\n%%L OUTER\nLL DEEP\nM29\n%%\nG00 X1\n%sLL OUTER\nM30"
+CALLERS = "called in test.nc line 5, called in test.nc line"
+
+
+def test_an_ordered_error_names_the_callers() -> None:
+    bench = MachineBench(CALLED % ("#ERROR [ID=455 PV1=3]", "")).run()
+    (text,) = bench.errors()
+    effect = "the path stops on its ramp and the program is aborted"
+    place = f"in test.nc line 2 '#ERROR [ID=455 PV1=3]', {CALLERS} 9"
+    assert text == f"P-ERR-22029 channel channel: #ERROR 455 of the program: PV1 = 3 {place}; {effect}"
+
+
+def test_a_fault_that_only_the_run_shows_names_the_callers() -> None:
+    bench = MachineBench(CALLED % ("X[1/0]", "P1 = V.A.ACT_POS.X\n")).run()
+    (text,) = bench.errors()
+    place = f"test.nc line 2 column 4 'X[1/0]': division by 0, {CALLERS} 10"
+    effect = "the path stands behind line 9 'P1 = V.A.ACT_POS.X' and the program is aborted"
+    assert text == f"P-ERR-20396 channel channel: {place}; {effect}"
+
+
+def test_a_refused_start_names_the_callers() -> None:
+    bench = MachineBench(CALLED % ("X[1/0]", "")).run()
+    place = f"test.nc line 2 column 4 'X[1/0]': division by 0, {CALLERS} 9"
+    assert bench.refusals() == [f"P-ERR-20396 {place}"]
+
+
+def test_the_override_of_the_path_is_read_when_the_path_stands() -> None:
+    bench = MachineBench("G00 X1\nG00 Y[V.RTG.OVERRIDE.VEL.TOTAL / 10]\nM30", end_when_idle=False)
+    assert bench.give("channel", "set_override", percent=57).accepted
+    bench.run(4.0)
+    assert bench.errors() == [] and bench.position("y") == 5.7
 
 
 def test_h_functions_go_to_the_plc_and_the_path_does_not_wait() -> None:

@@ -7,12 +7,14 @@ from nc_support import HERE, run
 
 from cnc_ptp.commands.language.explain import explain
 from cnc_ptp.commands.language.grammar import grammar, grammar_json
-from cnc_ptp.commands.language.reference import reference_markdown
+from cnc_ptp.commands.language.reference import GENERAL, reference_markdown
+from cnc_ptp.commands.language.word_errors import error_texts, errors_by_key
 from cnc_ptp.commands.language.words import entries, explanations, find
 from cnc_ptp.errors import CncError
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.statement_reader import KEYWORDS
 from cnc_ptp.nc.flow.structures import CLOSING
+from cnc_ptp.nc.gears import GEAR_M
 from cnc_ptp.nc.hash_commands import COMMANDS, STATEMENTS
 from cnc_ptp.nc.iso.vocabulary import ISO
 from cnc_ptp.nc.vocabulary import TWINCAT
@@ -43,7 +45,7 @@ def test_document_is_up_to_date():
 
 def test_every_word_has_a_text_and_no_text_is_left_over():
     assert set(TEXTS["G function"]) == set(TWINCAT.g_codes)
-    assert set(TEXTS["M function"]) == set(TWINCAT.m_codes)
+    assert set(TEXTS["M function"]) == set(TWINCAT.m_codes) | set(GEAR_M)
     assert set(TWINCAT.value_words) <= set(TEXTS["word"])
     ends = {"ENDVAR", "COMMENT END"}
     assert set(TEXTS["command"]) == (set(COMMANDS) | set(STATEMENTS)) - ends
@@ -84,7 +86,7 @@ def test_words_of_iso_are_explained(capsys):
         "  group:    zero offset, modal\n  example:  G54.1 P2 G0 X0.\n\n"
         "G98 (G function)\n  syntax:   G98\n"
         "  meaning:  Cycles return to the level before the cycle, if it is above R; so at the start.\n"
-        "  group:    return level, modal\n"
+        "  group:    return level, modal\n  example:  G98\n"
     )
 
 
@@ -128,7 +130,10 @@ def test_what_comes_later_is_refused_and_explained(number, capsys):
 @pytest.mark.parametrize(
     ("typed", "name"),
     [("g1", "G01"), ("G001", "G01"), ("m3", "M03"), ("G159=3", "G159"), ("for", "$FOR"), ("#cs", "#CS"), ("cs", "#CS"),
-     ("flush  wait", "#FLUSH WAIT"), ("atan2", "ATAN2"), ("v.a.abs", "V.A.ABS"), ("l cycle", "L CYCLE"), ("pi", "PI")],
+     ("flush  wait", "#FLUSH WAIT"), ("atan2", "ATAN2"), ("v.a.abs", "V.A.ABS"), ("l cycle", "L CYCLE"), ("pi", "PI"),
+     ("M41", "M41"), ("m6", "M06"), ("M1234", "M1234"), ("mod", "MOD"), ("and", "AND"), ("or", "OR"), ("xor", "XOR"), ("not", "NOT"),
+     ("#HSC ON", "#HSC"), ("#cs def", "#CS"), ("V.A.ACT_POS", "V.A.ACT_POS"), ("v.a.act_pos.x", "V.A.ACT_POS"), ("V.G.NP[1].V.X", "V.G.NP"),
+     ("V.RTG.OVERRIDE.VEL.TOTAL", "V.RTG.OVERRIDE")],
 )  # fmt: skip
 def test_words_are_found_as_people_type_them(typed, name):
     assert [entry.name for entry in find(typed)] == [name]
@@ -142,11 +147,26 @@ def test_an_explanation(capsys):
         "  meaning:  Zero offset 1; it acts with the next absolute word of each axis.\n"
         "  group:    zero offset, modal\n"
         "  example:  G54 G00 X0\n"
+        "  errors:   21052 … takes no value\n"
         "\n"
         "V.G.NP (readable state)\n"
         "  syntax:   V.G.NP[<index>].V.<axis>\n"
         "  meaning:  zero offset of an index and an axis; can be assigned\n"
+        "  errors:   21435 the channel has no … …; it has: …\n"
+        "            21439 '…' is not complete or has too much: it is written …\n"
+        "            21600 zero offset … does not exist: …=0 to …=…\n"
+        "            21622 …: G53 selects no zero offset, so that index 0 has no values (P-ZERO-00001)\n"
     )
+
+
+def test_each_error_belongs_to_a_word_and_each_key_is_one():
+    assert {number for numbers in errors_by_key().values() for number in numbers} == set(error_texts())
+    words = {entry.name for entry in entries()} | {entry.kind for entry in entries()} | set(GENERAL)
+    assert [word for key in errors_by_key() for word in key.split(", ") if word not in words] == []
+
+
+def test_codes_that_stand_alone_are_their_own_example():
+    assert find("G17")[0].explanation.example == "G17" and find("G41")[0].explanation.example == ""
 
 
 def test_an_unknown_word():

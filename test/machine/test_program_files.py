@@ -8,10 +8,16 @@ import pytest
 from machine_support import ROOT
 
 from cnc_ptp.cli import main
+from cnc_ptp.commands.look.check import check
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
-from cnc_ptp.machine.program_files import Search, called_names, called_programs, read_program
+from cnc_ptp.machine.program_files import SHIPPED, Search, called_names, called_programs, read_program
+from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.flow.flow_faults import FILE_UNKNOWN
 from cnc_ptp.recording.reader import read_recording
+
+MILL = (ROOT / "config" / "mill.yaml").read_text()
+CHANNEL = "/channel:\n  ros__parameters:\n"
 
 
 def test_names_of_called_programs() -> None:
@@ -196,3 +202,49 @@ def called(command: list[str]) -> int:
     with pytest.raises(SystemExit) as ended:
         main.main(command)
     return int(str(ended.value.code))
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        ("G00 X1\nM30\n".encode("utf-16"), "it is UTF-16 text; save it as UTF-8"),
+        ("G00 X1\nM30\n".encode("utf-16-le"), "it is UTF-16 text; save it as UTF-8"),
+        ("G00 X1\nM30\n".encode("utf-16-be"), "it is UTF-16 text; save it as UTF-8"),
+        ("G00 X1 ; ä\nM30\n".encode("utf-16-le"), "it is UTF-16 text; save it as UTF-8"),
+        (
+            "G00 X1\nY2 ; ø10 Hänge\n".encode().replace("ä".encode(), b"\xe4"),
+            "it is not UTF-8 text, byte 0xE4 in line 2 column 11 ('ä' in Latin-1); save it as UTF-8",
+        ),
+        (b"G00\x93", "it is not UTF-8 text, byte 0x93 in line 1 column 4; save it as UTF-8"),
+    ],
+)
+def test_a_text_in_another_coding_says_which_and_where(tmp_path: Path, data: bytes, reason: str) -> None:
+    file = tmp_path / "a.nc"
+    file.write_bytes(data)
+    with pytest.raises(CncError) as caught:
+        read_program(str(file))
+    assert str(caught.value) == f"P-ERR-26110 NC program {file} cannot be read: {reason}; nothing was started"
+
+
+def test_an_unknown_program_shows_the_folders(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "main.nc").write_text("G00 X1\nL hole.nc\nM30\n")
+    search = Search((str(tmp_path / "gone"),))
+    assert search.missing == [str(tmp_path / "gone")]
+    error = FILE_UNKNOWN.at(Source("main.nc", 2, 0, "L hole.nc"), 1, name="HOLE.NC", nearest="")
+    search.explain(error, str(tmp_path / "main.nc"))
+    shipped = f"{SHIPPED} (cycles that ship with cnc_ptp)"
+    assert error.note == f"searched: {tmp_path}, {tmp_path / 'gone'} (does not exist), {shipped}"
+    assert check(str(tmp_path / "main.nc"), None) == 2
+    assert capsys.readouterr().err.splitlines()[2:] == [
+        "^",
+        f"note: searched: {tmp_path}, {shipped}",
+        f"note: nothing behind line 2 of {tmp_path / 'main.nc'} was checked: what follows depends on it",
+    ]
+
+
+def test_a_search_folder_that_is_missing_is_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    machine = tmp_path / "m.yaml"
+    machine.write_text(MILL.replace(CHANNEL, f"{CHANNEL}    interpreter: {{folders: [gone]}}\n"))
+    (tmp_path / "main.nc").write_text("G00 X1\nM30\n")
+    assert check(str(tmp_path / "main.nc"), str(machine)) == 0
+    assert capsys.readouterr().err == f"warning: search folder {tmp_path / 'gone'} (P-CHAN-90004) does not exist\n"

@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from nc_support import HERE, machine, tools, vocabulary_of
 
+from cnc_ptp.commands.look import check as check_module
+from cnc_ptp.errors import CncError
 from cnc_ptp.machine.program_files import called_programs
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.flow import sections
@@ -66,7 +68,7 @@ def test_lines_that_are_not_kept_are_read_again(
     kept: int, later: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     expected = stream(parse_program(LOOPS, "loops.nc"), LOOPS)
-    monkeypatch.setattr(sections, "KEPT", kept)
+    monkeypatch.setattr(ProgramFile, "kept", kept)
     monkeypatch.setattr(sections, "KEPT_LATER", later)
     file = tmp_path / "loops.nc"
     file.write_text(LOOPS)
@@ -80,7 +82,41 @@ def test_lines_that_are_not_kept_are_read_again(
 
 def test_an_error_behind_the_lines_that_are_kept_has_its_line(tmp_path: Path) -> None:
     file = tmp_path / "long.nc"
-    file.write_text("G1 X1 F100\n" * (sections.KEPT + 5) + "X1 Q\nM30\n")
+    file.write_text("G1 X1 F100\n" * (ProgramFile.kept + 5) + "X1 Q\nM30\n")
     with file.open("rb") as opened:
         _, errors = parse_text(ProgramFile(opened), "long.nc")
-    assert [(error.line, error.column) for error in errors] == [(sections.KEPT + 6, 4)]
+    assert [(error.line, error.column) for error in errors] == [(ProgramFile.kept + 6, 4)]
+
+
+def test_a_file_beyond_the_limit_is_checked_line_by_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the errors, callers and called programs of one that is read as a whole."""
+    (tmp_path / "hole.nc").write_text("G01 Z[1/0]\nM29\n")
+    good, bad = tmp_path / "good.nc", tmp_path / "bad.nc"
+    good.write_text("F100\nG81[-1, \\\n 2]\nL deep.nc\nM30\n")
+    (tmp_path / "deep.nc").write_text("G01 Z1\nM29\n")
+    bad.write_text("F100\nL HOLE.nc\nG01 X10 F-1\nL nowhere.nc\nM30\n")
+    told = []
+    for limit in (10_000_000, 10):
+        monkeypatch.setattr(check_module, "CHECKED_TEXT", limit)
+        status = [check_module.check(str(path), None) for path in (good, bad)]
+        told.append((status, *capsys.readouterr()))
+    assert told[0] == told[1]
+    assert told[0][:2] == ([0, 2], "good.nc: no errors in 5 lines\n")
+    assert f"called in {bad} line 2" in told[0][2]
+
+
+def test_a_file_beyond_the_limit_must_be_utf_8(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(check_module, "CHECKED_TEXT", 1)
+    for data, reason in (
+        (b"X1 ; \xe4\nM30\n", "it is not UTF-8 text; save it as UTF-8"),
+        ("X1\nM30\n".encode("utf-16-le"), "it is UTF-16 text; save it as UTF-8"),
+    ):
+        (tmp_path / "a.nc").write_bytes(data)
+        with pytest.raises(CncError) as caught:
+            check_module.check(str(tmp_path / "a.nc"), None)
+        assert (
+            str(caught.value)
+            == f"P-ERR-26110 NC program {tmp_path / 'a.nc'} cannot be read: {reason}; nothing was started"
+        )

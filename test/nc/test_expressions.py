@@ -5,7 +5,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from nc_support import run
+from nc_support import lines, run
 
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.execution import Limits
@@ -139,3 +139,7 @@ def test_the_limit_of_repeats_is_a_parameter(count):
             list(blocks)
     else:
         assert [block.stop for block in blocks] == ["end"]
+
+
+def test_the_unit_of_lengths_is_read():
+    assert lines("G71\nX[V.G.MASS_MM + 1]\nG70\nX[V.G.MASS_MM]") == ["rapid (1, 0, 0)", "rapid (25.4, 0, 0)"]

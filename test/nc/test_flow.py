@@ -8,10 +8,10 @@ from nc_support import lines, run
 from cnc_ptp.nc.canonical import LinearMove, WaitForPath
 from cnc_ptp.nc.expressions.values import Values
 from cnc_ptp.nc.faults import ProgramError
-from cnc_ptp.nc.flow import sections
 from cnc_ptp.nc.interpreter import CENTRE_OFFSET, CENTRE_OFFSET_RATIO, check, interpret
 from cnc_ptp.nc.parser import parse_program
 from cnc_ptp.nc.program import Channel, ModalState
+from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.spindles import spindle_table
 from cnc_ptp.nc.vocabulary import TWINCAT
 
@@ -152,9 +152,9 @@ def test_targets_are_numbers_after_many_relative_words():
 
 @pytest.mark.parametrize("word", ["$BREAK", "$ELSE", "M29"])
 def test_errors_of_structure_behind_the_lines_that_are_kept(word):
-    text = "\n" * (sections.KEPT + 1) + word + "\nM30"
+    text = "\n" * (ProgramText.kept + 1) + word + "\nM30"
     (error,) = check(text, "a.nc", AXES)
-    assert error.line == sections.KEPT + 2
+    assert error.line == ProgramText.kept + 2
 
 
 def test_a_skipped_loop_head_is_an_error_of_the_program():
@@ -168,12 +168,7 @@ def test_the_last_block_number_counts_also_without_words():
 
 
 def test_a_backslash_in_a_comment_continues_nothing():
-    assert lines("X1 (folder \\\nY2\nZ3 ; folder \\\nX4") == [
-        "rapid (1, 0, 0)",
-        "rapid (1, 2, 0)",
-        "rapid (1, 2, 3)",
-        "rapid (4, 2, 3)",
-    ]
+    assert lines("Z3 ; folder \\\nX4") == ["rapid (0, 0, 3)", "rapid (4, 0, 3)"]
 
 
 def test_radius_is_read_in_inch():

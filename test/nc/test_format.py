@@ -30,6 +30,37 @@ def test_a_formatted_program_has_the_same_stream(path: Path) -> None:
     assert format_text(formatted) == formatted
 
 
+EVERY = sorted(
+    [*GOOD, *(HERE / "bad").glob("*.nc"), *(HERE / "library").glob("*"), *(HERE.parents[1] / "examples").rglob("*.n*c")]
+)
+
+
+@pytest.mark.parametrize("path", EVERY, ids=lambda path: path.stem)
+def test_a_second_time_changes_nothing(path: Path) -> None:
+    formatted = format_text(path.read_text())
+    assert format_text(formatted) == formatted
+    assert not any(line != line.rstrip() for line in formatted.splitlines())
+
+
+@pytest.mark.parametrize(
+    ("line", "formatted"),
+    [
+        ("x1(a)  (b)y2", "X1 (a) (b) Y2"),
+        ("x1;a", "X1 ;a"),
+        ("n10 #  main  spindle [ 30 ]", "N10 #MAIN SPINDLE [30]"),
+        ("x[ p1 + [ 2 * p2 ] ] s2[ m3 rev100 ]", "X[P1 + [2 * P2]] S2[M3 REV100]"),
+        ("l  Drill.nc", "L Drill.nc"),
+        ("x1 ll Pocket_a", "X1 LL Pocket_a"),
+        ("l cycle [ name = Hole.nc @p1=5 ]", "L CYCLE [NAME = Hole.nc @P1=5]"),
+        ('#msg ["A  b"  , p1]', '#MSG ["A  b" , P1]'),
+        ("%\ng0 x1\n%\nnot Read  here", "%\nG0 X1\n%\nnot Read  here"),
+    ],
+)
+def test_spacing(line: str, formatted: str) -> None:
+    assert format_text(line) == formatted + "\n"
+    assert format_text(formatted) == formatted + "\n"
+
+
 UGLY = """%L up
 g1x1y2f100
 m29
@@ -56,7 +87,7 @@ G1 X1 Y2 F100
 M29
 %main  ( Main )
 N10 $IF P1==1 ; Why (not)
-  G00 X[ P1+1 ]( left ( inner ) )Y3
+  G00 X[P1+1] ( left ( inner ) ) Y3
 $ELSE
   $FOR P2=1,2,1
     X1 \\

@@ -1,9 +1,10 @@
 """The cycles that ship: what they refuse, and the motions of each, computed by hand."""
 
 import pytest
-from nc_support import HERE, lines
+from nc_support import HERE, lines, run
 
 from cnc_ptp.machine.program_files import called_programs
+from cnc_ptp.nc.canonical import LinearMove
 
 BEFORE = "M03 S100\nG00 Z5\nG01 F600\n"
 
@@ -47,3 +48,26 @@ def z(*moves: float | str) -> list[str]:
 )
 def test_motions(call: str, expected: list[str]) -> None:
     assert cycle(call) == expected
+
+
+@pytest.mark.parametrize(("plane", "place"), [(17, 2), (18, 1), (19, 0)])
+@pytest.mark.parametrize(
+    "call", ["G81[-4, 2]", "G82[-4, 2, 0.5]", "G83[-5, 2, 3]", "G85[-4, 2]", "G86[-4, 2]", "G89[-4, 2, 0.2]"]
+)
+def test_the_drilling_axis_is_normal_to_the_plane(plane: int, place: int, call: str) -> None:
+    """DIN 66025: the motions of G17, which are along Z, in the other axis; the call leaves the plane as it was."""
+    text = f"M03 S100\nF600\nG{plane}\nG91 G00 {'XYZ'[place]}5\n{call}\nX1 Y1 Z1\nM30"
+    turned = [block.motion for block in run(text, files=called_programs(call, [str(HERE / "library")]))]
+    along_z = run(text.replace(f"G{plane}", "G17").replace(f"{'XYZ'[place]}5", "Z5"), files=called_programs(call, [""]))
+
+    def moved(target: tuple[float, ...]) -> tuple[float, ...]:
+        others = list(target[:2])
+        return (*others[:place], target[2], *others[place:])
+
+    expected = [block.motion for block in along_z]
+    for one, other in zip(turned, expected, strict=True):
+        if isinstance(other, LinearMove):
+            assert isinstance(one, LinearMove) and one == other._replace(target=moved(other.target))
+        else:
+            assert one == other
+    assert isinstance(turned[-2], LinearMove) and turned[-2].target[place] in (3.0, -3.0)

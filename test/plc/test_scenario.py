@@ -298,7 +298,8 @@ def test_faults_of_a_job(tmp_path: Path) -> None:
         (bad, MILL, "P-ERR-120002 {} line 2 column 1 'G01 X1000 F3000': axis X: 1000 mm lies beyond the "
             "positive soft limit "
          "300 mm (P-AXIS-00178)"),
-        (latin, MILL, "P-ERR-26110 NC program {} cannot be read: it is not UTF-8 text; nothing was started"),
+        (latin, MILL, "P-ERR-26110 NC program {} cannot be read: it is not UTF-8 text, byte 0xFC in line 2 column 2 ('ü' in Latin-1); "
+         "save it as UTF-8; nothing was started"),
         (tmp_path / "no.nc", MILL, "P-ERR-26110 NC program {} cannot be read: No such file or directory; "
          "nothing was started"),
         (bad, PTP, "P-ERR-26112 the machine has no channel to run {}; nothing was started"),

@@ -178,7 +178,9 @@ def test_faults_of_a_file_stand_with_the_line_of_the_scenario(tmp_path: Path) ->
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_bytes(b"\xff\xfe\x00")
     path = write(tmp_path, MOVE)
-    assert f"setpoint file {tmp_path / 'a.csv'} cannot be read: it is not UTF-8 text" in scenario_fault(path)
+    assert f"setpoint file {tmp_path / 'a.csv'} cannot be read: it is UTF-16 text; save it as UTF-8" in scenario_fault(
+        path
+    )
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from cnc_ptp.commands.language.word_errors import error_texts
 from cnc_ptp.commands.language.words import Entry, find
 
 
@@ -23,5 +24,8 @@ def lines(entry: Entry) -> Iterator[str]:
         yield f"  group:    {entry.group}, {'modal' if entry.modal else 'for its block'}"
     if entry.explanation.example:
         yield f"  example:  {entry.explanation.example}"
+    texts = error_texts() if entry.errors else {}
+    for index, number in enumerate(entry.errors):
+        yield f"  {'' if index else 'errors:':9} {number} {texts[number]}"
     if entry.later:
         yield "  not available yet: a program with it is refused when it is read"

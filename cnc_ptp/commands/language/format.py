@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from cnc_ptp.commands.console import print_error
@@ -20,6 +20,9 @@ OPENING: Final = ("$IF", "$SWITCH", "$FOR", "$WHILE", "$DO", "$REPEAT", "#VAR")
 DIVIDING: Final = ("$ELSEIF", "$ELSE", "$CASE", "$DEFAULT")
 CLOSING: Final = ("$ENDIF", "$ENDSWITCH", "$ENDFOR", "$ENDWHILE", "$ENDDO", "$UNTIL", "#ENDVAR")
 _PART = re.compile(r'(?P<text>"[^"]*"?)|(?P<comment>;.*$)|(?P<block>\()|(?P<code>[^";(]+)')
+_CALLED = re.compile(
+    r"(?:(?<![A-Z0-9_])LL?\s+(?!CYCLE\b)|\bNAME\s*=\s*)(?P<name>[^\s\"\],#$\[]+)", re.ASCII | re.IGNORECASE
+)
 _KEYWORD = re.compile(r"(?:/\d*\s*)?(?:N\s*\d+:?\s*)?(?:\[\w+\]\s*)?([$#]\s*[A-Z]+)")
 _SHORT_IF = re.compile(r"\$IF\b.*\$GOTO\b")
 
@@ -49,13 +52,20 @@ def format_program(program: str, in_place: bool, check_only: bool, dialect: str 
 
 
 def format_text(text: str) -> str:
-    """The lines in capitals with one blank between words, indented by structures; comments and texts as they were."""
+    """The lines in capitals with one blank between words, indented by structures.
+
+    Comments, texts, names of programs and what is behind a second % do not change.
+    """
     return "".join(f"{line}\n" for line in formatted_lines(text.removeprefix("\ufeff").splitlines()))
 
 
 def formatted_lines(lines: list[str]) -> Iterator[str]:
-    level, in_comment, continued = 0, False, False
+    level, in_comment, continued, percents = 0, False, False, 0
     for line in lines:
+        if percents == 2:
+            yield line.rstrip()
+            continue
+        percents += line.strip() == "%"
         if in_comment or re.match(r"\s*(?:N\s*\d+\s*)?#\s*COMMENT\s+BEGIN\b", line, re.IGNORECASE):
             in_comment = not re.match(r"\s*(?:N\s*\d+\s*)?#\s*COMMENT\s+END\b", line, re.IGNORECASE)
             yield line.rstrip()
@@ -85,12 +95,20 @@ def formatted_line(line: str) -> str:
         place = found.end()
         if found["block"]:
             place = end_of_comment(line, found.start())
-            parts.append(line[found.start() : place])
+            parts.append(f" {line[found.start() : place]} ")
         elif found["code"]:
             parts.append(formatted_code(found[0]))
         else:
-            parts.append(found[0])
-    return "".join(parts).strip()
+            parts.append(f" {found[0]}" if found["comment"] else found[0])
+    return _joined(parts)
+
+
+def _joined(parts: Sequence[str]) -> str:
+    """The parts of a line with one blank where two of them meet with blanks."""
+    text = ""
+    for part in parts:
+        text = text.rstrip() + " " + part.lstrip() if text.endswith(" ") or part.startswith(" ") else text + part
+    return text.strip()
 
 
 def end_of_comment(line: str, begin: int) -> int:
@@ -112,4 +130,18 @@ def formatted_code(code: str) -> str:
         ends = [*(column - 1 for column in columns[1:]), len(code)]
         words = [code[column - 1 : end] for column, end in zip(columns, ends, strict=True)]
         return before + " ".join("".join(word.split()).upper() for word in words) + after
-    return before + " ".join(code.split()).upper() + after
+    return before + _tight(_capitals(" ".join(code.split()))) + after
+
+
+def _capitals(code: str) -> str:
+    """Capitals; names of programs and files as they are written."""
+    text, place = "", 0
+    for found in _CALLED.finditer(code):
+        text += code[place : found.start("name")].upper() + found["name"]
+        place = found.end("name")
+    return text + code[place:].upper()
+
+
+def _tight(code: str) -> str:
+    """Without blanks behind # and at the ends of brackets."""
+    return re.sub(r"(?<=[#\[]) | (?=\])", "", code)

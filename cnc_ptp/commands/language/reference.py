@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
+from cnc_ptp.commands.language.word_errors import error_texts, errors_by_key
 from cnc_ptp.commands.language.words import Entry, entries
 from cnc_ptp.nc.expressions.reader import DEEPEST
 from cnc_ptp.nc.expressions.values import LARGEST_PARAMETER, MOST_VALUES
@@ -28,7 +29,7 @@ RULES = {
     "numbers": "real; an integer is a real number without decimals; `'H2FF'` hexadecimal, `'B1001'` binary",
     "truth": "TRUE is 1, FALSE is 0; a number is true from 1/2 on",
     "angles": "degrees; SIN and COS are exact at the multiples of 30° where they are 0, ±1/2, ±1",
-    "brackets": "`[ ]` in expressions; `( )` and `;` are comments",
+    "brackets": "`[ ]` in expressions; `( )` and `;` are comments, `(` must be closed in its line",
     "operators, weak to strong": "`||` OR · XOR · `&&` AND · `== != < <= > >=` · `|` · `^` · `&` · `+ -` · `* / MOD` · "
     "sign · `**`",
     "words with expressions": "`X[P1 + 5]`, `XP1`, `X=P1 + 5`, `X SIN[30]`, `S[M3 REV=P1]`, `G[P1]`",
@@ -60,6 +61,7 @@ SECTIONS = {
     "G function": "G functions",
     "M function": "M functions",
     "word": "Words",
+    "operator": "Operators",
     "control statement": "Control statements",
     "command": "Commands",
     "function": "Functions",
@@ -68,11 +70,32 @@ SECTIONS = {
 }
 
 
+GENERAL = ("any line", "expressions", "programs", "axes in brackets", "spindles in brackets", "free M function")
+"""Keys of errors.yaml that are no words."""
+
+
 def reference_markdown(dialect: str = "twincat") -> str:
     """docs/nc_language.md or docs/iso_language.md."""
     introduction, chosen = (INTRODUCTION, RULES) if dialect == "twincat" else (ISO_INTRODUCTION, ISO_RULES)
     rules = [f"| {what} | {escaped(rule)} |" for what, rule in chosen.items()]
-    return "\n".join([introduction.rstrip(), *rules, "", *section_lines(dialect)])
+    lines = [introduction.rstrip(), *rules, "", *section_lines(dialect)]
+    return "\n".join(lines + (list(error_lines()) if dialect == "twincat" else []))
+
+
+def error_lines() -> Iterator[str]:
+    """The errors with their texts; first those that belong to no single word."""
+    yield "## Errors"
+    yield "The tables above name by number the errors of each word. Besides these there are:"
+    yield ""
+    yield "| in | errors |"
+    yield "|---|---|"
+    for key in GENERAL:
+        yield f"| {key} | {', '.join(map(str, sorted(errors_by_key()[key])))} |"
+    yield ""
+    yield "| number | text |"
+    yield "|---|---|"
+    yield from (f"| {number} | {escaped(text)} |" for number, text in sorted(error_texts().items()))
+    yield ""
 
 
 def section_lines(dialect: str) -> Iterator[str]:
@@ -81,20 +104,29 @@ def section_lines(dialect: str) -> Iterator[str]:
         chosen = [entry for entry in all_entries if entry.kind == kind]
         if not chosen:
             continue
-        grouped = kind == "G function"
+        grouped, errors = kind in ("G function", "M function"), dialect == "twincat"
+        columns = [
+            "code" if grouped else "name",
+            "syntax",
+            *["group"] * grouped,
+            "meaning",
+            "example",
+            *["errors"] * errors,
+        ]
         yield f"## {title}"
-        yield "| code | syntax | group | meaning | example |" if grouped else "| name | syntax | meaning | example |"
-        yield "|---|---|---|---|---|" if grouped else "|---|---|---|---|"
-        yield from (row(entry, grouped=grouped) for entry in chosen)
+        yield f"| {' | '.join(columns)} |"
+        yield "|" + "---|" * len(columns)
+        yield from (row(entry, grouped=grouped, errors=errors) for entry in chosen)
         yield ""
 
 
-def row(entry: Entry, *, grouped: bool) -> str:
+def row(entry: Entry, *, grouped: bool, errors: bool) -> str:
     text = entry.explanation
     meaning = f"{text.meaning} **Not available yet.**" if entry.later else text.meaning
-    group = [entry.group if entry.modal else f"{entry.group} (block)"] if grouped else []
+    group = [entry.group if entry.modal or not entry.group else f"{entry.group} (block)"] if grouped else []
     example = f"`{text.example}`" if text.example else ""
-    cells = [entry.name, f"`{text.syntax}`", *group, meaning, example]
+    numbers = [", ".join(map(str, entry.errors))] if errors else []
+    cells = [entry.name, f"`{text.syntax}`", *group, meaning, example, *numbers]
     return "| " + " | ".join(map(escaped, cells)) + " |"
 
 

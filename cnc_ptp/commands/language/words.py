@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cnc_ptp import yaml_text
+from cnc_ptp.commands.language.word_errors import errors_of
 from cnc_ptp.errors import CncError, did_you_mean, nearest
 from cnc_ptp.nc.canonical import code_name
 from cnc_ptp.nc.expressions.functions import CONSTANTS, NUMERIC, TEXTUAL
 from cnc_ptp.nc.expressions.readable import READABLE, forms
-from cnc_ptp.nc.program import GCode
+from cnc_ptp.nc.gears import GEAR_M
+from cnc_ptp.nc.program import GCode, Vocabulary
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 
 UNKNOWN_WORD = 26123
@@ -34,6 +36,8 @@ class Entry(NamedTuple):
     group: str = ""
     modal: bool = True
     later: str = ""
+    errors: tuple[int, ...] = ()
+    """Numbers of those that it may have besides those of any line."""
 
 
 TEXTS = {"twincat": "explanations.yaml", "iso": "iso_explanations.yaml"}
@@ -51,16 +55,31 @@ def entries(dialect: str = "twincat") -> list[Entry]:
     codes = texts["G function"]
     blockwise = BLOCKWISE[dialect]
     found = [g_entry(vocabulary.g_codes[float(number)], codes[number], blockwise) for number in sorted(codes)]
-    found += [Entry(code_name("M", number), "M function", text) for number, text in texts["M function"].items()]
+    found += [m_entry(vocabulary, number, text) for number, text in texts["M function"].items()]
     if dialect == "iso":
         return found + [Entry(name, "word", text) for name, text in texts["word"].items()]
-    for kind in ("word", "control statement"):
+    for kind in ("word", "operator", "control statement"):
         found += [Entry(name, kind, text) for name, text in texts[kind].items()]
     found += [Entry(f"#{name}", "command", text) for name, text in texts["command"].items()]
     found += [Entry(name, "function", function_text(NUMERIC[name].text)) for name in NUMERIC]
     found += [Entry(name, "function", function_text(TEXTUAL[name].text)) for name in TEXTUAL]
     found += [Entry(name, "constant", Explanation(name, f"{value:.6g}")) for name, value in CONSTANTS.items()]
-    return found + [readable_entry(name) for name in READABLE]
+    found += [readable_entry(name) for name in READABLE]
+    return [entry._replace(errors=tuple(errors_of(entry.name, entry.kind))) for entry in found]
+
+
+def m_entry(vocabulary: Vocabulary, number: int, text: Explanation) -> Entry:
+    code = vocabulary.m_codes.get(number)
+    group = code.group if code is not None else "gear" if number in GEAR_M else ""
+    modal = group in ("spindle", "gear")
+    if code is None or code.flow != "return":
+        text = with_example(code_name("M", number), text)
+    return Entry(code_name("M", number), "M function", text, group, modal)
+
+
+def with_example(name: str, text: Explanation) -> Explanation:
+    """A code that stands alone is its own example."""
+    return text._replace(example=name) if text.syntax == name and not text.example else text
 
 
 def readable_entry(name: str) -> Entry:
@@ -75,11 +94,20 @@ def readable_entry(name: str) -> Entry:
 
 def g_entry(code: GCode, text: Explanation, blockwise: tuple[int, ...]) -> Entry:
     modal = code.modal and not (code.function is not None or code.spindle or code.number in blockwise)
+    text = text if code.later else with_example(code.name, text)
     return Entry(code.name, "G function", text, code.group, modal, code.later)
 
 
 BLOCKWISE = {"twincat": (9, 60, 61, 166), "iso": (9, 30, 53)}
 """Codes without a function or a motion that count for their block alone."""
+
+
+def free_m_entry(number: int) -> Entry:
+    """A function of the machine."""
+    name = code_name("M", number)
+    meaning = "Function for the PLC, if the machine has it (P-CHAN-00041); with a value as in M52=-345."
+    explanation = Explanation(f"{name}, {name}=value", meaning, name)
+    return Entry(name, "free M function", explanation, errors=tuple(errors_of(name, "free M function")))
 
 
 def function_text(text: str) -> Explanation:
@@ -101,6 +129,11 @@ def find(word: str, dialect: str = "twincat") -> list[Entry]:
     found = [plain[bare]] if bare in plain else [entry for name, entry in plain.items() if name.startswith(f"{bare} ")]
     if found:
         return found
+    shorter = re.fullmatch(r"(.+)(?: \S+|\.[^.]+|\[[^\]]*\])", wanted)
+    if shorter is not None and wanted.startswith(("#", "$", "V.")):
+        return find(shorter[1], dialect)
+    if dialect == "twincat" and re.fullmatch(r"M\d{1,4}", wanted):
+        return [free_m_entry(int(wanted[1:]))]
     close = did_you_mean([known[name].name for name in nearest(wanted, known, most=3, cutoff=0.5)])
     raise CncError(UNKNOWN_WORD, f"'{word}' is no word of the NC language{close}")
 

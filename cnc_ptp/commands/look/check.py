@@ -15,7 +15,7 @@ from cnc_ptp.channel.program_check import ProgramCheck
 from cnc_ptp.channel.program_start import ProgramStart
 from cnc_ptp.commands.console import print_error
 from cnc_ptp.errors import WRONG_INPUT, CncError
-from cnc_ptp.machine.program_files import NO_SEARCH, read_program
+from cnc_ptp.machine.program_files import NO_SEARCH, Search, is_longer, read_program, scan_program
 from cnc_ptp.machine.run_entries import program_search
 from cnc_ptp.nc.block_search import StartPoint
 from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
@@ -28,10 +28,13 @@ from cnc_ptp.nc.interpreter import awaits_path, interpret
 from cnc_ptp.nc.interpreter import check as check_text
 from cnc_ptp.nc.parser import parse_all, parse_program
 from cnc_ptp.nc.program import ModalState
+from cnc_ptp.nc.program_text import ProgramFile, ProgramText
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import MachineParameters, read_machine
 from cnc_ptp.protocol.notes import Note
 
+CHECKED_TEXT = 10_000_000
+"""P-CHAN-90005 without a machine: characters."""
 AXES_WITHOUT_MACHINE = ("X", "Y", "Z")
 SPINDLES_WITHOUT_MACHINE = ("S",)
 
@@ -44,7 +47,7 @@ def check(
     begin: StartPoint | None = None,
     as_subroutine: bool = False,
 ) -> int:
-    """Prints all syntax errors and the first modal one, and the warnings of the machine file.
+    """Prints the syntax and modal errors, and the warnings of the machine file.
 
     Without a machine, axes X Y Z and spindle S are taken. `canonical`: prints the blocks that result, too, with `begin`
     those from the start point on. `dialect`: vocabulary of the program; None: that of the machine file, or twincat.
@@ -53,10 +56,15 @@ def check(
     """
     parameters = None if machine is None else read_machine(machine)
     search = NO_SEARCH if parameters is None else program_search(parameters)
-    text, files = read_program(program, search)
     checked = None if parameters is None else ProgramCheck.of_first_channel(parameters, program)
     if parameters is not None:
         print_notices(parameters)
+        for folder in search.missing:
+            print(f"warning: search folder {folder} (P-CHAN-90004) does not exist", file=sys.stderr)
+    limit = CHECKED_TEXT if checked is None else checked.checked_text
+    if begin is None and not canonical and not as_subroutine and is_longer(program, limit):
+        return check_file(program, checked, search, dialect)
+    text, files = read_program(program, search)
     own = VOCABULARIES["twincat"] if checked is None else checked.vocabulary
     vocabulary = own if dialect is None else VOCABULARIES[dialect]
     given: dict[str, Any] = {"files": files, "cycles": search.cycles, "vocabulary": vocabulary}
@@ -68,6 +76,8 @@ def check(
             return print_result(errors, f"{name}: no syntax errors in {lines} lines{without_values(read)}")
         text, program, given["files"] = f"L CYCLE [NAME={name}]\nM30", "call of " + name, {**files, name: text}
     errors = errors_of(text, program, checked, given)
+    for error in errors:
+        search.explain(error, program)
     if begin is not None and not errors:
         print_start(ProgramStart(begin, parse_program(text, program, **given)), parameters, canonical=canonical)
     elif canonical:
@@ -75,7 +85,21 @@ def check(
     return print_result(errors, "" if canonical or begin is not None else f"{name}: no errors in {lines} lines")
 
 
-def errors_of(text: str, program: str, checked: ProgramCheck | None, given: dict[str, Any]) -> list[ProgramError]:
+def check_file(program: str, checked: ProgramCheck | None, search: Search, dialect: str | None) -> int:
+    """A program that is too long to be held in memory (P-CHAN-90005): its lines are read as they are needed."""
+    own = VOCABULARIES["twincat"] if checked is None else checked.vocabulary
+    lines, files = scan_program(program, search)
+    given = {"files": files, "cycles": search.cycles, "vocabulary": own if dialect is None else VOCABULARIES[dialect]}
+    with Path(program).open("rb") as stream:
+        errors = errors_of(ProgramFile(stream), program, checked, given)
+    for error in errors:
+        search.explain(error, program)
+    return print_result(errors, f"{Path(program).name}: no errors in {lines} lines")
+
+
+def errors_of(
+    text: str | ProgramText, program: str, checked: ProgramCheck | None, given: dict[str, Any]
+) -> list[ProgramError]:
     """Of a program with its `files`, `cycles` and `vocabulary`."""
     if checked is None:
         return check_text(text, program, AXES_WITHOUT_MACHINE, SPINDLES_WITHOUT_MACHINE, **given)
@@ -91,6 +115,11 @@ def print_result(errors: Sequence[ProgramError], good: str) -> int:
     """Prints the errors, or what is to be said without any; the status of the command."""
     for error in errors:
         print_error(error)
+        if error.unchecked:
+            print(
+                f"note: nothing behind line {error.line} of {error.file} was checked: {error.unchecked}",
+                file=sys.stderr,
+            )
         if error.number == RETURN_IN_MAIN.number:
             print("note: --as-subroutine checks a file that other programs call", file=sys.stderr)
     if good and not errors:

@@ -55,7 +55,7 @@ class Rotation(CoordinateCommand):
     """#ROTATION ON [ANGLE=30 CENTER1=10 CENTER2=5]: the contour turns in its plane; not programmed values stay."""
 
     def __init__(self, column: int, options: dict[str, Node] | None) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.options = options
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
@@ -76,7 +76,7 @@ class Scale(CoordinateCommand):
     """#SCALE: factors of axes, switched on and off."""
 
     def __init__(self, column: int, factors: Sequence[tuple[str, Node, int]], switch: str) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.factors, self.switch = factors, switch
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
@@ -110,7 +110,7 @@ class SystemCommand(CoordinateCommand):
     def __init__(
         self, column: int, command: str, action: str, identity: Node | None, values: Sequence[Node | None]
     ) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.command, self.action, self.identity, self.values = command, action, identity, values
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
@@ -179,7 +179,7 @@ class MachineCoordinates(CoordinateCommand):
     """#MCS ON: positions are those of the machine; #MCS OFF brings back what was before."""
 
     def __init__(self, column: int, *, on: bool) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.on = on
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
@@ -196,7 +196,7 @@ class Preset(CoordinateCommand):
     """#PSET X10: the present position of axes gets this value; #PRESET takes that back, for the named axes or all."""
 
     def __init__(self, column: int, axes: Sequence[tuple[str, Node, int]], *, on: bool) -> None:
-        super().__init__(column)
+        super().__init__(column, independent=True)
         self.axes, self.on = axes, on
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:

@@ -1,6 +1,7 @@
 """What programs can read of axes, spindles and channel: V.A., V.G., V.SPDL_PROG.; a new name is a new row here.
 
-Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables. Lengths are in mm, or in inch with G70.
+Sources: the vendor's programming manual, V.A., V.G. and V.SPDL_PROG. variables; V.RTG. of its real-time
+cycles. Lengths are in mm, or in inch with G70.
 """
 
 from collections.abc import Callable
@@ -248,6 +249,10 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
         ),
     ),
     "V.G.FEEDRATE_MODE": (((), Reading("93 or 94", lambda values, u, c: float(values.state.feed_mode))),),
+    "V.G.MASS_MM": (
+        ((), Reading("0 with G71, 1 with G70", lambda values, u, c: float(values.state.coordinates.unit != 1.0))),
+    ),
+    "V.G.PLANE": (((), Reading("17, 18 or 19 (a name of our own)", lambda values, u, c: float(values.state.plane))),),
     "V.G.PROG_ABS": (((), Reading("TRUE with G90", lambda values, u, c: 1.0 if values.state.absolute else 0.0)),),
     "V.G.PROG_LEVEL": (((), Reading("1 in the main program", lambda values, u, c: float(values.level))),),
     "V.G.R": (
@@ -258,6 +263,16 @@ READABLE: Final[dict[str, tuple[tuple[tuple[str, ...], Reading], ...]]] = {
     ),
     "V.G.@P": ((("*", "VALID"), Reading("TRUE if the call gave @P of this number", argument_given)),),
     "V.G.TIMER": ((("*",), Reading("what #TIMER READ has found, ms", timer)),),
+    "V.RTG.OVERRIDE": (
+        (
+            ("VEL", "TOTAL"),
+            Reading(
+                "override of the path at the instant, percent; 0 with a feed hold",
+                lambda values, u, c: values.override,
+                synchronises=True,
+            ),
+        ),
+    ),
     **TOOL_READINGS,
     "V.SPDL_PROG.SPEED": ((("*",), Reading("programmed speed, rpm", spindle_speed)),),
     "V.SPDL_PROG.MOVE_CMD": ((("*",), Reading("3, 4 or 5", spindle_turning)),),

@@ -333,6 +333,9 @@ class ExpressionReader:
         return TextCall(begin + 1, name, given, textual.kinds.replace("?", ""), textual.operation)
 
     def _unknown(self, name: str, begin: int) -> ProgramError:
+        function = NUMERIC.get(name) or TEXTUAL.get(name)
+        if function is not None:
+            return self.fault(faults.FUNCTION_BRACKETS, begin, function=name, syntax=function.text.partition(":")[0])
         nearest = nearest_name(name, [*NUMERIC, *TEXTUAL, *CONSTANTS, "EXIST"])
         return self.fault(faults.NAME_UNKNOWN, begin, word=name, nearest=nearest)
 

@@ -89,6 +89,8 @@ class Values:
         """Positions of the axes at the last synchronisation."""
         self.position: tuple[float, ...] = ()
         """Their set positions then, which a homing or a measuring run has changed."""
+        self.override = 100.0
+        """Of the path then, percent; 0 with a feed hold."""
         self.touch: Touch | None = None
         """How the last measuring run has ended."""
         self.measured: dict[int, Measured] = {}

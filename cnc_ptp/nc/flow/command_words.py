@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Final
 
@@ -11,6 +12,7 @@ from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults as faults
 from cnc_ptp.nc.flow.lines import Line
 
+_STRAY = re.compile(r"\[\S*|[^\s\]]+")
 AXES: Final = "ABCQUVWXYZ"
 
 
@@ -42,7 +44,8 @@ class Words:
         if self.at_end:
             return self.missing("a value")
         at = self.reader.skip_blanks()
-        word = self.reader.line[at:].split()[0]
+        found = _STRAY.match(self.reader.line, at)
+        word = found[0] if found is not None else self.reader.line[at:].split()[0]
         return faults.COMMAND_SYNTAX.at(self.line.source, at + 1, word=word, command=self.command, syntax=self.syntax)
 
     def missing(self, what: str) -> ProgramError:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final, NamedTuple
 
+from cnc_ptp.errors import Value
 from cnc_ptp.nc import faults
 from cnc_ptp.nc.block_search import BlockSearch
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.coordinates.placement import refresh
+from cnc_ptp.nc.expressions.expression_faults import PARAMETER_UNSET
 from cnc_ptp.nc.expressions.values import Scalar, Values, Variable
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow import flow_faults
@@ -30,6 +33,15 @@ EVALUATE: Final = ("$IF", "$SWITCH", "$ENDFOR")
 MODAL_BLOCK: Final = "MODAL_BLOCK"
 
 
+READS_STATE: Final = re.compile(r"V\s*\.\s*(?:A|G|RTG|SPDL_PROG)\s*\.", re.ASCII | re.IGNORECASE)
+"""Readable state, which blocks before the line have changed."""
+DECIDES: Final = re.compile(
+    r"[$#@%]|\bLL?\s|G\s*8\d|\b[PV]\s*[\d.\[]|M\s*(?:0*2|17|29|30|99)\b", re.ASCII | re.IGNORECASE
+)
+"""What a line that cannot be read may do to the order of execution and to values."""
+ENDLESS: Final = (faults.CALL_DEPTH.number, flow_faults.LOOP_LIMIT.number)
+
+
 class Pending(NamedTuple):
     """A call that is due as soon as execution is at this depth again."""
 
@@ -42,9 +54,9 @@ class Pending(NamedTuple):
 class Frame:
     """Where a subroutine was called, and what its caller had."""
 
-    def __init__(self, program: Program, number: int, offset: int, source: Source, name: str) -> None:
+    def __init__(self, program: Program, number: int, offset: int, source: Source, call: Call) -> None:
         self.program, self.number, self.offset = program, number, offset
-        self.source, self.name = source, name
+        self.source, self.name, self.column = source, call.name, call.column
         self.local: dict[str, Variable] = {}
         self.cycle: dict[str, Variable] = {}
         self.arguments: dict[str, Scalar] = {}
@@ -94,6 +106,12 @@ class Execution(Flow):
         self._pending: list[Pending] = []
         """Calls that are due, the next one last."""
         self._paused = -1
+        self._read: Line | None = None
+        """The line that was looked at last."""
+        self.uncertain = False
+        """Blocks were left out: it ends before a line that reads the state."""
+        self.reads_unknown = False
+        """It has ended so."""
         self._modal: Call | None = None
         """The call that follows each motion or block."""
         self._modal_line: Line | None = None
@@ -135,6 +153,10 @@ class Execution(Flow):
             if line.skip & self.block_skip:
                 self.number, self.offset = line.next_number, line.next_offset
                 continue
+            self._read = line
+            if self.uncertain and READS_STATE.search(line.source.text):
+                self.ended = self.reads_unknown = True
+                return None
             if line.error is not None:
                 raise line.error
             if self._pauses(line.synchronises or self._structure_waits(line), self.number):
@@ -154,6 +176,25 @@ class Execution(Flow):
                 return block
             if line.call is not None:
                 self._pending.append(Pending(line.call, line, len(self.frames), line.call.count))
+
+    @property
+    def at_end(self) -> bool:
+        """The line that was looked at last ends the program or subroutine."""
+        return self._read is not None and self._read.flow != ""
+
+    def skip(self, error: ProgramError) -> bool:
+        """Leaves out the line that has just raised; False if it decides which lines follow, or about their values."""
+        line = self._read
+        if line is None or (error.file, error.line) != (line.source.file, line.source.line) or error.number in ENDLESS:
+            return False
+        if line.control is not None or line.jump or line.call is not None:
+            return False
+        if line.error is not None and DECIDES.search(line.source.text):
+            return False
+        if line.statement is not None and not line.statement.independent:
+            return False
+        self.number, self.offset = line.next_number, line.next_offset
+        return True
 
     def _pauses(self, needed: bool, place: int) -> bool:
         """Whether the path must stand before what follows; once for each time that it is executed."""
@@ -234,7 +275,7 @@ class Execution(Flow):
         values = self.values
         values.source = line.source
         arguments = {name: node.scalar(values) for name, node in call.arguments.items()}
-        frame = Frame(self.program, self.number, self.offset, line.source, call.name)
+        frame = Frame(self.program, self.number, self.offset, line.source, call)
         frame.local, frame.cycle, frame.arguments = values.local, values.cycle, values.arguments
         if call.cycle:
             frame.modal = values.state.copy()
@@ -270,6 +311,13 @@ class Execution(Flow):
 
 
 def with_calls(error: ProgramError, execution: Execution) -> ProgramError:
-    """The error with its call stack."""
-    error.calls = list(execution.calls)
+    """The error with its call stack; a parameter that a call does not give is an error of the call."""
+    calls = list(execution.calls)
+    name = str(error.values.get("name", ""))
+    if execution.frames and error.number == PARAMETER_UNSET.number and name.startswith("@"):
+        frame = execution.frames[-1]
+        words: dict[str, Value] = {"call": frame.name, "name": name, "file": error.file, "line": error.line}
+        error = flow_faults.ARGUMENT_MISSING.at(frame.source, frame.column, **words)
+        calls.pop(0)
+    error.calls = calls
     return error

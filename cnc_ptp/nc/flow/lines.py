@@ -44,10 +44,13 @@ class Flow(ABC):
 
 
 class Statement(ABC):
-    """What a line does besides, or in place of, fixed words."""
+    """What a line does besides, or in place of, fixed words.
 
-    def __init__(self, column: int) -> None:
-        self.column = column
+    `independent`: it sets no value and does not decide which line is next, so that a check may leave it out.
+    """
+
+    def __init__(self, column: int, *, independent: bool = False) -> None:
+        self.column, self.independent = column, independent
 
     @abstractmethod
     def run(self, execution: Flow, line: Line) -> NcBlock | None:

@@ -16,10 +16,8 @@ from cnc_ptp.nc.flow.structures import Place, Structure
 from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
 
-KEPT: Final = 100_000
-"""Lines that are kept as they were read; those behind them are read again each time."""
 KEPT_LATER: Final = 10_000
-"""Of them, lines of loops and subroutines."""
+"""Lines of loops and subroutines that are kept behind those that a text lets keep (ProgramText.kept)."""
 
 
 ReadLine = Callable[[str, ProgramText, int, int, Vocabulary], Line]
@@ -95,7 +93,7 @@ class Program:
 
     def keep(self, line: Line) -> None:
         """Notes a line, as long as there is room for it."""
-        if line.number > KEPT:
+        if line.number > self.text.kept:
             return
         while len(self.kept) < line.number:
             self.kept.append(None)

@@ -1,3 +1,3 @@
-; P-ERR-20925 drill.nc line 14 column 25 'LL CYCLE [NAME=PECK @P1=@P1]': parameter @P1 has no value yet
+; P-ERR-21599 fault_in_a_called_file.nc line 2 column 1 'L drill.nc': DRILL.NC does not give @P1, which drill.nc reads in line 14
 L drill.nc
 M30

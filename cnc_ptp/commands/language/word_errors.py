@@ -1,0 +1,51 @@
+"""Which errors a word of the first vocabulary may have: errors.yaml, and the texts from the lists of faults."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Final
+
+from cnc_ptp import yaml_text
+from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc.coordinates import coordinate_faults
+from cnc_ptp.nc.expressions import expression_faults
+from cnc_ptp.nc.expressions.readable import READABLE
+from cnc_ptp.nc.faults import Fault
+from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.tools import tool_faults
+
+PARTS: Final = (faults, flow_faults, expression_faults, coordinate_faults, spindle_faults, tool_faults)
+READ_ONLY: Final = expression_faults.NOT_ASSIGNABLE.number
+
+
+@cache
+def errors_by_key() -> dict[str, tuple[int, ...]]:
+    """errors.yaml."""
+    loaded = yaml_text.load(Path(__file__).with_name("errors.yaml").read_text(encoding="utf-8"))
+    return {str(key): tuple(numbers) for key, numbers in loaded.items()}
+
+
+def errors_of(name: str, kind: str) -> list[int]:
+    """Numbers of the errors that a word may have besides those of any line and of expressions."""
+    found = {number for key, numbers in errors_by_key().items() if name in key.split(", ") for number in numbers}
+    found |= set(errors_by_key().get(kind, ()))
+    assignable = any(reading.write is not None for _, reading in READABLE.get(name, ()))
+    return sorted(found - {READ_ONLY} if assignable else found)
+
+
+def error_texts() -> dict[int, str]:
+    """By number the text of each fault, with … for what the program says."""
+    return {fault.number: re.sub(r"\{[^}]*\}", "…", fault.template) for part in PARTS for fault in faults_in(part)}
+
+
+def faults_in(part: ModuleType) -> Iterator[Fault]:
+    """The faults of a list, also those in its tables."""
+    for value in vars(part).values():
+        if isinstance(value, Fault):
+            yield value
+        elif isinstance(value, dict):
+            yield from (fault for fault in value.values() if isinstance(fault, Fault))

@@ -1,0 +1,109 @@
+"""How a check continues behind a faulty block: the block is left out, modal state and position are those before it.
+
+What a block that is left out would have changed is unknown. So errors that may come from that alone are not
+shown (FOLLOW), and the check ends at a line that reads the state (V.A., V.G., V.SPDL_PROG.).
+"""
+
+from typing import Final
+
+from cnc_ptp.nc import faults, spindle_faults
+from cnc_ptp.nc.canonical import CanonicalBlock, OrderedError
+from cnc_ptp.nc.coordinates import coordinate_faults
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.flow.execution import Execution
+from cnc_ptp.nc.iso import iso_faults
+from cnc_ptp.nc.program import ModalState
+
+MOST_ERRORS: Final = 20
+"""Errors of one interpretation."""
+FOLLOW: Final = frozenset(
+    fault.number
+    for fault in (
+        *(faults.FEED_MISSING, faults.DWELL_WITHOUT_SPEED, faults.SPEED_MISSING, faults.WORD_NOT_USED),
+        *(faults.CENTRE_NOT_IN_PLANE, faults.ARC_WITHOUT_CENTRE, faults.RADIUS_ZERO, faults.FULL_CIRCLE_BY_RADIUS),
+        *(faults.RADIUS_TOO_SMALL, faults.RADII_DIFFER, faults.MEASURING_NOWHERE, faults.MEASURING_CONTOURING),
+        *(faults.MEASURING_IN_CYCLE, faults.SPEED_ABOVE_GEAR),
+        *(value for value in vars(spindle_faults).values() if isinstance(value, faults.Fault)),
+        *(value for value in vars(coordinate_faults).values() if isinstance(value, faults.Fault)),
+        *(iso_faults.NO_MOTION, iso_faults.MACHINE_INCREMENTAL, iso_faults.RETRACT_BELOW, iso_faults.WORD_MISSING),
+        *(iso_faults.SPINDLE_STANDS, iso_faults.CYCLE_FEED),
+    )
+)
+"""Errors that a block before them may have caused. LIMIT_POSITIVE and LIMIT_NEGATIVE are those of soft limits, too."""
+DEPENDS: Final = "what follows depends on it"
+ENOUGH: Final = f"{MOST_ERRORS} errors are enough"
+READS: Final = "what follows reads a state that is not known behind a block with an error"
+
+
+class Recovery:
+    """The errors of one interpretation."""
+
+    def __init__(self, known: list[ProgramError]) -> None:
+        """`known`: syntax errors of the program, which do not count again."""
+        self.errors: list[ProgramError] = []
+        self._places = {(error.file, error.line) for error in known}
+        self._reasons: set[str] = set()
+        self.unchecked = ""
+        """Why what follows `last` was not checked."""
+        self.last: ProgramError | None = None
+        self._noted: list[ProgramError] = []
+        """Errors of the block that comes next."""
+        self._skipped = False
+        """Blocks have been left out."""
+
+    def note(self, error: ProgramError) -> None:
+        """An error that changes nothing for what follows: its block is executed; one position counts once."""
+        if error.reason not in self._reasons:
+            self._reasons.add(error.reason)
+            self._noted.append(error)
+            self._take(error)
+
+    def go_on(self, error: ProgramError, execution: Execution, state: ModalState, before: ModalState | None) -> bool:
+        """Whether the check continues behind an error.
+
+        `before`: the modal state before the block; None: the error came before there was a block.
+        """
+        self._take(error)
+        if before is None and not execution.skip(error):
+            self.unchecked, self.last = "" if execution.at_end else DEPENDS, error
+            return False
+        if before is not None:
+            state.take_over(before)
+            execution.moved = False
+        state.spindle.speedless.clear()
+        self._skipped = execution.uncertain = True
+        return len(self.errors) < MOST_ERRORS
+
+    def ordered(self, block: CanonicalBlock) -> None:
+        """Takes the #ERROR of a block, which stops the program there, and says from where the errors before came."""
+        for error in self._noted:
+            error.calls = list(block.calls)
+        self._noted.clear()
+        for function in block.functions:
+            if isinstance(function, OrderedError) and function.severe:
+                error = faults.ORDERED.at(block.source, block.source.text.index("#") + 1, text=function.text)
+                error.calls = list(block.calls)
+                self._take(error)
+
+    def mark(self, errors: list[ProgramError]) -> None:
+        """Says at one of the errors that what follows was not checked."""
+        if not self.unchecked or not errors:
+            return
+        last = self.last
+        places = [each for each in errors if last is not None and (each.file, each.line) == (last.file, last.line)]
+        (places or errors)[-1].unchecked = self.unchecked
+
+    def finish(self, execution: Execution) -> None:
+        """The interpretation has come to an end."""
+        if execution.reads_unknown:
+            self.unchecked = READS
+
+    def _take(self, error: ProgramError) -> None:
+        place = (error.file, error.line)
+        if place in self._places or (self._skipped and error.number in FOLLOW):
+            return
+        self._places.add(place)
+        self.errors.append(error)
+        self.last = error
+        if len(self.errors) == MOST_ERRORS:
+            self.unchecked = ENOUGH

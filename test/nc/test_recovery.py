@@ -1,0 +1,82 @@
+"""A check goes on behind an error where what follows does not depend on it, and says where it does."""
+
+import pytest
+
+from cnc_ptp.nc.canonical import Source
+from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.interpreter import check
+from cnc_ptp.nc.recovery import DEPENDS, ENOUGH, READS
+
+AXES = ("X", "Y", "Z")
+
+
+def found(text: str, **options) -> list[tuple[int, int, str]]:
+    """Number and line of each error, and why nothing behind it was checked."""
+    return [(error.number, error.line, error.unchecked) for error in check(text, "a.nc", AXES, **options)]
+
+
+def test_independent_errors_of_blocks_are_all_found() -> None:
+    text = "G01 X10 F-5\nX[1/0]\nY[SQRT[-1]]\nS-100\nG02 X5 K1 F100\n#ROTATION ON [ANGLE=1/0]\nZ[P7]\nM30"
+    assert found(text) == [
+        (21022, 1, ""),
+        (20396, 2, ""),
+        (21422, 3, ""),
+        (20991, 4, ""),
+        (20396, 6, ""),
+        (20925, 7, ""),
+    ]
+
+
+def test_what_may_only_follow_from_an_error_is_not_shown() -> None:
+    """Line 3 has no feed because line 2 was left out, line 4 begins where line 2 would have ended."""
+    assert found("G90\nG01 X10 F-5\nG01 X20\nG02 X40 I-15\nM30") == [(21022, 2, "")]
+
+
+def test_behind_a_line_that_cannot_be_read_the_check_goes_on() -> None:
+    assert found("G01 X10 F100\nG01 X20 Q5\nX[1/0]\nM30") == [(20797, 2, ""), (20396, 3, "")]
+
+
+@pytest.mark.parametrize(
+    "line", ["P1 = 1/0", "$IF 1/0", "V.P.A = SQRT[-1]", "X1 P2 = 1/0", "LL NOWHERE", "#DELETE V.P.B", "X[1/0] P2 = 5"]
+)
+def test_it_ends_where_values_or_the_order_of_lines_depend_on_the_error(line: str) -> None:
+    closing = "$ENDIF\n" if "$IF" in line else ""
+    (error,) = check(f"G00 X1\n{line}\n{closing}X[1/0]\nM30", "a.nc", AXES)
+    assert (error.line, error.unchecked) == (2, DEPENDS)
+
+
+def test_it_ends_where_a_line_reads_the_state() -> None:
+    assert found("G00 X[1/0]\nY[1/0]\n$IF V.A.ABS.X > 0\nZ[1/0]\n$ENDIF\nM30") == [(20396, 1, ""), (20396, 2, READS)]
+
+
+def test_there_are_at_most_20_errors() -> None:
+    assert found("X[1/0]\n" * 30 + "M30") == [(20396, line, ENOUGH if line == 20 else "") for line in range(1, 21)]
+
+
+def test_a_loop_shows_its_error_once() -> None:
+    assert found("$FOR P1 = 1, 5, 1\nX[1/0]\n$ENDFOR\nY[1/0]\nM30") == [(20396, 2, ""), (20396, 4, "")]
+
+
+def test_positions_beyond_a_limit_count_once_and_the_path_goes_on_from_there() -> None:
+    def within(target: tuple[float, ...], source: Source) -> None:
+        if target[0] > 100.0:
+            raise ProgramError(120002, f"X {target[0]:g}", source, 1)
+
+    text = "G00 X200\nY10\nG91 X50\nG90 X0\nG01 X300\nM30"
+    assert found(text, check_target=within) == [(120002, 1, ""), (120002, 3, ""), (20008, 5, "")]
+
+
+def test_an_ordered_error_that_is_reached_is_an_error() -> None:
+    text = "%L DEEP\n#ERROR [ID=455 PV1=P1]\nM29\n%\nP1 = 2\n$IF P1 > 1\nLL DEEP\n$ELSE\n#ERROR [ID=7]\n$ENDIF\nM30"
+    (error,) = check(text, "a.nc", AXES)
+    reason = "#ERROR 455 of the program: PV1 = 2; the program is aborted there"
+    assert str(error) == f"P-ERR-22029 a.nc line 2 column 1 '#ERROR [ID=455 PV1=P1]': {reason}"
+    assert error.calls == ["a.nc line 7"]
+
+
+def test_an_ordered_warning_is_none() -> None:
+    assert found("#ERROR [ID=455 RC=0]\nM30") == []
+
+
+def test_an_ordered_error_behind_what_only_the_run_knows_is_not_reported() -> None:
+    assert found("P1 = V.A.ACT_POS.X\n#ERROR [ID=455]\nM30") == []
