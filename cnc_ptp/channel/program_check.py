@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
 from functools import partial
 from math import inf
 from typing import NamedTuple
@@ -206,7 +205,7 @@ class ProgramCheck:
         """Up to a homing or a line that reads what only the run knows; a measuring run is taken to reach its end."""
         missing, state = self._names(self.unreferenced_at_start), self.state({}, {}, {})
         found: dict[tuple[str, int], ProgramError] = {}
-        with suppress(ProgramError):
+        try:
             for block in self._interpreted(
                 program, self.start, state, None, set(missing), required=False, checks=False
             ):
@@ -217,6 +216,8 @@ class ProgramCheck:
                     found.setdefault((error.file, error.line), error)
                 if isinstance(block.motion, HomeAxes) or reads_the_run(block) or len(found) == MOST_ERRORS:
                     break
+        except ProgramError:
+            pass  # it is among those that the interpretation has found
         return list(found.values())
 
     @property

@@ -82,9 +82,6 @@ BAD_NUMBER = Fault(21003, "'{word}' is not a letter with a number")
 NUMBER_TOO_LONG = Fault(21004, "number '{word}' has more than {limit} digits before the decimal point")
 NUMBER_WITHOUT_WORD = Fault(21005, "number '{word}' without a letter; only G04 takes a bare number")
 COMMAND_UNKNOWN = Fault(21006, "command '{word}' is not available")
-COMMENT_OPEN = Fault(
-    21043, "'(' without ')' in its line; what is behind it would not be executed. A comment up to the end begins with ;"
-)
 COMMENT_NOT_OPEN = Fault(21007, "')' closes a comment that was never opened")
 DUPLICATE_WORD = Fault(21008, "word {word} twice in one block: {first} and {second}")
 TWICE = Fault(21042, "{word} twice in one block")

@@ -1,7 +1,6 @@
 """Blocks -> canonical stream: modal state, calls and returns, block skip, veto of targets; check of a whole program."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
 
 from cnc_ptp.nc import tapping
 from cnc_ptp.nc.arcs import extreme_points
@@ -410,12 +409,16 @@ def check(
             runs=True,
             recovery=recovery if recovers else None,
         )
-        with suppress(ProgramError):
+        failed = False
+        try:
             for block in blocks:
                 recovery.ordered(block)
                 homed = homed or isinstance(block.motion, HomeAxes)
                 if reads_the_run(block):
                     break
+        except ProgramError:
+            failed = True
+        if not failed:
             break
     found = [*errors, *recovery.errors]
     recovery.mark(found)

@@ -3,7 +3,7 @@
 A word is a letter with a number (`X10`, `G01`, `X=10`), with or without blanks around it. A longer name needs an equals
 sign (`Y_ACHSE=5`, `X1=10`), a spindle takes a bracket (`S2[M3 REV1000]`) and a position (`S.POS=90`), `LL name` calls
 a subroutine, a bare number belongs to G04.
-`( )` comments nest and end in their line, `;` starts a comment up to the line's end.
+`( )` comments nest and end at the line's end at the latest, `;` starts a comment up to the line's end.
 """
 
 import re
@@ -151,7 +151,7 @@ def plain_number(line: str, at: int, end: int) -> tuple[int, float]:
 def normalise(source: Source) -> str:
     """The line in upper case with blanks in place of comments, so that columns stay; texts in quotation marks stay.
 
-    Raises ProgramError for a bracket of a comment without the other one and for a character that is not ASCII.
+    Raises ProgramError for a ')' without '(' and for a character that is not ASCII.
     """
     text = source.text
     if "(" in text or ";" in text or ")" in text:
@@ -181,7 +181,7 @@ def _upper_outside_quotes(text: str, source: Source) -> str:
 
 
 def _blank_comments(source: Source) -> str:
-    depth = opened = 0
+    depth = 0
     quoted = False
     kept: list[str] = []
     for column, character in enumerate(source.text, start=1):
@@ -194,12 +194,8 @@ def _blank_comments(source: Source) -> str:
             break
         if character == ")" and depth == 0:
             raise faults.COMMENT_NOT_OPEN.at(source, column)
-        if character == "(" and depth == 0:
-            opened = column
         depth += (character == "(") - (character == ")")
         kept.append(" " if depth or character == ")" else character)
-    if depth:
-        raise faults.COMMENT_OPEN.at(source, opened)
     return "".join(kept)
 
 

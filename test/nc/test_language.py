@@ -26,6 +26,7 @@ AXES = ("X", "Y", "Z")
         " \tG 1 X 10 Y -2.5 F 600 ",
         "X=10 G=1 F = 600 Y= -2.5",
         "G01 (first) X10 (nested (twice) ; no end) Y-2.5 F600 ; last",
+        "G01 X10 Y-2.5 F600 (open to the end",
         "G01 X10 Y-2.5 F600\r",
         "\ufeffG01 X10 Y-2.5 F600",
         "G01 X10 Y-2.5 F600 (Bohrung ø6)",

@@ -19,6 +19,6 @@ LL ROW
 Y15 LL ROW ; behind the motion
 N70
 N80 G91 X-5.5Y+.5
-G90 (back)
+G90 ( back
 X0 Y0
 N100M30
