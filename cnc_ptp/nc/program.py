@@ -245,10 +245,14 @@ class Step(NamedTuple):
 
 
 class Tapping(NamedTuple):
-    """What stays from one block with G63, G331, G332 to the next: the last S was negative; last pitch, mm, 0 none."""
+    """What stays from one block with G63, G331, G332 to the next: the last S was negative; last pitch, mm, 0 none.
+
+    `spindle`: key of the one whose speed it was, "" the main one.
+    """
 
     reversed: bool = False
     pitch: float = 0.0
+    spindle: str = ""
 
 
 NO_TAPPING: Final = Tapping()

@@ -42,11 +42,13 @@ GEAR_AND_HOMING = Fault(20942, "M{stage} and G74 in one block")
 # Tapping
 TAPPING_AND_M = Fault(21640, "{word} with {g}: the path turns the spindle; end {g} with another path function first")
 TAPPING_WITHOUT_POSITION = Fault(
-    21641, "{g} needs a spindle with an actual position (P-AXIS-00320, P-SIM-00050) that the NC moves, {spindle} is none"
+    21641,
+    "{g} needs a spindle with an actual position (P-AXIS-00320, P-SIM-00050) that the NC moves, {spindle} is none",
 )
 TAPPING_WHILE_TURNING = Fault(
     21654, "{g} while spindle {spindle} turns: it must be at a standstill (M05 or M19 in a block before)"
 )
+TAPPING_TWO = Fault(21655, "{g} with the speeds of two spindles, {first} and {second}: the path turns one of them")
 TAPPING_FEED_MODE = Fault(21642, "{g} needs a feed in mm/min (G94), G{mode} is active")
 TAPPING_FEED_ZERO = Fault(21643, "{g} with feed 0: it needs F = S times the pitch")
 TAPPING_SPEED_ZERO = Fault(21644, "{g} with speed 0 of spindle {spindle}: it needs S = F / pitch")

@@ -1,6 +1,6 @@
 """Tapping without a compensating chuck: G63, G331 and G332 (TF5200 spindle 2.8.6).
 
-The main spindle becomes an axis of the path: it turns 360 degrees for each pitch. With G63 the pitch is F / S; a pitch
+The main spindle, or one that has its own speed in the block (S2=200), becomes an axis of the path: it turns 360 degrees for each pitch. With G63 the pitch is F / S; a pitch
 that is programmed too (I, J or K) is only compared with it. G331 has the pitch instead of F, and G332 leads out
 of the thread again: the same pitch with the spindle turning the other way. A negative S, or a negative pitch of G331, is a left-hand thread.
 """
@@ -16,7 +16,7 @@ from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.functions import block_functions
 from cnc_ptp.nc.motions import target_of
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, Spindle
-from cnc_ptp.nc.spindles import current_main, is_slave, require_permitted_speed, require_spindle
+from cnc_ptp.nc.spindles import current_main, is_slave, names, require_permitted_speed, require_spindle
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
 TAPPING: Final = 63
@@ -43,30 +43,33 @@ def functions(channel: Channel, state: ModalState, block: NcBlock, code: GCode) 
     if rival:
         raise _fault(spindle_faults.TAPPING_AND_M, block, rival, word=rival, g=code.name)
     gear: tuple[Function, ...] = ()
-    main = current_main(channel, state)
+    main = _tapping_spindle(channel, state)
     if main.path_gear and state.spindle.gears.get(main.key, main.gear) != main.path_gear:
         state.spindle.gears[main.key] = main.path_gear
         gear = (GearChange(main.key, main.path_gear),)
-    others = block._replace(words={word: value for word, value in block.words.items() if word != "S"})
+    words = {word: value for word, value in block.words.items() if word != "S"}
+    others = block._replace(words=words, spindles=tuple([each for each in block.spindles if not each.din]))
     return gear + (block_functions(channel, state, others) if block.functions else ())
 
 
 def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove | None:
     """G63, G331, G332: straight to the target while the spindle turns with it."""
     require_spindle(channel, block, code.name)
-    main = current_main(channel, state)
-    _take_speed(channel, state, block, main)
+    _take_speed(channel, state, block, code)
+    main = _tapping_spindle(channel, state)
     if code.number != TAPPING:
         _take_pitch(state, block, code)
     target = target_of(channel, state, block, code)
     if target is None:
         return None
-    require_main(channel, state, block, code)
+    require_usable(state, block, code, main)
     if main.key in state.spindle.turning and not is_slave(state, main.key):
         raise _fault(spindle_faults.TAPPING_WHILE_TURNING, block, code.name, g=code.name, spindle=main.key)
     if state.feed_mode != feeds.PER_MINUTE:
         raise _fault(spindle_faults.TAPPING_FEED_MODE, block, code.name, g=code.name, mode=state.feed_mode)
-    turn = _by_feed(channel, state, block, code, main) if code.number == TAPPING else _by_pitch(state, block, code, main)
+    turn = (
+        _by_feed(channel, state, block, code, main) if code.number == TAPPING else _by_pitch(state, block, code, main)
+    )
     degrees_per_mm = turn.sense * turn.speed * DEG_S_PER_RPM / turn.feed
     return LinearMove(tuple(target), False, turn.feed, transition=EXACT_STOP, tap=Tap(main.key, degrees_per_mm))
 
@@ -74,19 +77,43 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
 def require_main(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """Raises ProgramError for a main spindle that cannot be an axis of the path, or has no speed."""
     require_spindle(channel, block, code.name)
-    main = current_main(channel, state)
-    if not main.positioned:
-        raise _fault(spindle_faults.TAPPING_WITHOUT_POSITION, block, code.name, g=code.name, spindle=main.key)
-    _speed(state, block, code, main)
+    require_usable(state, block, code, current_main(channel, state))
 
 
-def _take_speed(channel: Channel, state: ModalState, block: NcBlock, main: Spindle) -> None:
-    """S with its sign. Raises ProgramError 22010 for one that the gear does not permit."""
-    if "S" not in block.words:
+def require_usable(state: ModalState, block: NcBlock, code: GCode, spindle: Spindle) -> None:
+    """The same for any spindle."""
+    if not spindle.positioned:
+        raise _fault(spindle_faults.TAPPING_WITHOUT_POSITION, block, code.name, g=code.name, spindle=spindle.key)
+    _speed(state, block, code, spindle)
+
+
+def _tapping_spindle(channel: Channel, state: ModalState) -> Spindle:
+    """That whose speed was programmed last with G63, G331 or G332; else the main one."""
+    named = state.tapping.spindle
+    others = (spindle for spindle in channel.table.spindles if spindle.key == named)
+    return next(others, current_main(channel, state))
+
+
+def _take_speed(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
+    """S with its sign, or that of another spindle (S2=200). Raises ProgramError for both, and for one that is too high.
+
+    Errors 20180, 21655, 22010.
+    """
+    speeds = {channel.table.main_name: block.words["S"]} if "S" in block.words else {}
+    speeds |= {each.name: each.speed_rpm for each in block.spindles if each.din and each.speed_rpm is not None}
+    if not speeds:
         return
-    speed = block.words["S"]
-    state.speeds[main.key], state.tapping = abs(speed), state.tapping._replace(reversed=speed < 0.0)
-    require_permitted_speed(channel, state, block, "S", SpindleFunction(main.key, None, abs(speed)))
+    (name, speed), *more = speeds.items()
+    if more:
+        raise _fault(spindle_faults.TAPPING_TWO, block, more[0][0], g=code.name, first=name, second=more[0][0])
+    known = names(channel, state)
+    if name not in known:
+        raise _fault(faults.SPINDLE_UNKNOWN, block, name, word=name, known=", ".join(known))
+    key = known[name].key
+    tapped = "" if known[name] is current_main(channel, state) else key
+    state.speeds[key] = abs(speed)
+    state.tapping = state.tapping._replace(reversed=speed < 0.0, spindle=tapped)
+    require_permitted_speed(channel, state, block, name, SpindleFunction(key, None, abs(speed)))
 
 
 def _by_feed(channel: Channel, state: ModalState, block: NcBlock, code: GCode, main: Spindle) -> Turn:

@@ -83,7 +83,9 @@ def test_path_override_acts_on_both(percent: int) -> None:
 
 
 def test_spindle_override_acts_on_both() -> None:
-    scenario = "- {at: 0.0, to: s, do: set_override, percent: 50}\n- {at: 0.0, to: channel, do: set_override, percent: 80}"
+    scenario = (
+        "- {at: 0.0, to: s, do: set_override, percent: 50}\n- {at: 0.0, to: channel, do: set_override, percent: 80}"
+    )
     bench = run(scenario=scenario)
     assert_follows(bench)
     assert tapping_speed(bench) == pytest.approx(80.0, rel=1e-9)
