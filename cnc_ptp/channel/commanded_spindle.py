@@ -25,8 +25,8 @@ from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, com
 from cnc_ptp.nc.canonical import SpindleFunction
 from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
-from cnc_ptp.spindle.tool_limits import ToolLimits
 from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.spindle.tool_limits import ToolLimits
 
 BEFORE_THE_RUN = -1
 

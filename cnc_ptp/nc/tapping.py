@@ -1,8 +1,9 @@
 """Tapping without a compensating chuck: G63, G331 and G332 (TF5200 spindle 2.8.6).
 
-The main spindle, or one that has its own speed in the block (S2=200), becomes an axis of the path: it turns 360 degrees for each pitch. With G63 the pitch is F / S; a pitch
-that is programmed too (I, J or K) is only compared with it. G331 has the pitch instead of F, and G332 leads out
-of the thread again: the same pitch with the spindle turning the other way. A negative S, or a negative pitch of G331, is a left-hand thread.
+The main spindle, or one that has its own speed in the block (S2=200), becomes an axis of the path: it turns 360 degrees
+for each pitch. With G63 the pitch is F / S; a pitch that is programmed too (I, J or K) is only compared with it. G331
+has the pitch instead of F, and G332 leads out of the thread again: the same pitch with the spindle turning the other
+way. A negative S, or a negative pitch of G331, is a left-hand thread.
 """
 
 from __future__ import annotations

@@ -261,7 +261,7 @@ class Spindle:
     # path of a channel
 
     def leave_path(self, cycle: int) -> None:
-        """The path no longer moves it: it continues with its own motion, and on its ramp with what it had of the path."""
+        """Its own motion is left; what speed it had of the path ends on its ramp."""
         assert self.travel is not None
         position, speed, _ = self.motion(cycle)
         own = self._own_motion(cycle)[1]

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 from machine_support import MILL, MachineBench
 from replay_support import bits, replay
 
+from cnc_ptp.parameters import read_machine
 from cnc_ptp.protocol.axis_states import AxisStateCode as S
 from cnc_ptp.protocol.channel_states import ChannelStateCode as C
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 PITCH = 1.25
 DEGREES_PER_MM = 360.0 / PITCH
 TAP = """N10 G00 Z5
@@ -230,6 +233,33 @@ def test_spindle_in_motion_cannot_be_taken_over() -> None:
         "P-ERR-24032 spindle s: follow_path refused: the spindle is in DiscreteMotion at -60 rpm; it must be at a"
         " standstill; nothing was changed"
     )
+
+
+def test_spindle_taps_while_it_turns_with_the_workpiece() -> None:
+    """TF5200 spindle p.52: the tool spindle is coupled to that of the workpiece, and taps on top of that."""
+    machine = read_machine(EXAMPLES / "spindles" / "synchronous.yaml")
+    program = """#ENABLE AX LINK [0]
+M03 S300
+G01 X10 F3000
+N40 G63 X-10 F250 S2=200
+N50 X10 S2=-200
+G01 X20 F2000
+M05
+#DISABLE AX LINK [0]
+M30
+"""
+    bench = MachineBench(program, machine=machine).run()
+    assert bench.events == []
+    numbers = bench.column("channel", "block_number")
+    tool, workpiece = bench.column("s2", "set_position_deg"), bench.column("s1", "set_position_deg")
+    x = bench.column("x", "set_position")
+    cycles = [cycle for cycle, number in enumerate(numbers) if number in (40, 50)]
+    begin = cycles[0]
+    for cycle in cycles:
+        turned = (tool[cycle] - workpiece[cycle]) - (tool[begin] - workpiece[begin])
+        assert turned == pytest.approx(-DEGREES_PER_MM * (x[cycle] - x[begin]), abs=FOLLOWS)
+    assert min(bench.column("s2", "set_speed_rpm")[begin : cycles[-1]]) == pytest.approx(100.0)
+    assert max(bench.column("s2", "set_speed_rpm")[begin : cycles[-1]]) == pytest.approx(500.0)
 
 
 def test_replay_gives_the_same_again() -> None:
