@@ -159,16 +159,14 @@ class LookAhead:
             self._renew_plan(cycle_time)
         while len(rows) < count and not self.done and not self.halted:
             time = self._time + cycle_time
-            profile = self._profile
-            if profile is not None and time >= profile.duration:
-                time -= profile.duration
-                self._finish(time)
-                profile = self._profile
-                if self.done:
-                    break
+            while self._profile is not None and time >= self._profile.duration:
+                time -= self._profile.duration
+                self._finish(time)  # the next plan may be shorter than what is left of the cycle
+            if self.done:
+                break
             self._time = time
-            if profile is not None:
-                self.state = profile.state_at(time)
+            if self._profile is not None:
+                self.state = self._profile.state_at(time)
             rows.append(self.state)
         return rows
 
