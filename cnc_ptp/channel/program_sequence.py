@@ -132,6 +132,8 @@ class ProgramSequence:
         """The block in which a wait for the path ended: the next one has newer reports."""
         self._due: frozenset[Moment] = frozenset()
         """The moments that have come: the path waits for the functions of these moments."""
+        self.starts_late = False
+        """The motion of the active block waits until the interpreter has found the block with which it is linked."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
         self._fault: ProgramError | None = None
@@ -161,7 +163,7 @@ class ProgramSequence:
         if program:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
-        self.finished = False
+        self.finished = self.starts_late = False
         self._fault = None
         self._following.begin(stream)
         self.phase = Phase.NEXT
@@ -494,7 +496,8 @@ class ProgramSequence:
             self._homing.begin(motion.groups)
             self.phase = Phase.HOMING
         elif not (isinstance(motion, LinearMove) and motion.measures):
-            if self._following.awaits_next(motion):
+            self.starts_late = self._following.awaits_next(motion)
+            if self.starts_late:
                 return False
             self._motion.start(motion, self._following)
             self.phase = Phase.MOTION

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -19,6 +20,8 @@ UNREADABLE = 26110
 TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
+PART: Final = 1 << 20
+"""Characters of a file that are read at once."""
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
@@ -31,7 +34,11 @@ _CYCLE_CODE = re.compile(r"G\s*(8\d)(?![\d.])", re.ASCII | re.IGNORECASE)
 def read_file(what: str, path: str) -> str:
     """Text of a file. Raises CncError 26110."""
     try:
-        return Path(path).read_text(encoding="utf-8")
+        with Path(path).open(encoding="utf-8") as stream:
+            text = ""
+            for part in iter(partial(stream.read, PART), ""):
+                text += part  # it grows in its place, so that a long text is in memory once
+            return text
     except OSError as error:
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
     except UnicodeDecodeError:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
@@ -55,12 +54,11 @@ class Unit(ABC):
         except CncError as error:
             refusal = error
             self.event(cycle, Severity.WARNING, error.number, error.message)
-        shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
         record = CommandRecord(
             cycle,
             self.name,
             command.command,
-            shown.arguments_json,
+            {name: value for name, value in command.arguments.items() if name not in OF_PLC},
             accepted=refusal is None,
             error_id=refusal.number if refusal else 0,
             message=refusal.message if refusal else self._warning,

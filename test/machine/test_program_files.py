@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from machine_support import ROOT
 from cnc_ptp.cli import main
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
-from cnc_ptp.machine.program_files import Search, called_names, called_programs, read_program
+from cnc_ptp.machine.program_files import Search, called_names, called_programs, read_file, read_program
 from cnc_ptp.recording.reader import read_recording
 
 
@@ -196,3 +197,15 @@ def called(command: list[str]) -> int:
     with pytest.raises(SystemExit) as ended:
         main.main(command)
     return int(str(ended.value.code))
+
+
+def test_a_long_text_is_in_memory_once(tmp_path: Path) -> None:
+    """32 MB: bytes and text, or two lengths of the text beside each other, would be more."""
+    file = tmp_path / "long.nc"
+    file.write_text("X1.000 Y2.000\r\n" * 2_000_000, newline="")
+    tracemalloc.start()
+    text = read_file("NC program", str(file))
+    largest = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(text) == 28_000_000 and text.endswith("Y2.000\n") and "\r" not in text
+    assert largest < 1.3 * len(text)

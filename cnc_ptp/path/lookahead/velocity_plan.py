@@ -148,6 +148,8 @@ def exceeded(
         ahead = squares[index] + after * 0.5 * cell.length
         bend = (after - before) / cell.length
         parts[index] = max(cell.excess(square, before, bend), cell.excess(ahead, after, bend))
+        if bend < 0.0 and cell.loads:  # between them y and b are below the parabola's control point, not below the ends
+            parts[index] = max(parts[index], cell.excess(squares[index], 0.5 * (before + after), bend))
         before, square = after, ahead
     parts[-1] = excess_at_rest(cells[-1], square, before)
     return parts
