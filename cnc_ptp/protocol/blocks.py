@@ -65,7 +65,7 @@ def json_of(arguments: Mapping[str, Any]) -> str:
 class CommandRecord:
     """A command carried out or refused at `cycle` (CommandRecord.msg).
 
-    `arguments` as JSON, or as they came: the text of a program may be long, and is written as JSON when it is needed.
+    `arguments` as JSON; with the text of a program as they came: it may be long, and becomes JSON when that is needed.
     """
 
     cycle: int

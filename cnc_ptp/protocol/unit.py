@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
 
 Handler = Callable[..., str | None]
@@ -54,11 +54,12 @@ class Unit(ABC):
         except CncError as error:
             refusal = error
             self.event(cycle, Severity.WARNING, error.number, error.message)
+        shown = {name: value for name, value in command.arguments.items() if name not in OF_PLC}
         record = CommandRecord(
             cycle,
             self.name,
             command.command,
-            {name: value for name, value in command.arguments.items() if name not in OF_PLC},
+            shown if "text" in shown else json_of(shown),
             accepted=refusal is None,
             error_id=refusal.number if refusal else 0,
             message=refusal.message if refusal else self._warning,
