@@ -62,6 +62,8 @@ class LookAhead:
         """Parts behind the cells that are known."""
         self._halt = inf
         """u at which the path halts."""
+        self._split = False
+        """A stretch was divided for that."""
         self._stretches: deque[list[PathCell]] = deque([[]])
         """Cells from one exact stop to the next; of the first one from the last rest or knot on."""
         self._profile: PathProfile | None = None
@@ -129,9 +131,10 @@ class LookAhead:
         """Cells for a window ahead."""
         while self._undivided and self._lacks_cells():
             waiting = self._undivided[0]
-            stops = waiting.part.entry <= 0.0 or waiting.origin == self._halt
-            if stops and not waiting.begun and self._stretches[-1]:
+            stops = waiting.part.entry <= 0.0
+            if (stops or waiting.origin == self._halt) and not waiting.begun and self._stretches[-1]:
                 self._stretches.append([])
+                self._split = self._split or not stops
             self._stretches[-1].extend(waiting.take(CELLS_AHEAD))
             if waiting.empty:
                 self._undivided.popleft()
@@ -206,11 +209,23 @@ class LookAhead:
                 return
 
     def resume(self) -> None:
-        """Continues where the path has halted."""
+        """Continues where the path has halted; one that has not yet no longer stops there."""
         if self.halted:
             self.state = (self._halt, 0.0, 0.0, 0.0)
-        self.halted = False
+        elif self._split:
+            self._join()
+        self.halted = self._split = False
         self._halt = inf
+
+    def _join(self) -> None:
+        """The stretches before and behind the place of the halt are one again, which is planned anew."""
+        for index in range(1, len(self._stretches)):
+            behind = self._stretches[index]
+            if behind and behind[0].middle > self._halt:
+                self._stretches[index - 1] += behind
+                del self._stretches[index]
+                self._renew = 0.0
+                return
 
     def _can_rest_at(self, place: float) -> bool:
         """Plans to rest there if that is possible; a place behind the cells that are known is."""
@@ -225,6 +240,7 @@ class LookAhead:
                 return False
             if behind:
                 self._stretches.insert(index + 1, behind)
+                self._split = True
             return True
         return True
 
