@@ -73,6 +73,8 @@ class LookAhead:
         self._deceleration = self._jerk = 1.0
         """Of the last part, along the path."""
         self._stopping = False
+        self._before = override
+        """The last override above 0 with which was planned."""
 
     # what is ahead
 
@@ -253,7 +255,8 @@ class LookAhead:
         start, cells = self._from_knot(following, stretch)
         if len(cells) < FEWEST_CELLS:
             return False
-        plan = plan_velocity(cells, start, self._factor) or plan_velocity(cells, start, self._factor, len(cells))
+        plan = plan_velocity(cells, start, self._factor)
+        plan = plan or plan_velocity(cells, start, self._factor, len(cells), self._before)
         if plan is None:
             return False
         self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
@@ -312,7 +315,7 @@ class LookAhead:
         start, cells = self._from_knot(following, self._cells)
         if len(cells) < FEWEST_CELLS:
             return
-        plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start)
+        plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start, self._before)
         if plan is not None:
             self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
 
@@ -333,10 +336,12 @@ class LookAhead:
         plan = plan_velocity(cells, start, self._factor)
         if plan is not None:
             return plan
-        return earliest(len(cells), lambda delay: plan_velocity(cells, start, self._factor, delay))
+        return earliest(len(cells), lambda delay: plan_velocity(cells, start, self._factor, delay, self._before))
 
     def _take(self, plan: VelocityPlan, pieces: list[PathPiece], cells: list[PathCell]) -> None:
         self._profile = PathProfile(pieces)
+        if self._factor > AT_REST:
+            self._before = self._factor
         begin, self._planned_end = plan.cells[0].begin, plan.cells[-1].end
         self._stretches[0] = cells
         for cell in cells:
