@@ -79,7 +79,7 @@ class Structure:
 
     @property
     def outermost(self) -> "Structure":
-        """The one around it that stands in no other; itself if there is none."""
+        """The one around it that is within no other; itself if there is none."""
         structure = self
         while structure.parent is not None:
             structure = structure.parent

@@ -81,7 +81,8 @@ def plan_velocity(
 def caps_of(cells: Sequence[PathCell], override: float, delay: int, before: float) -> list[float]:
     """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell.
 
-    Before cell `delay` what was planned before may be kept, though it is above the feed; nothing above the feed of then.
+    Before cell `delay` what was planned before may be kept, though it is above the feed; but not more
+    than the feed with which it was planned.
     """
     factor, former = override * override, before * before
     own: list[float] = []
@@ -195,7 +196,7 @@ def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> Veloc
 
 
 def stop_soon(cells: Sequence[PathCell], start: MovingStart, before: float) -> VelocityPlan | None:
-    """To rest at the end of the first cell at which that is possible; the feed no longer counts, but that of before."""
+    """To rest at the end of the first cell at which that is possible; the feed with `before` counts."""
     last = len(cells) - 1
 
     def stop_at(cell: int) -> VelocityPlan | None:
