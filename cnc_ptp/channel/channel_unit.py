@@ -615,15 +615,18 @@ class ChannelUnit(Unit):
 
     def _watch_interpreter(self, cycle: int) -> None:
         """A warning when the path becomes slower because too few blocks are known; another one after it was full."""
-        stream, known = self._sequence.stream, self._motion.runs_out
+        sequence = self._sequence
+        known = 0.0 if sequence.starts_late else self._motion.runs_out
         if self.runs_out:
-            self.runs_out = stream.fill < ENOUGH
-        elif known >= 0.0 and self._sequence.awaits_blocks:
+            self.runs_out = sequence.starts_late or sequence.stream.fill < ENOUGH
+        elif known >= 0.0 and sequence.awaits_blocks:
             self.runs_out = True
-            line = self._sequence.source.line
-            blocks = self._parameters.blocks_per_cycle
+            line, blocks = sequence.source.line, self._parameters.blocks_per_cycle
             reason = f"blocks for {known:.3g} mm are known, P-CHAN-90006 gives {blocks} in a cycle"
             text = f"the path is slower in line {line}: {reason}"
+            if sequence.starts_late:
+                reason = f"the next block is still computed, P-CHAN-90006 gives {blocks} in a cycle"
+                text = f"the path stands before line {line}: {reason}"
             self.event(cycle, Severity.WARNING, INTERPRETER_SLOW, f"channel {self.name}: {text}", line)
 
     @property

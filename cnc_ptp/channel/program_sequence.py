@@ -139,10 +139,12 @@ class ProgramSequence:
         """The block in which a wait for the path ended: the next one has newer reports."""
         self._due: frozenset[Moment] = frozenset()
         """The moments that have come: the path waits for the functions of these moments."""
+        self.starts_late = False
+        """The motion of the active block waits until the interpreter has found the block with which it is linked."""
         self._awaits_event = False
         """Functions of the block go out with the measuring event."""
-        self._fault: ProgramError | None = None
-        """Of the next block."""
+        self._fault: CncError | None = None
+        """Of the next block (ProgramError), or of the active one."""
         self._fault_found = -1
         """The cycle block in which it was found: its functions go out with the next one."""
         self.handshake = Handshake()
@@ -168,7 +170,7 @@ class ProgramSequence:
         if program:
             self._outgoing.commands += self._functions.at_program_start()
             self._functions.expect_nothing()
-        self.finished = False
+        self.finished = self.starts_late = False
         self._fault = None
         self._following.begin(stream)
         self.phase = Phase.NEXT
@@ -391,7 +393,7 @@ class ProgramSequence:
         if len(done) < len(waits):
             return False
         if self.phase is Phase.WAIT_GEAR:
-            self._functions_before(cycle)
+            self._functions_before(first_cycle, cycle)
         elif self.phase is Phase.WAIT_BEFORE:
             return self._start_motion(first_cycle, cycle)
         elif self.phase is Phase.WAIT_END:
@@ -469,7 +471,7 @@ class ProgramSequence:
             self._path_spindle.release()
         gear = self._functions.gear_change(block)
         if not gear.commands:
-            self._functions_before(cycle)
+            self._functions_before(first_cycle, cycle)
             return True
         self._queue(gear)
         self._wait(Phase.WAIT_GEAR, Moment.BEFORE)
@@ -482,11 +484,15 @@ class ProgramSequence:
         if block.offsets is not None:
             self.offsets = block.offsets
 
-    def _functions_before(self, cycle: int) -> None:
+    def _functions_before(self, first_cycle: int, cycle: int) -> None:
         """Sends the functions that precede the motion; the path waits for all that the motion needs."""
         block = self._block
         assert block is not None
-        self._tell(block, cycle)
+        try:
+            self._tell(block, cycle)
+        except CncError as error:
+            self._fail(error, first_cycle)
+            return
         self._queue(self._functions.of_block(block, Moment.BEFORE))
         self._awaits_event = any(self._functions.moment(function) is Moment.EVENT for function in block.functions)
         self._wait(Phase.WAIT_BEFORE, *moments_before(block))
@@ -516,15 +522,26 @@ class ProgramSequence:
         elif isinstance(motion, LinearMove) and motion.tap is not None and not self._spindle_follows(motion.tap):
             return False
         elif not (isinstance(motion, LinearMove) and motion.measures):
-            if self._following.awaits_next(motion):
+            self.starts_late = self._following.awaits_next(motion)
+            if self.starts_late:
                 return False
-            self._motion.start(motion, self._following)
-            self.phase = Phase.MOTION
+            try:
+                self._motion.start(motion, self._following)
+                self.phase = Phase.MOTION
+            except CncError as error:
+                self._fail(error, first_cycle)
         elif cycle != first_cycle + 1 or not self._measuring.ready(motion, self._feedback):
             return False
         else:
             self._start_measuring(motion)
         return True
+
+    def _fail(self, error: CncError, first_cycle: int) -> None:
+        """Raises the error of the active block, or notes it until the functions before it have gone out."""
+        if not (self._outgoing.commands or self._outgoing.requests):
+            raise error
+        self._fault, self._fault_found = error, first_cycle
+        self._wait(Phase.WAIT_END)
 
     def _start_measuring(self, motion: LinearMove) -> None:
         """Raises CncError 50052, and those of PathMotion.start."""
@@ -585,7 +602,7 @@ class ProgramSequence:
         return self.phase in (Phase.MOTION, Phase.WAIT_SIGNAL, Phase.WAIT_AFTER)
 
     def _finish_if_good(self, first_cycle: int) -> bool:
-        """False while functions before a fault are still to go out. Raises ProgramError."""
+        """False while functions before a fault are still to go out. Raises the fault then."""
         if self._fault is None:
             self._finish()
             return True

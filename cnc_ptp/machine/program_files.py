@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -22,6 +23,8 @@ TOO_MANY_FILES = 26122
 MOST_FILES = 200
 """Programs that one program may call, directly or through others."""
 UTF_16: Final = "it is UTF-16 text; save it as UTF-8"
+PART: Final = 1 << 20
+"""Characters of a file that are read at once."""
 SHIPPED = Path(cnc_ptp.__path__[0]) / "nc" / "cycles"
 """Cycles that come with cnc_ptp; a program of the same name in the user's folder replaces one."""
 
@@ -37,25 +40,36 @@ _CYCLE_CODE = re.compile(r"G\s*(8\d)(?![\d.])", re.ASCII | re.IGNORECASE)
 def read_file(what: str, path: str) -> str:
     """Text of a file. Raises CncError 26110."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        with Path(path).open(encoding="utf-8") as stream:
+            text = ""
+            for part in iter(partial(stream.read, PART), ""):
+                text += part  # it grows in its place, so that a long text is in memory once
     except OSError as error:
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {error.strerror}", "nothing was started") from None
-    except UnicodeDecodeError as error:
-        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {not_utf_8(error)}", "nothing was started") from None
+    except UnicodeDecodeError:
+        reason = why_not_utf_8(Path(path).read_bytes())
+        raise CncError(UNREADABLE, f"{what} {path} cannot be read: {reason}", "nothing was started") from None
     if text[:1] and "\0" in text[:2]:
         raise CncError(UNREADABLE, f"{what} {path} cannot be read: {UTF_16}", "nothing was started")
     return text
 
 
-def not_utf_8(error: UnicodeDecodeError) -> str:
+def first_bad_byte(data: bytes) -> int:
+    """Where it is no UTF-8."""
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return error.start
+    return 0  # the file has changed meanwhile
+
+
+def why_not_utf_8(data: bytes) -> str:
     """Where a text is none in UTF-8, and what it may be instead."""
-    data, place = error.object, error.start
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         return UTF_16
-    line, column = (
-        data.count(b"\n", 0, place) + 1,
-        len(data[data.rfind(b"\n", 0, place) + 1 : place].decode("utf-8")) + 1,
-    )
+    place = first_bad_byte(data)
+    line = data.count(b"\n", 0, place) + 1
+    column = len(data[data.rfind(b"\n", 0, place) + 1 : place].decode("utf-8")) + 1
     character = data[place : place + 1].decode("latin-1")
     meant = f" ('{character}' in Latin-1)" if character.isprintable() else ""
     return f"it is not UTF-8 text, byte 0x{data[place]:02X} in line {line} column {column}{meant}; save it as UTF-8"

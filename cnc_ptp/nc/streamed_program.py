@@ -14,7 +14,7 @@ from cnc_ptp.nc import faults
 from cnc_ptp.nc.blocks import read_line
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.flow.lines import Line
-from cnc_ptp.nc.flow.sections import KEPT_LATER, Program
+from cnc_ptp.nc.flow.sections import KEPT_LATER, Program, Section
 from cnc_ptp.nc.parser import NO_FILES, ProgramReader, parse_program
 from cnc_ptp.nc.program import Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
@@ -22,6 +22,8 @@ from cnc_ptp.nc.vocabulary import TWINCAT
 
 LINES_AT_ONCE: Final = 500
 """Lines that are read ahead before the caller has its turn again."""
+MOST_STRUCTURES: Final = 10_000
+"""Lines of conditions and loops that are known before those that have been executed are forgotten."""
 AT_END: Final = faults.END_MISSING.number
 """The fault that counts when all lines have been executed."""
 
@@ -42,6 +44,10 @@ class StreamedProgram(Program):
         """Lines with a $GOTO or a call, by number, while it is not known where it leads to."""
         self._seen = 0
         """Errors of the reader that have counted."""
+        self._labelled = False
+        """There is a label, so that a $GOTO may lead back."""
+        self._forget_at = MOST_STRUCTURES
+        """Lines of structures at which it is looked for some to be forgotten."""
 
     @property
     def size(self) -> int:
@@ -63,6 +69,7 @@ class StreamedProgram(Program):
         if len(self._later) >= KEPT_LATER:
             self._later.clear()
         self._later[line.number] = line
+        self._labelled = self._labelled or bool(line.label)
         if line.jump or (line.call is not None and line.call.local):
             self._leads[line.number] = line
 
@@ -74,6 +81,8 @@ class StreamedProgram(Program):
 
     def ready(self, number: int) -> bool:
         """As Program: the line was read, the whole structure that it begins, and where its $GOTO or call leads to."""
+        if len(self.structure_of) > self._forget_at:
+            self._forget_structures(number)
         end = self._reader.number + LINES_AT_ONCE
         while self._inside(number):
             if self._reader.number >= end:
@@ -85,6 +94,15 @@ class StreamedProgram(Program):
                 return False
             self._step()
         return True
+
+    def _forget_structures(self, number: int) -> None:
+        """Those of the main program that end before line `number`, which is next: nothing leads back to them."""
+        section = max((one for one in self._reader.sections if one.line <= number), key=line_of_section, default=None)
+        if section is not None and section.kind == "main program" and not self._labelled:
+            for line, structure in list(self.structure_of.items()):
+                if section.line <= line and 0 < structure.outermost.end.line < number:
+                    del self.structure_of[line]
+        self._forget_at = len(self.structure_of) + MOST_STRUCTURES
 
     def require_end(self) -> None:
         for error in self._reader.errors:
@@ -132,6 +150,11 @@ class StreamedProgram(Program):
 def line_of(error: ProgramError) -> int:
     """Its line."""
     return error.line
+
+
+def line_of_section(section: Section) -> int:
+    """Its first line."""
+    return section.line
 
 
 def stream_program(

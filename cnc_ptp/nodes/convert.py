@@ -30,7 +30,8 @@ def event_to_message(event: Event, stamp: Time) -> msg.Event:
 
 
 def message_to_record(message: msg.CommandRecord) -> CommandRecord:
-    return CommandRecord(**{name: getattr(message, name) for name in _names(msg.CommandRecord)})
+    fields = {name: getattr(message, name) for name in _names(msg.CommandRecord)}
+    return CommandRecord(arguments=fields.pop("arguments_json"), **fields)
 
 
 def message_to_event(message: msg.Event) -> Event:

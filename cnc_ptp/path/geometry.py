@@ -46,6 +46,8 @@ CLOSING_TOLERANCE = 1e-4
 
 NEGLIGIBLE_MM = 1e-9
 """Smaller motion of the path axes counts as rounding: the path is then that of all axes."""
+ROUNDING = 4e-15
+"""Part of a position by which it may differ after sums of relative motions; a line of that length is none."""
 
 
 class AxisLimits(NamedTuple):
@@ -81,6 +83,8 @@ class Line:
         self.length = hypot(*(distance for n, distance in enumerate(distances) if n in path_axes))
         if self.length < NEGLIGIBLE_MM:
             self.length = hypot(*distances)
+            if self.length <= ROUNDING * max(map(abs, self.target)):
+                self.length = 0.0
         scale = 1.0 / self.length if self.length else 0.0
         self._axes = tuple([(p, distance * scale) for p, distance in zip(self.start, distances, strict=True)])
 

@@ -35,17 +35,8 @@ class Command:
 
     @property
     def arguments_json(self) -> str:
-        """The arguments as JSON; values unknown to JSON (nan, inf) as text, which every unit refuses as well."""
-        try:
-            return json.dumps(self.arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
-        except ValueError:
-            shown = {
-                name: value
-                if isinstance(value, str | int) or (isinstance(value, float) and isfinite(value))
-                else repr(value)
-                for name, value in self.arguments.items()
-            }
-            return json.dumps(shown, sort_keys=True, ensure_ascii=False)
+        """The arguments as JSON."""
+        return json_of(self.arguments)
 
     @classmethod
     def from_record(cls, record: CommandRecord) -> Command:
@@ -56,20 +47,42 @@ class Command:
         return cls(record.target, record.command, arguments, record.id)
 
 
+def json_of(arguments: Mapping[str, Any]) -> str:
+    """Arguments as JSON; values unknown to JSON (nan, inf) as text, which every unit refuses as well."""
+    try:
+        return json.dumps(arguments, sort_keys=True, ensure_ascii=False, default=repr, allow_nan=False)
+    except ValueError:
+        shown = {
+            name: value
+            if isinstance(value, str | int) or (isinstance(value, float) and isfinite(value))
+            else repr(value)
+            for name, value in arguments.items()
+        }
+        return json.dumps(shown, sort_keys=True, ensure_ascii=False)
+
+
 @dataclass(slots=True)
 class CommandRecord:
-    """A command carried out or refused at `cycle` (CommandRecord.msg)."""
+    """A command carried out or refused at `cycle` (CommandRecord.msg).
+
+    `arguments` as JSON; with the text of a program as they came: it may be long, and becomes JSON when that is needed.
+    """
 
     cycle: int
     target: str
     command: str
-    arguments_json: str
+    arguments: str | Mapping[str, Any]
     accepted: bool
     error_id: int
     message: str
     id: int = 0
     values: Mapping[str, Value] = field(default_factory=dict, compare=False)
     """Values of the refusal's text, in the unit that has refused; messages do not hold them."""
+
+    @property
+    def arguments_json(self) -> str:
+        """The arguments as JSON."""
+        return self.arguments if isinstance(self.arguments, str) else json_of(self.arguments)
 
 
 class EventValue(NamedTuple):

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from cnc_ptp.errors import CncError
-from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity
+from cnc_ptp.protocol.blocks import Command, CommandRecord, CycleBlock, CycleTick, Event, EventValue, Severity, json_of
 from cnc_ptp.protocol.commands import OF_PLC, check_command, current_names, with_floats
 
 Handler = Callable[..., str | None]
@@ -55,12 +54,12 @@ class Unit(ABC):
         except CncError as error:
             refusal = error
             self.event(cycle, Severity.WARNING, error.number, error.full_message)
-        shown = replace(command, arguments={n: value for n, value in command.arguments.items() if n not in OF_PLC})
+        shown = {name: value for name, value in command.arguments.items() if name not in OF_PLC}
         record = CommandRecord(
             cycle,
             self.name,
             command.command,
-            shown.arguments_json,
+            shown if "text" in shown else json_of(shown),
             accepted=refusal is None,
             error_id=refusal.number if refusal else 0,
             message=refusal.full_message if refusal else self._warning,

@@ -149,6 +149,22 @@ def test_single_block_that_comes_too_late_for_a_block_halts_behind_the_next() ->
     assert bench.position("x") == pytest.approx(110.0, abs=1e-9) and bench.last("channel").state[-1] == C.STOPPED
 
 
+@pytest.mark.parametrize("off", [0.05, 0.2, 0.4])
+def test_single_block_that_is_switched_off_leaves_no_stop(off: float) -> None:
+    """20 mm/s; X10 is reached at about 0.5 s, and the path has begun to brake for it at 0.4 s at most."""
+    bench = MachineBench("G01 X10 F1200\nX20\nX30\nM30", end_when_idle=False).run(0.03)
+    assert bench.give("channel", "single_block", enabled=True).accepted
+    bench.run(off)
+    assert bench.give("channel", "single_block", enabled=False).accepted
+    bench.run(4.0)
+    moving = [
+        v
+        for v, x in zip(bench.column("channel", "path_velocity"), bench.column("x", "set_position"), strict=True)
+        if 5.0 < x < 25.0
+    ]
+    assert min(moving) == pytest.approx(20.0, abs=1e-6) and bench.last("channel").done
+
+
 def test_a_path_that_has_halted_can_be_held_and_aborted() -> None:
     bench = MachineBench(STRAIGHT, end_when_idle=False).run(0.1)
     assert bench.give("channel", "single_block", enabled=True).accepted

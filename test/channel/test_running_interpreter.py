@@ -173,6 +173,13 @@ def test_the_override_of_the_path_is_read_when_the_path_stands() -> None:
     assert bench.errors() == [] and bench.position("y") == 5.7
 
 
+def test_functions_before_an_ordered_error_go_out() -> None:
+    bench = MachineBench("G00 X1\nH7\n#ERROR [ID=455]\nX2 H8\nM30").run()
+    requests = [(request.kind, request.number) for block in bench.blocks["channel"] for request in block.requests]
+    assert requests == [("H", 7)] and len(bench.errors()) == 1 and bench.position("x") == 1.0
+    assert "#ERROR 455 of the program in test.nc line 3" in bench.errors()[0]
+
+
 def test_h_functions_go_to_the_plc_and_the_path_does_not_wait() -> None:
     bench = MachineBench("G00 X1 H5\nH65535\nX2\nM30").run()
     requests = [(request.kind, request.number) for block in bench.blocks["channel"] for request in block.requests]

@@ -243,6 +243,17 @@ def test_two_runs_and_a_replay_are_equal_to_the_bit() -> None:
     assert again["channel"] == bits(first)["channel"] and again["x"] == bits(first)["x"]
 
 
+def test_a_motion_that_starts_late_is_told() -> None:
+    """Behind it is a computation of 30,000 turns, and the path may continue in what comes then."""
+    text = "%P\nF6000\nP1 = 0\nG01 X10\n$WHILE P1 < {turns}\nP1 = P1 + 1\n$ENDWHILE\nG01 X20\nM30"
+    bench = MachineBench(text.format(turns=30_000), machine=streaming()).run()
+    (warning,) = warnings(bench)
+    reason = "the next block is still computed, P-CHAN-90006 gives 10 in a cycle"
+    assert warning.text == f"channel channel: the path stands before line 4: {reason}" and warning.line == 4
+    assert bench.errors() == [] and bench.position("x") == 20.0
+    assert warnings(MachineBench(text.format(turns=10), machine=streaming()).run()) == []
+
+
 # progress
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from cnc_ptp.cli import main
 from cnc_ptp.commands.look.check import check
 from cnc_ptp.errors import CncError
 from cnc_ptp.machine import program_files
-from cnc_ptp.machine.program_files import SHIPPED, Search, called_names, called_programs, read_program
+from cnc_ptp.machine.program_files import SHIPPED, Search, called_names, called_programs, read_file, read_program
 from cnc_ptp.nc.canonical import Source
 from cnc_ptp.nc.flow.flow_faults import FILE_UNKNOWN
 from cnc_ptp.recording.reader import read_recording
@@ -248,3 +249,15 @@ def test_a_search_folder_that_is_missing_is_a_warning(tmp_path: Path, capsys: py
     (tmp_path / "main.nc").write_text("G00 X1\nM30\n")
     assert check(str(tmp_path / "main.nc"), str(machine)) == 0
     assert capsys.readouterr().err == f"warning: search folder {tmp_path / 'gone'} (P-CHAN-90004) does not exist\n"
+
+
+def test_a_long_text_is_in_memory_once(tmp_path: Path) -> None:
+    """32 MB: bytes and text, or two lengths of the text beside each other, would be more."""
+    file = tmp_path / "long.nc"
+    file.write_text("X1.000 Y2.000\r\n" * 2_000_000, newline="")
+    tracemalloc.start()
+    text = read_file("NC program", str(file))
+    largest = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(text) == 28_000_000 and text.endswith("Y2.000\n") and "\r" not in text
+    assert largest < 1.3 * len(text)

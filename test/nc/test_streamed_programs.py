@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from nc_support import HERE, files_of, machine, tools, vocabulary_of
 
-from cnc_ptp.nc.canonical import BUSY, CanonicalBlock
+from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, LinearMove
 from cnc_ptp.nc.canonical_text import format_block
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
@@ -105,3 +105,21 @@ def test_how_much_was_executed_never_decreases() -> None:
     program = opened(text)
     places = [program.place() for _ in interpret(program, (0.0,), ("X",))]
     assert places == sorted(places) and places[0] == 7 and program.size == len(text)
+
+
+def test_structures_of_lines_that_have_been_executed_are_forgotten() -> None:
+    """30,000 conditions on end; a loop is repeated though much of what follows it is known."""
+    body = "\n".join(["$IF P1", "P2 = P2 + 1", "$ENDIF"] * 30_000)
+    text = "%L SUB\n$IF P1\nP3 = P3 + 1\n$ENDIF\nM29\n%MAIN\nP1 = 1\nP2 = 0\nP3 = 0\nLL SUB\n"
+    text += f"{body}\n$FOR P4 = 1, 3, 1\n$IF P4 == 2\nLL SUB\n$ENDIF\n$ENDFOR\nX[P2 + P3] F1\nM30"
+    program = opened(text)
+    (*_, last, _) = [block for block in interpret(program, (0.0,), ("X",)) if block is not BUSY]
+    assert isinstance(last.motion, LinearMove) and last.motion.target == (30_002.0,)
+    assert len(program.structure_of) < 25_000
+
+
+def test_structures_are_kept_where_a_jump_may_lead_back() -> None:
+    body = "\n".join(["$IF P1", "P2 = P2 + 1", "$ENDIF"] * 12_000)
+    text = f"P1 = 1\nP2 = 0\nP3 = 0\n[AGAIN]\n{body}\nP3 = P3 + 1\n$IF P3 < 2\n$GOTO [AGAIN]\n$ENDIF\nG01 X[P2] F1\nM30"
+    blocks = [block for block in interpret(opened(text), (0.0,), ("X",)) if block is not BUSY]
+    assert targets(blocks) == [24_000.0]

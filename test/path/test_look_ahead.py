@@ -14,9 +14,10 @@ from curves import CYCLE, assert_within, parts_of, run, smooth_curve, spline
 from jerk_optimum import JerkOptimum
 
 from cnc_ptp.motion import Limits, plan_rest_to_rest
+from cnc_ptp.path.cubic import Cubic
 from cnc_ptp.path.geometry import AxisLimits, Line
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
-from cnc_ptp.path.lookahead.parts import PathPart, graded
+from cnc_ptp.path.lookahead.parts import PathPart, division_of, graded, whole_cell
 from cnc_ptp.path.lookahead.path_cell import PathCell
 from cnc_ptp.path.lookahead.path_profile import PathProfile, circular, duration_between, pieces_of
 from cnc_ptp.path.lookahead.spans import whole
@@ -156,6 +157,29 @@ def test_the_feed_is_that_of_other_axes_where_they_move_alone() -> None:
     parts = [PathPart(whole(line, n), [AXIS] * 4, (0, 1, 2), 40.0, n) for n, line in enumerate(lines)]
     _, rows = run(parts)
     assert rows[:, 1].max() == pytest.approx(40.0)
+
+
+def test_plans_that_are_shorter_than_a_cycle() -> None:
+    """Three exact stops within one cycle: a part of 1e-9 mm takes about 0.13 ms."""
+    lines = [Line((n * 1e-9, 0.0), ((n + 1) * 1e-9, 0.0), (0, 1)) for n in range(3)]
+    parts = [PathPart(whole(line, n), [AXIS] * 2, (0, 1), 40.0, n, 0.0) for n, line in enumerate(lines)]
+    ahead = LookAhead(1.0, 0.0)
+    for part in parts:
+        ahead.append(part)
+    ahead.closed = True
+    assert ahead.step(10, CYCLE) == [] and ahead.done
+    best = 3.0 * plan_rest_to_rest(0.0, 1e-9, Limits(40.0, 1000.0, 1000.0, 20_000.0)).duration
+    assert best <= CYCLE - ahead.remaining_time <= 2.0 * best
+
+
+def test_an_axis_with_a_large_derivative_does_not_multiply_the_cells() -> None:
+    """A corner of 1 mm in which A turns by 10,000 deg has as many cells as one of X and Y."""
+    counts = []
+    for bend in (1.0, 1e4):
+        curve = Cubic([(0.0, 1.0, 0.0, 0.0), (0.0, 0.0, bend, 0.0)], 1.0)
+        part = PathPart(whole(curve, 0), [AXIS, AxisLimits(*[bend * limit for limit in AXIS])], (0,), 1e9, 0)
+        counts.append(division_of(part, whole_cell(part)).cells)
+    assert counts[0] >= 10 and counts[1] <= 2 * counts[0]
 
 
 def test_stop_comes_to_rest_on_a_ramp() -> None:

@@ -232,4 +232,4 @@ def before(record: CommandRecord) -> CommandRecord:
         arguments["master_stands"] = record.error_id != 23045
     if "table" in arguments:
         arguments["file"] = "cam.csv"
-    return replace(record, arguments_json=json.dumps(arguments))
+    return replace(record, arguments=json.dumps(arguments))

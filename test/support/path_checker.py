@@ -29,6 +29,10 @@ ROUNDING = 2e-8
 """mm; programmed numbers have nine digits behind the point, an arc may miss its target by their rounding."""
 SHORTEST = 2e-3
 """mm; a stop between two shorter segments may lie between cycles of which neither belongs to its ramps."""
+NEAR = 1e-2
+"""mm; where no cycle before or behind a stop is nearer there is none."""
+RESOLUTION = 1e-14
+"""mm of path length; an axis that moves far on a short path has the more of it in its position."""
 WINDOW, POINTS = 32, 512
 """Segments and samples that are compared at once."""
 
@@ -76,6 +80,29 @@ class Segment:
     @property
     def arc(self) -> bool:
         return self.sweep != 0.0
+
+    def radius(self, point: Array) -> float:
+        """Distance to the centre."""
+        first, second = self.plane
+        return float(np.hypot(point[first] - self.center[0], point[second] - self.center[1]))
+
+    @property
+    def curvature(self) -> float:
+        """Of the circle, 1/mm."""
+        return 1.0 / self.radius(self.start) if self.arc else 0.0
+
+    @property
+    def rounding(self) -> float:
+        """mm by which the numbers of the program may miss the path.
+
+        The centre of an arc is moved to the same distance from both ends (P-CHAN-00059): the further, the closer they are.
+        """
+        first, second = self.plane
+        chord = float(np.hypot(self.end[first] - self.start[first], self.end[second] - self.start[second]))
+        if not self.arc or chord == 0.0:
+            return ROUNDING
+        radius = self.radius(self.start)
+        return ROUNDING + 2.0 * abs(self.radius(self.end) - radius) * radius / chord
 
 
 @dataclass(slots=True)
@@ -150,10 +177,16 @@ class PathChecker:
             found.above(f"{name} Δ²p/T²", np.abs(np.diff(p, 2)) / CYCLE**2, strongest, 1e-6)
             if not self.steps:
                 found.above(f"{name} j", np.abs(j), axis.jerk)
-                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3)
+                found.above(f"{name} Δ³p/T³", np.abs(np.diff(p, 3)) / CYCLE**3, axis.jerk, 1e-3 + self._unsure(n))
                 mean = 0.5 * CYCLE * (v[1:] + v[:-1]) - CYCLE**2 * (a[1:] - a[:-1]) / 12.0
                 kink = 0.5 * axis.jerk * CYCLE**3
                 found.above(f"{name} states and positions", np.abs(np.diff(p) - mean), kink, 1e-9)
+
+    def _unsure(self, axis: int) -> float:
+        """Of a third difference, by the resolution of the path length on the segment where the axis is fastest."""
+        ways = [(abs(s.end[axis] - s.start[axis]), np.linalg.norm((s.end - s.start)[self.path])) for s in self.segments]
+        steepest = max((way / length for way, length in ways if length > EXACT), default=0.0)
+        return float(8.0 * RESOLUTION * steepest / CYCLE**3)
 
     # path
 
@@ -201,14 +234,24 @@ class PathChecker:
 
     def _inside(self, k: int, points: Array, factor: float = 1.0) -> NDArray[np.bool_]:
         distance, track = self.distance(self.segments[k], points, factor * self.tolerance[k])
-        slack = ROUNDING + 1e-9 * self.tolerance[k]
+        slack = self.segments[k].rounding + 1e-9 * self.tolerance[k]
         return (distance <= factor * self.tolerance[k] + slack) & (track <= factor * self.track[k] + slack)
 
     def distance(self, s: Segment, points: Array, reach: float) -> tuple[Array, Array]:
         """Of the path axes to a segment; of the others to their values within `reach` of the nearest place."""
-        along, distance, length = self._project(s, points)
+        places, length = self._project(s, points)
+        nearest = np.min([distance for _, distance in places], axis=0)
         if not self.others:
-            return distance, np.zeros(len(points))
+            return nearest, np.zeros(len(points))
+        best, track = np.full(len(points), inf), np.full(len(points), inf)
+        for along, distance in places:  # both ends of a full circle are one place, where the others have two values
+            apart = self._apart(s, points, along, distance, length, reach)
+            better = (distance <= np.maximum(nearest, reach) + ROUNDING) & (apart < track)
+            best, track = np.where(better, distance, best), np.where(better, apart, track)
+        return best, track
+
+    def _apart(self, s: Segment, points: Array, along: Array, distance: Array, length: float, reach: float) -> Array:
+        """How far the other axes are from their values near a place."""
         room = np.sqrt(np.maximum(reach * reach - distance * distance, 0.0)) + ROUNDING
         low, high = (np.clip((along * length + side * room) / (length or 1.0), 0.0, 1.0) for side in (-1.0, 1.0))
         if length == 0.0:
@@ -218,28 +261,25 @@ class PathChecker:
             ends = [s.start[n] + part * (s.end[n] - s.start[n]) for part in (low, high)]
             lowest, highest = np.minimum(*ends), np.maximum(*ends)
             worst = np.maximum(worst, np.maximum(lowest - points[:, n], points[:, n] - highest))
-        return distance, np.maximum(worst, 0.0)
+        return np.maximum(worst, 0.0)
 
-    def _project(self, s: Segment, points: Array) -> tuple[Array, Array, float]:
-        """Part of the segment (0 … 1) nearest to each point, distance, length; over the path axes."""
+    def _project(self, s: Segment, points: Array) -> tuple[list[tuple[Array, Array]], float]:
+        """Parts of the segment (0 … 1) near each point, with their distances; length; over the path axes."""
         if s.arc:
             return self._project_arc(s, points)
         line = (s.end - s.start)[self.path]
         length = float(np.linalg.norm(line))
         apart = points[:, self.path] - s.start[self.path]
         part = np.clip(apart @ line / (length * length), 0.0, 1.0) if length > 0.0 else np.zeros(len(points))
-        return part, np.linalg.norm(apart - part[:, None] * line, axis=1), length
+        return [(part, np.linalg.norm(apart - part[:, None] * line, axis=1))], length
 
-    def _project_arc(self, s: Segment, points: Array) -> tuple[Array, Array, float]:
-        """The nearest of many places, and both ends (which may be one place); from each by Newton's method."""
+    def _project_arc(self, s: Segment, points: Array) -> tuple[list[tuple[Array, Array]], float]:
+        """Near the nearest of many places, and near both ends (which may be one place); by Newton's method."""
         coarse = np.linspace(0.0, 1.0, 17 + int(abs(s.sweep) * 12))
         places = self._arc(s, coarse)[0]
         nearest = coarse[np.argmin(np.linalg.norm(points[:, None, self.path] - places[None], axis=2), axis=1)]
         length = float(np.linalg.norm(self._arc(s, nearest[:1])[1][0]))
-        found = [self._newton(s, points, start) for start in (nearest, 0.0 * nearest, 0.0 * nearest + 1.0)]
-        parts, distances = np.array([part for part, _ in found]), np.array([distance for _, distance in found])
-        best = np.argmin(distances, axis=0)
-        return *[np.take_along_axis(each, best[None], axis=0)[0] for each in (parts, distances)], length
+        return [self._newton(s, points, start) for start in (nearest, 0.0 * nearest, 0.0 * nearest + 1.0)], length
 
     def _newton(self, s: Segment, points: Array, part: Array) -> tuple[Array, Array]:
         for _ in range(6):
@@ -311,13 +351,13 @@ class PathChecker:
     def _pass(
         self, k: int, s: Segment, following: Segment, reach: float, run: Run, step: Array, begin: int, found: Findings
     ) -> int:
-        at = begin
+        at, bend = begin, max(s.curvature, following.curvature)
         while at < len(step):
             part = slice(at, at + 4 * WINDOW)
             apart = np.linalg.norm((run.position[part] - s.end)[:, self.path], axis=1)
             near = apart <= reach * (1.0 + 1e-9) + step[part] * 1.01
             if s.stop and max(s.length, following.length) > SHORTEST:
-                near[near] = [self._rests(run, at + int(n), s.end) for n in np.nonzero(near)[0]]
+                near[near] = [self._rests(run, at + int(n), s.end, bend) for n in np.nonzero(near)[0]]
             if near.any():
                 return at + int(np.argmax(near))
             at += 4 * WINDOW
@@ -325,14 +365,14 @@ class PathChecker:
         found.texts.append(f"{what} of segment {k} at {s.end} was not met behind cycle {begin}")
         return begin
 
-    def _rests(self, run: Run, n: int, place: Array) -> bool:
-        """The place of rest before or behind a cycle is this one."""
+    def _rests(self, run: Run, n: int, place: Array, bend: float) -> bool:
+        """The place of rest before or behind a cycle is this one; on an arc of curvature `bend` (1/mm) nearly so."""
         p, v, a, j = (each[n] for each in (run.position, run.velocity, run.acceleration, run.jerk))
-        if np.abs(p - place).max() > 1e-3:
+        if np.abs(p - place).max() > NEAR:
             return False
         with np.errstate(divide="ignore", invalid="ignore"):
             if self.steps:  # the acceleration steps, or rises within a part of a cycle; no jerk is reported
                 ways = [np.where(a != 0.0, v * v / (part * a), 0.0) for part in (2.0, 1.5)]
             else:
                 ways = [np.where(j != 0.0, a * a * a / (6.0 * j * j), 0.0)]
-        return any(bool(np.abs(p - way - place).max() <= EXACT) for way in ways)
+        return any(bool(np.abs(p - way - place).max() <= EXACT + bend * float(way @ way)) for way in ways)

@@ -12,8 +12,8 @@ from cnc_ptp.protocol.channel_states import ChannelStateCode
 
 BLOCK = 0.01
 """s between commands."""
-LARGEST = 1.2 * 1.01
-"""Largest override; a path that slows down for a smaller one may first get 1 % faster than it was planned."""
+LARGEST = 1.2
+"""Largest override."""
 LONGEST = 200.0
 """s of a run with all its standstills."""
 

@@ -77,6 +77,14 @@ class Structure:
             structure = structure.parent
         return structure
 
+    @property
+    def outermost(self) -> "Structure":
+        """The one around it that is within no other; itself if there is none."""
+        structure = self
+        while structure.parent is not None:
+            structure = structure.parent
+        return structure
+
     def surrounds(self, other: "Structure | None") -> bool:
         """Whether `other` is this one or stands within it."""
         while other is not None and other is not self:

@@ -63,6 +63,8 @@ class LookAhead:
         """Parts behind the cells that are known."""
         self._halt = inf
         """u at which the path halts."""
+        self._split = False
+        """A stretch was divided for that."""
         self._stretches: deque[list[PathCell]] = deque([[]])
         """Cells from one exact stop to the next; of the first one from the last rest or knot on."""
         self._profile: PathProfile | None = None
@@ -72,6 +74,8 @@ class LookAhead:
         self._deceleration = self._jerk = 1.0
         """Of the last part, along the path."""
         self._stopping = False
+        self._before = override
+        """The last override above 0 with which was planned."""
 
     # what is ahead
 
@@ -130,9 +134,10 @@ class LookAhead:
         """Cells for a window ahead."""
         while self._undivided and self._lacks_cells():
             waiting = self._undivided[0]
-            stops = waiting.part.entry <= 0.0 or waiting.origin == self._halt
-            if stops and not waiting.begun and self._stretches[-1]:
+            stops = waiting.part.entry <= 0.0
+            if (stops or waiting.origin == self._halt) and not waiting.begun and self._stretches[-1]:
                 self._stretches.append([])
+                self._split = self._split or not stops
             self._stretches[-1].extend(waiting.take(CELLS_AHEAD))
             if waiting.empty:
                 self._undivided.popleft()
@@ -160,16 +165,14 @@ class LookAhead:
             self._renew_plan(cycle_time)
         while len(rows) < count and not self.done and not self.halted:
             time = self._time + cycle_time
-            profile = self._profile
-            if profile is not None and time >= profile.duration:
-                time -= profile.duration
-                self._finish(time)
-                profile = self._profile
-                if self.done:
-                    break
+            while self._profile is not None and time >= self._profile.duration:
+                time -= self._profile.duration
+                self._finish(time)  # the next plan may be shorter than what is left of the cycle
+            if self.done:
+                break
             self._time = time
-            if profile is not None:
-                self.state = profile.state_at(time)
+            if self._profile is not None:
+                self.state = self._profile.state_at(time)
             rows.append(self.state)
         return rows
 
@@ -209,11 +212,23 @@ class LookAhead:
                 return
 
     def resume(self) -> None:
-        """Continues where the path has halted."""
+        """Continues where the path has halted; one that has not yet no longer stops there."""
         if self.halted:
             self.state = (self._halt, 0.0, 0.0, 0.0)
-        self.halted = False
+        elif self._split:
+            self._join()
+        self.halted = self._split = False
         self._halt = inf
+
+    def _join(self) -> None:
+        """The stretches before and behind the place of the halt are one again, which is planned anew."""
+        for index in range(1, len(self._stretches)):
+            behind = self._stretches[index]
+            if behind and behind[0].middle > self._halt:
+                self._stretches[index - 1] += behind
+                del self._stretches[index]
+                self._renew = 0.0
+                return
 
     def _can_rest_at(self, place: float) -> bool:
         """Plans to rest there if that is possible; a place behind the cells that are known is."""
@@ -228,6 +243,7 @@ class LookAhead:
                 return False
             if behind:
                 self._stretches.insert(index + 1, behind)
+                self._split = True
             return True
         return True
 
@@ -240,7 +256,8 @@ class LookAhead:
         start, cells = self._from_knot(following, stretch)
         if len(cells) < FEWEST_CELLS:
             return False
-        plan = plan_velocity(cells, start, self._factor) or plan_velocity(cells, start, self._factor, len(cells))
+        plan = plan_velocity(cells, start, self._factor)
+        plan = plan or plan_velocity(cells, start, self._factor, len(cells), self._before)
         if plan is None:
             return False
         self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
@@ -299,7 +316,7 @@ class LookAhead:
         start, cells = self._from_knot(following, self._cells)
         if len(cells) < FEWEST_CELLS:
             return
-        plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start)
+        plan = self._slow_down(cells, start) if self._factor > AT_REST else stop_soon(cells, start, self._before)
         if plan is not None:
             self._take(plan, [piece, *pieces_of(plan, start, following.begin)], cells[1:])
 
@@ -320,10 +337,12 @@ class LookAhead:
         plan = plan_velocity(cells, start, self._factor)
         if plan is not None:
             return plan
-        return earliest(len(cells), lambda delay: plan_velocity(cells, start, self._factor, delay))
+        return earliest(len(cells), lambda delay: plan_velocity(cells, start, self._factor, delay, self._before))
 
     def _take(self, plan: VelocityPlan, pieces: list[PathPiece], cells: list[PathCell]) -> None:
         self._profile = PathProfile(pieces)
+        if self._factor > AT_REST:
+            self._before = self._factor
         begin, self._planned_end = plan.cells[0].begin, plan.cells[-1].end
         self._stretches[0] = cells
         for cell in cells:

@@ -126,7 +126,10 @@ class PathBuilder:
         if made is not None:
             before, curve, motion.span = made
             spans = [before, *curve] if before.length > 0.0 else curve
-            return [self._part(last if span.block == last.block else motion, span) for span in spans]
+            parts = [self._part(last if span.block == last.block else motion, span) for span in spans]
+            if curve:
+                parts[-2].feed = min(last.feed, motion.feed)  # the corner is within the middle piece
+            return parts
         quiet = KINK_CYCLES * self._cycle_time * sqrt(square) if square < inf else 0.0
         part = self._part(last, last.span, quiet)
         self._entry, self._quiet = square, quiet

@@ -48,15 +48,16 @@ class VelocityPlan(NamedTuple):
 
 
 def plan_velocity(
-    cells: Sequence[PathCell], start: MovingStart, override: float, delay: int = 0
+    cells: Sequence[PathCell], start: MovingStart, override: float, delay: int = 0, before: float = 0.0
 ) -> VelocityPlan | None:
     """Plan from the start to rest at the end of the last cell; None if the start is too fast for that.
 
     At least three cells. From rest the first one takes the path up from there; a moving start has one without length in
     its place. The feed counts from cell `delay` on: what is faster at the start slows down before it.
+    `before`: the override with which the cells were planned.
     """
     moving = start.square > 0.0
-    caps = caps_of(cells, override, delay)
+    caps = caps_of(cells, override, delay, before)
     places = places_of(cells, moving=moving)
     squares: list[float] | None = None
     worst = 0.0
@@ -77,22 +78,27 @@ def plan_velocity(
     return VelocityPlan(cells, places, squares)
 
 
-def caps_of(cells: Sequence[PathCell], override: float, delay: int) -> list[float]:
+def caps_of(cells: Sequence[PathCell], override: float, delay: int, before: float) -> list[float]:
     """Largest y of each cell: that of its neighbours counts, too, as y is nearly theirs at the ends of the cell.
 
-    Before cell `delay` what was planned before may be kept, though it is above the feed.
+    Before cell `delay` what was planned before may be kept, though it is above the feed; but not more
+    than the feed with which it was planned.
     """
-    factor = override * override
-    own = []
+    factor, former = override * override, before * before
+    own: list[float] = []
+    kept: list[float] = []
     for index, cell in enumerate(cells):
         feed = cell.feed * factor
-        own.append(min(cell.limit, feed if index >= delay else max(feed, MARGIN * cell.planned)))
+        if index < delay:
+            kept.append(min(cell.limit, MARGIN * cell.planned, max(cell.planned, cell.feed * former)))
+            feed = max(feed, kept[index])
+        own.append(min(cell.limit, feed))
     caps = list(own)
     for index in range(1, len(own)):
         caps[index] = min(caps[index], own[index - 1])
         caps[index - 1] = min(caps[index - 1], own[index])
-    for index in range(min(delay, len(own))):
-        caps[index] = max(caps[index], min(own[index], MARGIN * cells[index].planned))
+    for index, square in enumerate(kept):
+        caps[index] = max(caps[index], square)
     return caps
 
 
@@ -148,6 +154,8 @@ def exceeded(
         ahead = squares[index] + after * 0.5 * cell.length
         bend = (after - before) / cell.length
         parts[index] = max(cell.excess(square, before, bend), cell.excess(ahead, after, bend))
+        if bend < 0.0 and cell.loads:  # between them y and b are below the parabola's control point, not below the ends
+            parts[index] = max(parts[index], cell.excess(squares[index], 0.5 * (before + after), bend))
         before, square = after, ahead
     parts[-1] = excess_at_rest(cells[-1], square, before)
     return parts
@@ -187,11 +195,11 @@ def earliest(count: int, plan_at: Callable[[int], VelocityPlan | None]) -> Veloc
     return found
 
 
-def stop_soon(cells: Sequence[PathCell], start: MovingStart) -> VelocityPlan | None:
-    """To rest at the end of the first cell at which that is possible; the feed no longer counts."""
+def stop_soon(cells: Sequence[PathCell], start: MovingStart, before: float) -> VelocityPlan | None:
+    """To rest at the end of the first cell at which that is possible; the feed with `before` counts."""
     last = len(cells) - 1
 
     def stop_at(cell: int) -> VelocityPlan | None:
-        return plan_velocity(cells[: min(cell + 1, last) + 1], start, 0.0, len(cells))
+        return plan_velocity(cells[: min(cell + 1, last) + 1], start, 0.0, len(cells), before)
 
     return earliest(last, stop_at)
