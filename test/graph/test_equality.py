@@ -401,3 +401,32 @@ def alter(source_path, folder, topic, number, change):
             writer.add_message(channels[channel.id], message.log_time, data, message.publish_time)
         writer.finish()
     return path
+
+
+TAPPING = """N10 M19 S.POS=90 S300
+N20 G63 Z-6 F2500 S2000
+N30 Z2 S-2000
+N40 G331 Z-3 K1 S1500
+N50 G332 Z2 K1
+N60 G01 X5 F2000
+N70 M30
+"""
+TAPPING_SCENARIO = """
+- {at: 0.9, to: channel, do: set_override, percent: 60}
+- {at: 1.1, to: s, do: set_override, percent: 80}
+- {at: 1.3, to: channel, do: feed_hold, enabled: true}
+- {at: 1.6, to: channel, do: feed_hold, enabled: false}
+"""
+
+
+@pytest.mark.parametrize("options", [[], ["--free-run"], ["--composed"]], ids=str)
+def test_tapping_in_the_graph_equals_the_offline_run(folder, options):
+    """The spindle turns with the path in another process."""
+    (folder / "tapping.nc").write_text(TAPPING)
+    (folder / "tapping.yaml").write_text(TAPPING_SCENARIO)
+    job = (MILL, "--program", folder / "tapping.nc", "--scenario", folder / "tapping.yaml")
+    told = run("simulate", *job, "--record", folder / "t.mcap").stdout
+    output = run("run", *job, *options, "--record", folder / "u.mcap").stdout
+    assert "lost 0, computed twice 0" in output and "refused" not in told
+    assert states_equal(folder / "t.mcap", folder / "u.mcap") == []
+    assert len(verified(folder / "u.mcap").states) == 5

@@ -56,6 +56,27 @@ def test_killed_node(running, node):
         assert lost >= {"x": {"plc", "channel"}, "channel": {"x", "y", "plc"}}.get(node, {"plc"} - {node})
 
 
+@pytest.mark.parametrize("node", ["s", "z", "channel"])
+def test_killed_node_while_it_taps(tmp_path, node):
+    """Spindle and axis come to rest, each on its ramp."""
+    (tmp_path / "tap.nc").write_text("G63 Z-100 F500 S400\nM30\n")
+    recording = tmp_path / "run.mcap"
+    graph = Running(MILL, "--program", tmp_path / "tap.nc", "--record", recording)
+    try:
+        nodes = dict(graph.wait_for_nodes(8))
+        graph.wait_until_recorded(recording, 2 * UNDER_WAY)
+        kill(nodes[node])
+        output = graph.finish(expect=1)
+    finally:
+        graph.end()
+    assert f"P-ERR-26104 node '{node}' (process {nodes[node]}) was ended by SIGKILL" in output
+    recorded = verified(recording, whole=False)
+    check_ramps(recorded, skip=node, ended=True, axes=("x", "y", "z"))
+    if node != "s":
+        speed = recorded.states["/s/state"]["set_speed_rpm"]
+        assert speed.max() > 100.0 and speed[-1] == 0.0
+
+
 def test_killed_server_of_processes(running):
     """It alone learns how a node ends; the nodes are there and stop on their ramps."""
     graph, nodes, recording = running
@@ -101,10 +122,10 @@ def check_every_reader_opens(recording):
         assert bag.message_count == count == sum(1 for _ in bag.messages())
 
 
-def check_ramps(recorded, *, skip, ended):
+def check_ramps(recorded, *, skip, ended, axes=("x", "y")):
     """No axis goes beyond its acceleration and jerk, and each that is alive is at a standstill at the end."""
     machine = read_machine(str(MILL))
-    for name in ("x", "y"):
+    for name in axes:
         axis, rows = machine.axes[name], recorded.states[f"/{name}/state"]
         assert np.all(np.diff(rows["cycle"].astype(int)) == 1), f"{name}: cycles are missing"
         limit = max(axis.acceleration, axis.deceleration)
