@@ -120,6 +120,12 @@ class ChannelParameters:
     """… and mm or deg of the other axes, 0 none."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
+    contour_look_ahead: Annotated[int, ids.TOOL_RADIUS_LOOK_AHEAD] = 5
+    """Elements of a contour that are known before the tool moves along one …"""
+    contour_other_blocks: Annotated[int, ids.TOOL_RADIUS_OTHER_BLOCKS] = 100
+    """… and blocks without motion in the plane between two of them."""
+    outer_corners: Annotated[int, ids.PROG_START_OUTER_CORNERS] = 26
+    """G function of outer corners at the start of programs."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:
