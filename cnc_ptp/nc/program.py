@@ -338,7 +338,8 @@ class ModalState:
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
     `coordinates` amount to; while the tool radius is compensated both are points of the contour. `reported`: the
     canonical stream has them. `transition`: between blocks; `once`: at the end of the active one instead; `contour`:
-    what G261 means. While a block is resolved: `following`, its further motions; `machine_words`, its axis words are machine positions (G53 of the vocabulary iso).
+    what G261 means. While a block is resolved: `following`, its further motions; `machine_words`, its axis words are
+    machine positions (G53 of the vocabulary iso).
     """
 
     position: tuple[float, ...] = ()

@@ -117,7 +117,7 @@ class SystemCommand(CoordinateCommand):
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
         if self.action != "DEF":
-            require_same_system(state, line.source, self.column, self.command)
+            require_same_system(state, line.source, self.column, f"{self.command} {self.action}")
         if coordinates.outside is not None:
             raise faults.IN_MACHINE.at(line.source, self.column, command=self.command)
         if self.action.startswith("OFF"):
@@ -187,7 +187,7 @@ class MachineCoordinates(CoordinateCommand):
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
-        require_same_system(state, line.source, self.column, "#MCS")
+        require_same_system(state, line.source, self.column, "#MCS ON" if self.on else "#MCS OFF")
         if self.on == (coordinates.outside is not None):
             raise (faults.MACHINE_ON if self.on else faults.MACHINE_OFF).at(line.source, self.column)
         if self.on:

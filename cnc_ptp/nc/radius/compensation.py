@@ -22,6 +22,7 @@ from cnc_ptp.nc.canonical import (
     BUSY,
     CanonicalBlock,
     CircularMove,
+    HomeAxes,
     LinearMove,
     Motion,
     OrderedError,
@@ -31,6 +32,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.coordinates.limits import Limits, check_limits
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.nc.radius import radius_faults as faults
 from cnc_ptp.nc.radius.contour_path import ArcTooSmall, ContourPath, Element, TooNarrow
@@ -114,8 +116,7 @@ class RadiusCompensation:
 
     def _take(self, block: CanonicalBlock, before: tuple[float, ...]) -> Iterator[CanonicalBlock]:
         if self._awaits_path(block):
-            what = "what waits for the path (homing, measuring, #FLUSH WAIT, values of the run)"
-            raise self._at(faults.NOT_WHILE, block, what=what)
+            raise self._at(faults.NOT_WHILE, block, what=wait_of(block))
         entry = Entry(block, self._state.coordinates.limits, contour_feed=self._state.radius_compensation.contour_feed)
         if not self._side:
             yield from self._before_contour(entry, before)
@@ -174,7 +175,7 @@ class RadiusCompensation:
         if not isinstance(entry.block.motion, LinearMove):
             raise self._at(fault, entry.block, g=self._state.radius_compensation.code)
         self._side = self._effective_side()
-        self._path = ContourPath(self._side * self._radius, self._channel.radius.look_ahead)
+        self._path = ContourPath(self._side * abs(self._radius), self._channel.radius.look_ahead)
         self._entries.append(entry)
         self._others, self._approaches = 0, True
 
@@ -368,10 +369,17 @@ class RadiusCompensation:
         tool, other = number(abs(self._radius)), fault.second.block.source
         text = other.text.strip()
         if fault.apart is not None:
-            apart = f"{fault.apart:.3f}"
+            apart = number(round(fault.apart, 3))
             return self._at(faults.TOO_NARROW, fault.first.block, tool=tool, apart=apart, line=other.line, text=text)
         count = self._channel.radius.look_ahead
         return self._at(faults.NO_CROSSING, fault.first.block, tool=tool, line=other.line, text=text, count=count)
+
+
+def wait_of(block: CanonicalBlock) -> str:
+    """Why the interpreter must wait for the path behind a block."""
+    if isinstance(block.motion, HomeAxes):
+        return "homing"
+    return "a measuring run" if measures(block.motion) else "reading what only the run knows"
 
 
 def column_of(block: CanonicalBlock) -> int:

@@ -2,8 +2,9 @@
 
 Each element gives its parallel. At an outer corner the tool goes around the corner; at an inner one both parallels are
 cut where they cross. An element that the tool cannot reach, because it is shorter than the corner needs, vanishes: the
-parallels beside it are cut where they cross. Nothing is handed out before so many elements behind it are known; a place
-where no parallels cross, or where the path comes nearer to an element than the radius, is a fault.
+parallels beside it are cut where they cross. One that is longer than the tool's diameter does not vanish, as something
+of the part would be missing. Nothing is handed out before so many elements behind it are known; a place where no
+parallels cross, or where the path comes nearer to an element than the radius, is a fault.
 """
 
 from __future__ import annotations
@@ -154,7 +155,12 @@ class ContourPath(Generic[Owner]):
         """Whether pieces further away cross, so that those between them vanish; as few as possible."""
         pairs = [(i, j) for i in range(place) for j in range(place, len(self._pieces))]
         pairs.sort(key=lambda pair: (pair[1] - pair[0], -pair[0]))
-        return any(self._cut(i, j) for i, j in pairs[1:])
+        return any(self._may_vanish(i, j) and self._cut(i, j) for i, j in pairs[1:])
+
+    def _may_vanish(self, first: int, second: int) -> bool:
+        """Whether the elements between two pieces are no longer than the tool's diameter."""
+        between = (piece.element.shape for piece in self._pieces[first + 1 : second] if piece.own)
+        return all(shape.length <= 2.0 * abs(self.left) for shape in between)
 
     def _cut(self, first: int, second: int) -> bool:
         """Cuts two pieces where they cross, if the tool fits there; what is between them vanishes."""

@@ -17,8 +17,10 @@ from cnc_ptp.nc.radius.shapes import Line, Point, Shape, Vector, arc_through, mo
 JOINED: Final = 1e-4
 """mm: parallels whose ends are nearer than this (the vendor's position increment) are joined without a corner."""
 RIGHT_ANGLE: Final = pi / 2.0 + 1e-9
-OPPOSITE: Final = pi - 1e-9
-"""Change of direction (radians) from which on a contour leads back along itself: an outer corner on either side."""
+OPPOSITE: Final = pi - 1e-6
+"""Change of direction (radians) from which on a contour leads back: what the corner is depends on how it bends there,
+along itself it is an outer one on either side.
+"""
 
 
 def left_of(point: Point, direction: Vector, left: float) -> Point:
@@ -37,7 +39,8 @@ def corner_turn(before: Shape, behind: Shape, left: float) -> float:
     """
     turn = turn_between(before.last_direction, behind.first_direction)
     if abs(turn) > OPPOSITE:
-        return abs(turn)
+        bends_towards_tool = (before.curvature + behind.curvature) * left >= 0.0
+        return abs(turn) if bends_towards_tool else -abs(turn)
     return -turn if left > 0.0 else turn
 
 

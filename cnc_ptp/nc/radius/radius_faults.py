@@ -18,28 +18,28 @@ OTHER_BLOCKS = Fault(
     " (P-CHAN-90036)",
 )
 ARC_TOO_SMALL = Fault(
-    90017,
-    "the tool with radius {tool} mm does not fit into the arc with radius {radius} mm, of which it is on the inside",
+    90017, "the tool with radius {tool} mm is on the inside of an arc with radius {radius} mm: it does not fit into it"
 )
 RADIUS_CHANGED = Fault(
     21680,
     "{word} changes the tool from {before} to {behind} while its radius is compensated;"
     " G40 and a straight line end that before it",
 )
-SIDE_ARC = Fault(21681, "the tool changes the side of the contour with an arc: that motion must be a straight line")
+SIDE_ARC = Fault(
+    21681, "{g}: the tool changes the side of the contour with an arc; that motion must be a straight line"
+)
 NO_ELEMENT = Fault(21682, "no motion in the plane {g} follows the motion to the contour, so where it ends is not known")
 NO_RADIUS = Fault(21683, "{g} without a tool: no compensation data are active, so there is no radius")
-DEPARTURE_ARC = Fault(
-    21684, "the first motion behind G40 is an arc: the motion from the contour must be a straight line"
-)
+DEPARTURE_ARC = Fault(21684, "the motion from the contour, the first one behind G40, is an arc: it must be straight")
 TOO_NARROW = Fault(
     21685,
-    "the tool with radius {tool} mm comes as near as {apart} mm to line {line} '{text}': it does not fit between them",
+    "the path of the tool comes as near as {apart} mm to line {line} '{text}', its radius is {tool} mm:"
+    " it does not fit between them",
 )
 NO_CROSSING = Fault(
     21686,
     "the tool with radius {tool} mm does not fit into the inner corner with line {line} '{text}':"
-    " no paths beside the {count} motions around it cross",
+    " the paths beside the motions around it, at most {count} (P-CHAN-90035), do not cross",
 )
 SCALED_PLANE = Fault(21687, "{g} in a tilted plane with different scales, in which nothing keeps its distance")
 TILTED_TIP = Fault(21688, "{g} in a tilted plane with a turning tool, whose tip has a position in the machine")

@@ -36,6 +36,10 @@ class Line(NamedTuple):
     def last_direction(self) -> Vector:
         return self.first_direction
 
+    @property
+    def curvature(self) -> float:
+        return 0.0
+
     def point(self, place: float) -> Point:
         (x, y), (u, v) = self.start, self.end
         return x + (u - x) * place, y + (v - y) * place
@@ -78,6 +82,11 @@ class Arc(NamedTuple):
     @property
     def length(self) -> float:
         return self.radius * abs(self.sweep)
+
+    @property
+    def curvature(self) -> float:
+        """1/mm, above 0 to the left."""
+        return self.turn / self.radius
 
     @property
     def turn(self) -> float:
@@ -250,4 +259,5 @@ SAMPLES: Final = 64
 
 def nearest(shape: Shape, other: Shape) -> float:
     """Smallest distance of points of `shape` to `other`, mm; for texts."""
-    return min(other.distance(shape.point(index / SAMPLES)) for index in range(SAMPLES + 1))
+    samples = min(other.distance(shape.point(index / SAMPLES)) for index in range(SAMPLES + 1))
+    return min(samples, shape.distance(other.start), shape.distance(other.end))

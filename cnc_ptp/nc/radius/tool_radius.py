@@ -1,8 +1,8 @@
 """Radius of the active tool with its wear, and where the tip of a turning tool is beside the centre of its nose.
 
-The tip is the point that programs move: where the parallels to both axes of the plane touch the nose (positions 1 to 4),
-or where one of them does (5 to 8). Positions 0 and 9 are the centre itself. They are counted as in the vendor's figure
-and as turning machines do, with the first axis of the plane to the right (G18: Z) and the second upwards (X).
+The tip is the point that programs move: where parallels to both axes of the plane that touch the nose cross (positions
+1 to 4), or where one of them touches it (5 to 8). Positions 0 and 9 are the centre itself. They are counted as turning
+machines do, with the first axis of the plane to the right (G18: Z) and the second one upwards (X).
 """
 
 from typing import Final
