@@ -67,7 +67,6 @@ _G_CODES = (
     GCode(23, "mirror", prepare=codes.mirror),
     GCode(24, "mirror", later="mirroring of single axes"),
     GCode(33, "path", later="thread cutting"),
-    GCode(5, "approach", later=_APPROACH),
     GCode(10, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=False)),
     GCode(11, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=True)),
     GCode(25, "outer corners", select=radius_codes.outer_corners(by_lines=True)),
