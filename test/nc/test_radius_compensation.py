@@ -6,7 +6,7 @@ import pytest
 from nc_support import AXES, SPINDLES, lines, run
 
 from cnc_ptp.nc.block_search import BlockSearch, StartPoint
-from cnc_ptp.nc.canonical import BEGIN, BUSY, CircularMove, LinearMove, OrderedError, Source
+from cnc_ptp.nc.canonical import BEGIN, BUSY, CircularMove, LanguageWarning, LinearMove, Source
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.interpreter import interpret
 from cnc_ptp.nc.parser import parse_program
@@ -136,7 +136,7 @@ def test_texts_of_manual_blocks_end_the_compensation() -> None:
     program = parse_program(text, "mdi", mdi=True)
     blocks = list(interpret(program, (-20.0, 0.0, 0.0), AXES, SPINDLES, state=state, tools=END_MILL))
     (warning,) = blocks[-1].functions
-    assert warning == OrderedError(21689, False, "the tool radius is still compensated (G42) at the end of the program")
+    assert warning == LanguageWarning(21689, "the tool radius is still compensated (G42) at the end of the program")
     assert not state.radius_compensation.on
     place = blocks[-2].motion.target  # type: ignore[union-attr]
     second = parse_program("Y10", "mdi", mdi=True)

@@ -23,9 +23,9 @@ from cnc_ptp.nc.canonical import (
     CanonicalBlock,
     CircularMove,
     HomeAxes,
+    LanguageWarning,
     LinearMove,
     Motion,
-    OrderedError,
     Source,
     number,
 )
@@ -112,7 +112,7 @@ class RadiusCompensation:
         state = self._state.radius_compensation
         self._state.radius_compensation = state._replace(side=0, engaged=False)
         text = f"the tool radius is still compensated ({state.code}) at the end of the program"
-        yield block._replace(functions=(*block.functions, OrderedError(faults.STILL_ON, False, text)))
+        yield block._replace(functions=(*block.functions, LanguageWarning(faults.STILL_ON, text)))
 
     def _take(self, block: CanonicalBlock, before: tuple[float, ...]) -> Iterator[CanonicalBlock]:
         if self._awaits_path(block):
