@@ -256,7 +256,7 @@ class RadiusCompensation:
             self._path = None
 
     def _hand_out(self, *, all_known: bool) -> Iterator[CanonicalBlock]:
-        """What will not change any more."""
+        """What will not change."""
         assert self._path is not None
         if self._approaches:
             self._approaches = False

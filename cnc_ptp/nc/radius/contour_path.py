@@ -183,7 +183,7 @@ class ContourPath(Generic[Owner]):
     # what is certain
 
     def _is_certain(self) -> bool:
-        """Whether the first piece cannot change any more: enough elements are known behind it, no corner is open."""
+        """Whether the first piece will not change: enough elements are known behind it, no corner is open."""
         return self._first_open() is None and self._known > self.look_ahead
 
     def _passed(self, element: Element[Owner]) -> int:
