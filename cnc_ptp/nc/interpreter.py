@@ -128,7 +128,7 @@ def interpret(
         if check_target is not None:
             _check_move(start, motion, source, check_target)
 
-    compensation = RadiusCompensation(channel, state, check_motion, awaits_path, search)
+    compensation = RadiusCompensation(channel, state, check_motion, awaits_path, search, program.main.source)
     yield from compensation.over(_programmed(execution, check_target, runs=runs))
 
 

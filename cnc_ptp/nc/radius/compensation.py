@@ -9,10 +9,10 @@ them.
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import degrees
 from typing import Final
 
 from cnc_ptp.nc import faults as nc_faults
@@ -32,6 +32,7 @@ from cnc_ptp.nc.canonical import (
 from cnc_ptp.nc.coordinates.limits import Limits, check_limits
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.feeds import INVERSE, TIME
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.nc.radius import radius_faults as faults
@@ -67,10 +68,15 @@ class RadiusCompensation:
         check: CheckMotion,
         awaits_path: Callable[[CanonicalBlock], bool],
         search: BlockSearch | None,
+        source: Source,
     ) -> None:
-        """`awaits_path`: the interpreter needs what only the run knows behind a block; `search` that is going on."""
+        """`awaits_path`: the interpreter needs what only the run knows behind a block; `search` that is going on;
+        `source` of the program.
+        """
         self._channel, self._state, self._check = channel, state, check
         self._awaits_path, self._search = awaits_path, search
+        self._source = source
+        """Of the last block with compensation."""
         self._here = state.position
         self._side = 0
         """Left (1) or right (-1) of the contour in the plane; 0: the tool is not beside one."""
@@ -88,7 +94,6 @@ class RadiusCompensation:
     def over(self, stream: Iterator[CanonicalBlock]) -> Iterator[CanonicalBlock]:
         """The blocks of a program with compensated motions. Raises ProgramError."""
         state = self._state
-        source: Source | None = None
         while True:
             before = state.position
             block = next(stream, None)
@@ -97,26 +102,34 @@ class RadiusCompensation:
             if block is BUSY or not state.radius_compensation.on:
                 yield block
                 continue
-            source = source if block is BEGIN else block.source
-            if block.stop == "end":
-                yield from self._ended(block)
-            else:
+            self._source = self._source if block is BEGIN else block.source
+            if block.stop != "end":
                 yield from self._take(block, before)
-        if source is not None and state.radius_compensation.on:
-            yield from self._ended(CanonicalBlock(source, (), None, ""))
+                continue
+            if block.motion is not None:
+                yield from self._take(block._replace(stop=""), before)
+                block = CanonicalBlock(block.source, (), None, "end", calls=block.calls)
+            yield from self._ended(block)
+        if state.radius_compensation.on:
+            yield from self._ended(CanonicalBlock(self._source, (), None, ""))
 
     def _ended(self, block: CanonicalBlock) -> Iterator[CanonicalBlock]:
         """The end of the program or MDI text: the last element ends as if G40 came behind it."""
         yield from self._finish_contour()
         self._side = 0
-        state = self._state.radius_compensation
-        self._state.radius_compensation = state._replace(side=0, engaged=False)
-        text = f"the tool radius is still compensated ({state.code}) at the end of the program"
-        yield block._replace(functions=(*block.functions, LanguageWarning(faults.STILL_ON, text)))
+        before = self._state.radius_compensation
+        self._state.radius_compensation = before._replace(side=0, engaged=False)
+        if before.side:
+            text = f"the tool radius is still compensated ({before.code}) at the end of the program"
+            block = block._replace(functions=(*block.functions, LanguageWarning(faults.STILL_ON, text)))
+        if block.functions or block.stop:
+            yield block
 
     def _take(self, block: CanonicalBlock, before: tuple[float, ...]) -> Iterator[CanonicalBlock]:
         if self._awaits_path(block):
             raise self._at(faults.NOT_WHILE, block, what=wait_of(block))
+        if block.motion is not None and self._state.feed_mode in (TIME, INVERSE):
+            raise self._at(faults.NOT_WHILE, block, what="a feed by time (G93)")
         entry = Entry(block, self._state.coordinates.limits, contour_feed=self._state.radius_compensation.contour_feed)
         if not self._side:
             yield from self._before_contour(entry, before)
@@ -145,10 +158,8 @@ class RadiusCompensation:
         elif self._names_plane(block):
             self._engage(block)
             self._approach(entry, faults.APPROACH_ARC)
-        elif motion.target != before:
-            yield self._checked(entry, motion)
         else:
-            yield block._replace(motion=None)
+            yield from self._carried_out(entry, motion)
 
     def _engage(self, block: CanonicalBlock) -> None:
         """Takes plane and tool, which stay until the departure. Raises ProgramError."""
@@ -190,7 +201,7 @@ class RadiusCompensation:
             raise self._at(faults.DEPARTURE_ARC, block)
         self._side = 0
         self._state.radius_compensation = self._state.radius_compensation._replace(engaged=False)
-        yield self._checked(entry, block.motion)
+        yield from self._carried_out(entry, block.motion)
 
     # along the contour
 
@@ -263,14 +274,14 @@ class RadiusCompensation:
             entry = self._entries.popleft()
             assert isinstance(entry.block.motion, LinearMove)
             target = self._placed(self._path.start, entry.block.motion.target)
-            yield self._checked(entry, entry.block.motion._replace(target=target))
+            yield from self._carried_out(entry, entry.block.motion._replace(target=target))
             yield from self._others_first()
         try:
             for entry, shape, own in self._path.finished(all_known=all_known):
                 yield from self._before(entry)
                 if own:
                     self._entries.popleft()
-                yield self._along(entry, shape, own)
+                yield from self._along(entry, shape, own)
                 yield from self._others_first()
         except TooNarrow as fault:
             raise self._narrow(fault) from None
@@ -301,29 +312,22 @@ class RadiusCompensation:
             self._search.position = self._here
             yield BEGIN
             return
-        if isinstance(motion, (LinearMove, CircularMove)):
-            motion = None if entry.element else self._across(motion)
-            if motion is None:
-                block = block._replace(motion=None)
-            else:
-                yield self._checked(entry, motion)
-                return
-        if block.functions or block.motion is not None or block.stop or block.offsets is not None:
+        if entry.element:
+            yield from without_motion(block)
+        elif isinstance(motion, LinearMove):
+            target = self._plane.position(self._plane.coordinates(self._here), motion.target)
+            yield from self._carried_out(entry, motion._replace(target=target))
+        else:
             yield block
 
-    def _across(self, motion: LinearMove | CircularMove) -> LinearMove | None:
-        """The part of a motion that is not in the plane; None if there is none."""
-        assert isinstance(motion, LinearMove)
-        target = self._plane.position(self._plane.coordinates(self._here), motion.target)
-        return None if target == self._here else motion._replace(target=target)
-
-    def _along(self, entry: Entry, shape: Shape, own: bool) -> CanonicalBlock:
+    def _along(self, entry: Entry, shape: Shape, own: bool) -> Iterator[CanonicalBlock]:
         """A piece of the path: the motion of an element, or one of the corner before it."""
         motion = entry.block.motion
         assert isinstance(motion, (LinearMove, CircularMove))
         target = self._placed(shape.end, motion.target if own else self._here)
         if own and isinstance(motion, LinearMove):
-            return self._checked(entry, motion._replace(target=target))
+            yield from self._carried_out(entry, motion._replace(target=target))
+            return
         transition = motion.transition if own else motion.transition._replace(exact=False)
         common = motion.slope, motion.full_override, transition
         if isinstance(shape, Line):
@@ -332,12 +336,11 @@ class RadiusCompensation:
         else:
             centre = shape.centre[0] + self._tip[0], shape.centre[1] + self._tip[1]
             feed = self._feed(entry, shape) if own else motion.feed
-            sweep, plane = degrees(shape.sweep), self._plane
+            sweep, plane = math.degrees(shape.sweep), self._plane
             made = CircularMove(target, centre, plane.axes, shape.radius, sweep, feed, *common, plane.directions)
-        if own:
-            return self._checked(entry, made)
-        corner = CanonicalBlock(entry.block.source, (), None, "", calls=entry.block.calls)
-        return self._checked(Entry(corner, entry.limits), made)
+        if not own:
+            entry = Entry(CanonicalBlock(entry.block.source, (), None, "", calls=entry.block.calls), entry.limits)
+        yield from self._carried_out(entry, made)
 
     def _feed(self, entry: Entry, shape: Arc) -> float:
         """Of the centre on an arc: as programmed, or with G11 so that the contour has it."""
@@ -345,9 +348,12 @@ class RadiusCompensation:
         assert isinstance(motion, CircularMove)
         return motion.feed * shape.radius / motion.radius if entry.contour_feed else motion.feed
 
-    def _checked(self, entry: Entry, motion: LinearMove | CircularMove) -> CanonicalBlock:
+    def _carried_out(self, entry: Entry, motion: LinearMove | CircularMove) -> Iterator[CanonicalBlock]:
         """The block with its compensated motion, which leads on from here. Raises ProgramError beyond a limit."""
         block = entry.block
+        if isinstance(motion, LinearMove) and math.dist(motion.target, self._here) < NO_LENGTH:
+            yield from without_motion(block)
+            return
         try:
             self._check(self._here, motion, block.source)
             if entry.limits:
@@ -356,7 +362,7 @@ class RadiusCompensation:
             error.calls = list(block.calls)
             raise
         self._here = motion.target
-        return block._replace(motion=motion)
+        yield block._replace(motion=motion)
 
     # errors
 
@@ -373,6 +379,12 @@ class RadiusCompensation:
             return self._at(faults.TOO_NARROW, fault.first.block, tool=tool, apart=apart, line=other.line, text=text)
         count = self._channel.radius.look_ahead
         return self._at(faults.NO_CROSSING, fault.first.block, tool=tool, line=other.line, text=text, count=count)
+
+
+def without_motion(block: CanonicalBlock) -> Iterator[CanonicalBlock]:
+    """What is left of a block that goes nowhere."""
+    if block.functions or block.stop or block.offsets is not None:
+        yield block._replace(motion=None)
 
 
 def wait_of(block: CanonicalBlock) -> str:
