@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Generic, NamedTuple, TypeVar
 
-from cnc_ptp.nc.radius.corners import around_by_arc, around_by_lines, corner_turn, is_joined, join
+from cnc_ptp.nc.radius.corners import around_by_arc, around_by_lines, corner_between, join
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, comes_nearer, intersections, nearest
 
 Owner = TypeVar("Owner")
@@ -115,19 +115,18 @@ class ContourPath(Generic[Owner]):
 
     def _turn_corner(self, element: Element[Owner], parallel: Shape) -> None:
         last = self._pieces[-1]
-        before, behind = last.element.shape, element.shape
-        turn = corner_turn(before, behind, self.left)
-        if is_joined(turn, self.left):
-            last.shape, parallel = join(last.shape, parallel, before.end, turn, self.left)
+        corner = corner_between(last.element.shape, element.shape, self.left)
+        if corner.is_joined:
+            last.shape, parallel = join(last.shape, parallel, corner)
             self._pieces.append(Piece(parallel, element))
-        elif turn < 0.0:
+        elif corner.turn < 0.0:
             self._pieces.append(Piece(parallel, element, open=True))
         elif element.by_lines:
-            last.shape, between, parallel = around_by_lines(last.shape, parallel, before.end, turn, self.left)
+            last.shape, between, parallel = around_by_lines(last.shape, parallel, corner)
             self._pieces += [Piece(shape, element, own=False) for shape in between]
             self._pieces.append(Piece(parallel, element))
         else:
-            self._pieces.append(Piece(around_by_arc(last.shape, before.end, turn, self.left), element, own=False))
+            self._pieces.append(Piece(around_by_arc(last.shape, corner), element, own=False))
             self._pieces.append(Piece(parallel, element))
 
     def _close(self, *, at_end: bool = False) -> None:
@@ -165,6 +164,8 @@ class ContourPath(Generic[Owner]):
     def _cut(self, first: int, second: int) -> bool:
         """Cuts two pieces where they cross, if the tool fits there; what is between them vanishes."""
         before, behind = self._pieces[first], self._pieces[second]
+        if min(before.shape.length, behind.shape.length) <= SHORTEST:
+            return False
         found = sorted(intersections(before.shape, behind.shape), key=lambda places: (-places[0], places[1]))
         for end, begin in found:
             point = before.shape.point(end)

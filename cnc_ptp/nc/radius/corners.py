@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from math import pi, tan
-from typing import Final
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.radius.shapes import Line, Point, Shape, Vector, arc_through, moved_end, moved_start, turn_between
 
@@ -32,46 +32,55 @@ def ahead_of(point: Point, direction: Vector, way: float) -> Point:
     return point[0] + direction[0] * way, point[1] + direction[1] * way
 
 
-def corner_turn(before: Shape, behind: Shape, left: float) -> float:
-    """Change of direction between two elements, radians: above 0 where the corner is an outer one for the tool.
+class Corner(NamedTuple):
+    """Where two elements meet: the directions of motion there, and how much the second turns (radians).
 
-    `left`: distance of the tool's centre to the left of the contour, mm.
+    turn   above 0 where the corner is an outer one for the tool, below 0 where it is an inner one
+    left   distance of the tool's centre to the left of the contour, mm
     """
-    turn = turn_between(before.last_direction, behind.first_direction)
+
+    point: Point
+    before: Vector
+    behind: Vector
+    turn: float
+    left: float
+
+    @property
+    def is_joined(self) -> bool:
+        """Whether the direction changes so little that the parallels meet."""
+        return abs(self.turn * self.left) < JOINED and abs(self.turn) < pi / 4.0
+
+
+def corner_between(before: Shape, behind: Shape, left: float) -> Corner:
+    """The corner of two elements of the contour."""
+    directions = before.last_direction, behind.first_direction
+    turn = turn_between(*directions)
+    outer = -turn if left > 0.0 else turn
     if abs(turn) > OPPOSITE:
         bends_towards_tool = (before.curvature + behind.curvature) * left >= 0.0
-        return abs(turn) if bends_towards_tool else -abs(turn)
-    return -turn if left > 0.0 else turn
+        outer = abs(turn) if bends_towards_tool else -abs(turn)
+    return Corner(before.end, *directions, outer, left)
 
 
-def is_joined(turn: float, left: float) -> bool:
-    """Whether the direction changes so little that the parallels meet."""
-    return abs(turn * left) < JOINED and abs(turn) < pi / 4.0
-
-
-def join(before: Shape, behind: Shape, corner: Point, turn: float, left: float) -> tuple[Shape, Shape]:
+def join(before: Shape, behind: Shape, corner: Corner) -> tuple[Shape, Shape]:
     """The parallels of two elements with one point between them: that on the line that halves the angle."""
-    half = -turn / 2.0 if left > 0.0 else turn / 2.0
-    direction = before.last_direction
-    point = ahead_of(left_of(corner, direction, left), direction, -left * tan(half))
+    beside = left_of(corner.point, corner.before, corner.left)
+    point = ahead_of(beside, corner.before, abs(corner.left) * tan(corner.turn / 2.0))
     return moved_end(before, point), moved_start(behind, point)
 
 
-def around_by_arc(before: Shape, corner: Point, turn: float, left: float) -> Shape:
+def around_by_arc(before: Shape, corner: Corner) -> Shape:
     """The tool rolls around the corner."""
-    return arc_through(corner, before.end, -turn if left > 0.0 else turn)
+    return arc_through(corner.point, before.end, -corner.turn if corner.left > 0.0 else corner.turn)
 
 
-def around_by_lines(
-    before: Shape, behind: Shape, corner: Point, turn: float, left: float
-) -> tuple[Shape, list[Shape], Shape]:
+def around_by_lines(before: Shape, behind: Shape, corner: Corner) -> tuple[Shape, list[Shape], Shape]:
     """Lines in place of the arc: the parallels, longer if they are lines, and what is between them."""
-    radius = abs(left)
-    past = turn > RIGHT_ANGLE
-    way = radius if past else radius * tan(turn / 2.0)
-    points = [ahead_of(before.end, before.last_direction, way)]
+    past = corner.turn > RIGHT_ANGLE
+    way = abs(corner.left) * (1.0 if past else tan(corner.turn / 2.0))
+    points = [ahead_of(before.end, corner.before, way)]
     if past:
-        points.append(ahead_of(behind.start, behind.first_direction, -way))
+        points.append(ahead_of(behind.start, corner.behind, -way))
     return _longer(before, points, behind)
 
 
