@@ -87,3 +87,40 @@ def test_few_known_elements_give_the_same_path_or_refuse() -> None:
         side = "G41" if radius < 0.0 else "G42"
         ends = [edge.end for edge in path_of(contour, side, abs(radius), RadiusSettings())]
         assert np.array(ends) == pytest.approx(np.array([edge.end for edge in path]), abs=1e-9), seed
+
+
+def random_lines(random: Random) -> list[str]:
+    """A contour on a grid, on which elements touch, repeat and lead back along themselves."""
+    grid, x, y, blocks = random.choice((1, 2, 5)), 0, 0, ["G01 X0 Y0"]
+    for _ in range(random.randint(2, 9)):
+        u, v = random.choice(((x + random.randint(-3, 3) * grid, y), (x, y + random.randint(-3, 3) * grid)))
+        chord, code = abs(u - x) + abs(v - y), random.choice((1, 1, 1, 2, 3))
+        radius = chord / 2.0 * random.choice((1.0, 1.2, 2.0)) * random.choice((1.0, -1.0))
+        if code == 1:
+            blocks.append(f"G01 X{u} Y{v}")
+        elif chord:
+            blocks.append(f"G0{code} X{u} Y{v} R{radius:.7f}")
+        else:
+            blocks.append(f"G0{code} X{u} Y{v} I{random.choice((2, 6, -7))}")
+        x, y = u, v
+    return blocks
+
+
+@pytest.mark.parametrize("corners", ["G25", "G26"])
+def test_no_point_of_a_path_is_nearer_than_the_radius(corners: str) -> None:
+    """Whatever the contour is: the path keeps its distance, or the program is refused by a number of its own."""
+    clear = 0
+    for seed in range(400):
+        random = Random(seed)
+        blocks, radius, side = random_lines(random), random.choice((0.5, 1.0, 2.0, 2.5, 5.0)), random.choice((41, 42))
+        tools = ToolTable({1: Tool(radius=radius)}, True)
+        text = "\n".join([f"D1 {corners} G00 X-50 Y-60 F600", f"G{side} {blocks[0]}", *blocks[1:], "G40 G01 X80 Y90"])
+        try:
+            path = edges_of(run(text, tools=tools, radius=ALL), (-50.0, -60.0))[1:-1]
+        except ProgramError as error:
+            assert error.number in (90017, 21682, 21685, 21686), (seed, error)
+            continue
+        contour = edges_of(run(text.replace(f"G{side} ", ""), tools=tools), (-50.0, -60.0))[1:-1]
+        assert distances(contour, np.vstack([edge.points(21) for edge in path])).min() > radius - EXACT, seed
+        clear += 1
+    assert clear > 100
