@@ -40,6 +40,7 @@ from cnc_ptp.nc.radius.contour_path import ArcTooSmall, ContourPath, Element, To
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, distance
 from cnc_ptp.nc.radius.tool_radius import CENTRE, radius_of, tip_of, tool_of
 from cnc_ptp.nc.radius.working_plane import WorkingPlane, working_plane
+from cnc_ptp.nc.tools.tool_state import NO_TOOL
 
 NO_LENGTH: Final = 1e-9
 """mm: a shorter motion in the plane is none."""
@@ -174,7 +175,7 @@ class RadiusCompensation:
         if plane is None:
             raise self._at(faults.SCALED_PLANE, block, g=code)
         tool = tool_of(state)
-        if not state.tool.d and not state.radius_compensation.number and not tool.radius:
+        if not radius_of(tool) and (tool is NO_TOOL or not self._channel.tools.present):
             raise self._at(faults.NO_RADIUS, block, g=code)
         self._plane, self._radius, self._tip = plane, radius_of(tool), tip_of(tool)
         if plane.directions is not None and self._tip != CENTRE:

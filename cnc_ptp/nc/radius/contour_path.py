@@ -200,7 +200,11 @@ class ContourPath(Generic[Owner]):
         if least <= 0.0 or piece.shape.length <= SHORTEST:
             return
         for element in self._elements:
-            if may_meet(piece.shape, element.shape, least) and comes_nearer(piece.shape, element.shape, least):
+            if (
+                element is not piece.element
+                and may_meet(piece.shape, element.shape, least)
+                and comes_nearer(piece.shape, element.shape, least)
+            ):
                 raise TooNarrow(piece.element.owner, element.owner, nearest(piece.shape, element.shape))
 
 

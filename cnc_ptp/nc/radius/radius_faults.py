@@ -29,7 +29,7 @@ SIDE_ARC = Fault(
     21681, "{g}: the tool changes the side of the contour with an arc; that motion must be a straight line"
 )
 NO_ELEMENT = Fault(21682, "no motion in the plane {g} follows the motion to the contour, so where it ends is not known")
-NO_RADIUS = Fault(21683, "{g} without a tool: no compensation data are active, so there is no radius")
+NO_RADIUS = Fault(21683, "{g} without a tool: no compensation data with a radius are active")
 DEPARTURE_ARC = Fault(21684, "the motion from the contour, the first one behind G40, is an arc: it must be straight")
 TOO_NARROW = Fault(
     21685,

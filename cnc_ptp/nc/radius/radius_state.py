@@ -38,14 +38,13 @@ class RadiusState(NamedTuple):
     by_lines      outer corners by straight lines (G25), else by arcs (G26)
     contour_feed  F of an arc is that of the contour (G11), else that of the tool's centre (G10)
     engaged       the tool is beside the contour: from the approach to the departure
-    number, data  compensation data of D (vocabulary iso); None: those of the active tool
+    data          compensation data of D (vocabulary iso); None: those of the active tool
     """
 
     side: int = 0
     by_lines: bool = False
     contour_feed: bool = False
     engaged: bool = False
-    number: int = 0
     data: Tool | None = None
 
     @property

@@ -243,10 +243,12 @@ def comes_nearer(shape: Shape, other: Shape, least: float) -> bool:
     """Whether a point of `shape` is nearer to `other` than `least` (mm).
 
     If both of its ends are not, it crosses one of the curves at that distance: the parallels and circles about the
-    ends.
+    ends. Of two lines that do not cross, one has the nearest point at its end.
     """
     if min(other.distance(shape.start), other.distance(shape.end)) < least:
         return True
+    if isinstance(shape, Line) and isinstance(other, Line):
+        return min(shape.distance(other.start), shape.distance(other.end)) < least or bool(intersections(shape, other))
     curves: list[Shape] = [Arc(point, least, 0.0, tau) for point in (other.start, other.end)]
     for left in (least, -least):
         if isinstance(other, Line) or other.radius - other.turn * left > SAME:
