@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Final
 
 from cnc_ptp.nc import faults as nc_faults
@@ -29,7 +28,7 @@ from cnc_ptp.nc.canonical import (
     Source,
     number,
 )
-from cnc_ptp.nc.coordinates.limits import Limits, check_limits
+from cnc_ptp.nc.coordinates.limits import check_limits
 from cnc_ptp.nc.coordinates.placement import PLANE_AXES
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.feeds import INVERSE, TIME
@@ -37,6 +36,7 @@ from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.program import Channel, ModalState
 from cnc_ptp.nc.radius import radius_faults as faults
 from cnc_ptp.nc.radius.contour_path import ArcTooSmall, ContourPath, Element, TooNarrow
+from cnc_ptp.nc.radius.entries import Entry
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, distance
 from cnc_ptp.nc.radius.tool_radius import CENTRE, radius_of, tip_of, tool_of
 from cnc_ptp.nc.radius.working_plane import WorkingPlane, working_plane
@@ -47,16 +47,6 @@ NO_LENGTH: Final = 1e-9
 
 CheckMotion = Callable[[tuple[float, ...], LinearMove | CircularMove, Source], None]
 """Refuses a motion from a position that leaves the limits of the axes."""
-
-
-@dataclass(slots=True, eq=False)
-class Entry:
-    """A block that waits; `element`: it is an element of the contour, `limits` of G98 and G99 that held for it."""
-
-    block: CanonicalBlock
-    limits: Limits | None
-    element: bool = False
-    contour_feed: bool = False
 
 
 class RadiusCompensation:
@@ -88,7 +78,7 @@ class RadiusCompensation:
         """Blocks that wait, the motion to the contour first if it does."""
         self._others = 0
         """Blocks without motion in the plane behind the last one with it."""
-        self._path: ContourPath[Entry] | None = None
+        self._path: ContourPath | None = None
         self._approaches = False
         """The motion to the contour waits for the first element, which says where it ends."""
 
@@ -372,7 +362,7 @@ class RadiusCompensation:
         error.calls = list(block.calls)
         return error
 
-    def _narrow(self, fault: TooNarrow[Entry]) -> ProgramError:
+    def _narrow(self, fault: TooNarrow) -> ProgramError:
         tool, other = number(abs(self._radius)), fault.second.block.source
         text = other.text.strip()
         if fault.apart is not None:

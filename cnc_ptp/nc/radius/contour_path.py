@@ -11,12 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, Generic, NamedTuple, TypeVar
+from typing import Final, NamedTuple
 
 from cnc_ptp.nc.radius.corners import around_by_arc, around_by_lines, corner_between, join
+from cnc_ptp.nc.radius.entries import Entry
 from cnc_ptp.nc.radius.shapes import Arc, Line, Point, Shape, comes_nearer, intersections, nearest
-
-Owner = TypeVar("Owner")
 
 TOO_NEAR: Final = 1e-6
 """mm: a path that comes nearer to the contour than the radius less this is a fault."""
@@ -24,16 +23,16 @@ SHORTEST: Final = 1e-7
 """mm: a shorter piece is none."""
 
 
-class Element(NamedTuple, Generic[Owner]):
-    """An element of the contour; `by_lines`: the tool gets around the outer corner before it by straight lines."""
+class Element(NamedTuple):
+    """An element of the contour, of a block; `by_lines`: the tool gets around an outer corner before it by lines."""
 
     shape: Shape
-    owner: Owner
+    entry: Entry
     by_lines: bool = False
 
 
 @dataclass(slots=True)
-class Piece(Generic[Owner]):
+class Piece:
     """A piece of the path.
 
     shape     as far as it is cut until now
@@ -43,7 +42,7 @@ class Piece(Generic[Owner]):
     """
 
     shape: Shape
-    element: Element[Owner]
+    element: Element
     own: bool = True
     open: bool = False
 
@@ -52,27 +51,27 @@ class ArcTooSmall(Exception):
     """The tool does not fit into an arc whose inner side it follows."""
 
 
-class TooNarrow(Exception, Generic[Owner]):
+class TooNarrow(Exception):
     """The tool does not fit between two elements; `apart`: how near it would come to the second, None: unknown."""
 
-    def __init__(self, first: Owner, second: Owner, apart: float | None) -> None:
+    def __init__(self, first: Entry, second: Entry, apart: float | None) -> None:
         super().__init__()
         self.first, self.second, self.apart = first, second, apart
 
 
-class ContourPath(Generic[Owner]):
+class ContourPath:
     """The path along one contour; `left`: distance of the centre to the left of the contour, mm."""
 
     def __init__(self, left: float, look_ahead: int) -> None:
         self.left, self.look_ahead = left, look_ahead
-        self._pieces: list[Piece[Owner]] = []
+        self._pieces: list[Piece] = []
         """Not handed out yet."""
-        self._elements: list[Element[Owner]] = []
+        self._elements: list[Element] = []
         """Those that a piece may come too near: of the pieces, and as many before them."""
         self._known = 0
         """Elements of `_elements` that are not handed out yet."""
 
-    def add(self, element: Element[Owner]) -> None:
+    def add(self, element: Element) -> None:
         """The next element. Raises ArcTooSmall, TooNarrow."""
         parallel = self._parallel(element.shape)
         if self._pieces:
@@ -83,8 +82,8 @@ class ContourPath(Generic[Owner]):
         self._known += 1
         self._close()
 
-    def finished(self, *, all_known: bool) -> Iterator[tuple[Owner, Shape, bool]]:
-        """Owner and shape of each piece that will not change, own or of a corner; all of them at the end.
+    def finished(self, *, all_known: bool) -> Iterator[tuple[Entry, Shape, bool]]:
+        """Block and shape of each piece that will not change, own or of a corner; all of them at the end.
 
         Raises TooNarrow.
         """
@@ -96,7 +95,7 @@ class ContourPath(Generic[Owner]):
                 self._known -= self._passed(piece.element)
             self._check(piece)
             if piece.shape.length > SHORTEST:
-                yield piece.element.owner, piece.shape, piece.own
+                yield piece.element.entry, piece.shape, piece.own
         if all_known:
             self._elements.clear()
             self._known = 0
@@ -113,7 +112,7 @@ class ContourPath(Generic[Owner]):
 
     # corners
 
-    def _turn_corner(self, element: Element[Owner], parallel: Shape) -> None:
+    def _turn_corner(self, element: Element, parallel: Shape) -> None:
         last = self._pieces[-1]
         corner = corner_between(last.element.shape, element.shape, self.left)
         if corner.is_joined:
@@ -138,7 +137,7 @@ class ContourPath(Generic[Owner]):
                 return
             if not self._cut_further(place):
                 before, behind = self._pieces[place - 1].element, self._pieces[place].element
-                raise TooNarrow(before.owner, behind.owner, None)
+                raise TooNarrow(before.entry, behind.entry, None)
 
     def _first_open(self) -> int | None:
         return next((place for place, piece in enumerate(self._pieces) if piece.open), None)
@@ -187,14 +186,14 @@ class ContourPath(Generic[Owner]):
         """Whether the first piece will not change: enough elements are known behind it, no corner is open."""
         return self._first_open() is None and self._known > self.look_ahead
 
-    def _passed(self, element: Element[Owner]) -> int:
+    def _passed(self, element: Element) -> int:
         """Elements that are handed out with this one: those that have vanished before it too."""
         unknown = len(self._elements) - self._known
         place = next(place for place in range(unknown, len(self._elements)) if self._elements[place] is element)
         del self._elements[: max(0, place + 1 - self.look_ahead)]
         return place + 1 - unknown
 
-    def _check(self, piece: Piece[Owner]) -> None:
+    def _check(self, piece: Piece) -> None:
         """Raises TooNarrow for a piece that comes too near to one of the elements that are known."""
         least = abs(self.left) - TOO_NEAR
         if least <= 0.0 or piece.shape.length <= SHORTEST:
@@ -205,7 +204,7 @@ class ContourPath(Generic[Owner]):
                 and may_meet(piece.shape, element.shape, least)
                 and comes_nearer(piece.shape, element.shape, least)
             ):
-                raise TooNarrow(piece.element.owner, element.owner, nearest(piece.shape, element.shape))
+                raise TooNarrow(piece.element.entry, element.entry, nearest(piece.shape, element.shape))
 
 
 SMALLEST_RADIUS: Final = 1e-4
