@@ -25,7 +25,7 @@ TIPS: Final[dict[int, Vector]] = {
     8: (0.0, -1.0),
 }
 """From the centre of the nose to the tip, in radii along the axes of the plane, by P-TOOL-00002."""
-CENTRE: Final = (0.0, 0.0)
+CENTRE: Vector = (0.0, 0.0)
 
 
 def tool_of(state: ModalState) -> Tool:
