@@ -25,6 +25,7 @@ from cnc_ptp.nc.canonical import (
     ExplicitSynchronisation,
     Function,
     GearChange,
+    LanguageWarning,
     Message,
     OrderedError,
     Source,
@@ -78,7 +79,7 @@ class FunctionOutput:
                 synchronisation = self._synchronisation(function)
                 waits = waits_until(synchronisation)
                 return goes_out(synchronisation) is Moment.BEFORE and waits in (None, Moment.EXPLICIT)
-            case Message() | ExplicitSynchronisation():
+            case Message() | LanguageWarning() | ExplicitSynchronisation():
                 return True
             case OrderedError():
                 return not function.severe

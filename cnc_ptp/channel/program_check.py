@@ -38,6 +38,7 @@ from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.radius.radius_state import radius_settings
 from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
 from cnc_ptp.nc.vocabularies import VOCABULARIES
@@ -148,6 +149,7 @@ class ProgramCheck:
             channel.tool_table,
             path_defaults(channel),
             self._references,
+            radius_settings(channel),
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -185,6 +187,7 @@ class ProgramCheck:
             centre_offset_ratio=self._channel.circle_center_ratio,
             rotary=self._rotary,
             tools=self._channel.tool_table,
+            radius=self.nc.radius,
             references=self._references,
             files=files,
             cycles=self.cycles,
@@ -326,7 +329,8 @@ class ProgramCheck:
 
         def check(target: tuple[float, ...], source: Source) -> None:
             self.check_target(target, source, missing)
-            require_within(self.nc, state.modal, [target], moving_axes(tuple(start), target), source)
+            limits = state.modal.coordinates.limits or {}
+            require_within(self.nc, limits, [target], moving_axes(tuple(start), target), source)
 
         return begin.blocks(stream, tuple(start), self._axis_names, state.modal, check)
 
@@ -356,6 +360,7 @@ class ProgramCheck:
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
+            radius=self.nc.radius,
             references=self._references,
             limits=self._limits,
             block_skip=self.block_skip,

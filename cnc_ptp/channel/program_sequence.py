@@ -37,6 +37,7 @@ from cnc_ptp.nc.canonical import (
     CircularMove,
     ExplicitSynchronisation,
     HomeAxes,
+    LanguageWarning,
     LinearMove,
     Message,
     OffsetReport,
@@ -498,7 +499,7 @@ class ProgramSequence:
         self._wait(Phase.WAIT_BEFORE, *moments_before(block))
 
     def _tell(self, block: CanonicalBlock, cycle: int) -> None:
-        """Messages and timers of the block. Raises CncError 22029 for an error that the program orders."""
+        """Messages, warnings and timers of the block. Raises CncError 22029 for an error that the program orders."""
         for function in block.functions:
             if isinstance(function, Message):
                 self.messages.append(Told(PROGRAM_MESSAGE, function.text, self.source.line))
@@ -508,6 +509,8 @@ class ProgramSequence:
                 if function.severe:
                     raise CncError(ORDERED_ERROR, function.text)
                 self._note(ORDERED_ERROR, f"{function.text} in {line_of_program(self.source, self.calls)}")
+            elif isinstance(function, LanguageWarning):
+                self._note(function.number, function.text)
 
     def _start_motion(self, first_cycle: int, cycle: int) -> bool:
         """False while the interpreter computes the block with which it is linked, and while a measuring run waits for

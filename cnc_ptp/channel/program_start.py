@@ -94,9 +94,10 @@ class ProgramStart:
             raise self._not_reached()
         self.found = found
         self.head = skipped.blocks()
-        if modal.position != start:
-            check_target(modal.position, found)
-        for target in way_points(start, modal.position, tool_axis(axes, modal.plane)):
+        begin = modal.position if self._search.position is None else self._search.position
+        if begin != start:
+            check_target(begin, found)
+        for target in way_points(start, begin, tool_axis(axes, modal.plane)):
             self.head.append(CanonicalBlock(found, (), LinearMove(target, True, 0.0), ""))
         if offsets is not None:
             first = self.head[0] if self.head else CanonicalBlock(found, (), None, "")

@@ -33,6 +33,8 @@ class BlockSearch:
     found           where the program begins, once it is reached
     passes          how often the place was passed
     below, above    nearest numbers of lines or blocks that were passed, 0: none
+    position        where the tool is at the place (machine coordinates, mm or deg), if that is beside the contour
+                    because its radius is compensated
     """
 
     def __init__(self, point: StartPoint, file: str) -> None:
@@ -40,6 +42,7 @@ class BlockSearch:
         self.point, self.file = point, file
         self.found: Source | None = None
         self.passes = self.below = self.above = 0
+        self.position: tuple[float, ...] | None = None
 
     def meets(self, source: Source) -> bool:
         """Whether the program begins with this line, which is the next to be executed."""

@@ -198,6 +198,13 @@ class OrderedError(NamedTuple):
     text: str
 
 
+class LanguageWarning(NamedTuple):
+    """A warning of the interpreter when the path reaches the block."""
+
+    number: int
+    text: str
+
+
 class AuxiliaryFunction(NamedTuple):
     """A function for the PLC or the tool management: letter "M", "T", "D" or "H"; with the `spindle` of S2[M8].
 
@@ -258,6 +265,7 @@ Function = (
     | Timer
     | Message
     | OrderedError
+    | LanguageWarning
     | AuxiliaryFunction
     | ControlFunction
 )

@@ -11,6 +11,7 @@ from cnc_ptp.nc.canonical import (
     Function,
     GearChange,
     HomeAxes,
+    LanguageWarning,
     LinearMove,
     Message,
     Motion,
@@ -63,6 +64,8 @@ def format_function(function: Function) -> str:
             return f"message {text!r}"
         case OrderedError(code, severe, text):
             return f"{'error' if severe else 'warning'} {code} {text!r}"
+        case LanguageWarning(code, text):
+            return f"warning {code} {text!r}"
         case AxisFeedforward() | SpindleFeedforward() | CompensationSwitch():
             return _control(function)
         case SpindleFunction():

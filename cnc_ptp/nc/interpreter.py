@@ -35,6 +35,8 @@ from cnc_ptp.nc.measuring import Touch, measures, placed, results
 from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.program_text import ProgramText
+from cnc_ptp.nc.radius.compensation import RadiusCompensation
+from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, RadiusSettings
 from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
@@ -68,6 +70,7 @@ def interpret(
     offsets: OffsetTables = NO_OFFSET_TABLES,
     soft_limits: tuple[tuple[float, float], ...] = (),
     tools: ToolTable = NO_TOOLS,
+    radius: RadiusSettings = DEFAULT_SETTINGS,
     references: tuple[float, ...] = (),
     block_skip: int = 0,
     limits: Limits = LIMITS,
@@ -84,8 +87,9 @@ def interpret(
     `check_target(target, source)` is called before a move is handed out, with its target and, for an arc, with the
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
-    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine,
-    `soft_limits` of its axes for V.A., `references` for G28. `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
+    corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine, `radius`:
+    how that of tools is compensated, `soft_limits` of its axes for V.A., `references` for G28.
+    `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
     change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get
@@ -99,7 +103,18 @@ def interpret(
     table, ratio = spindle_table(spindles), centre_offset_ratio
     words, turns = program.vocabulary, frozenset(rotary)
     channel = Channel(
-        axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools, references=references
+        axes,
+        index,
+        table,
+        centre_offset,
+        ratio,
+        words,
+        turns,
+        offsets,
+        soft_limits,
+        tools,
+        references=references,
+        radius=radius,
     )
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
@@ -113,7 +128,22 @@ def interpret(
     else:
         values.channel, values.state = channel, state
     execution = Execution(program, values, limits=limits, block_skip=block_skip, search=search)
-    source = program.main.source
+
+    def check_motion(start: tuple[float, ...], motion: LinearMove | CircularMove, source: Source) -> None:
+        if check_target is not None:
+            _check_move(start, motion, source, check_target)
+
+    compensation = RadiusCompensation(channel, state, check_motion, awaits_path, search, program.main.source)
+    yield from compensation.over(_programmed(execution, check_target, recovery, runs=runs))
+
+
+def _programmed(
+    execution: Execution, check_target: CheckTarget | None, recovery: Recovery | None, *, runs: bool
+) -> Iterator[CanonicalBlock]:
+    """The blocks with the motions that are programmed, whatever the radius of the tool."""
+    values = execution.values
+    channel, state = values.channel, values.state
+    source = execution.program.main.source
     before: ModalState | None = None
     goes_on = True
     while goes_on:
@@ -242,20 +272,23 @@ def _resolve(
 def _moved(
     channel: Channel, state: ModalState, block: NcBlock, motion: Motion, check_target: CheckTarget | None
 ) -> Motion | None:
-    """A motion in machine coordinates, checked; the state is at its end then. None if it goes nowhere."""
+    """A motion in machine coordinates, checked; the state is at its end then. None if it goes nowhere.
+
+    Where the radius of the tool is compensated, it is the compensated motion that is checked, and left out.
+    """
     if not isinstance(motion, (LinearMove, CircularMove)):
         return motion
-    programmed = motion.target
+    programmed, compensated = motion.target, state.radius_compensation.on
     motion = timed(channel, state, place(channel, state, block, motion))
     if isinstance(motion, LinearMove) and motion.measures:
         motion = placed(motion, state.position, block)
-    elif motion.target == state.position and not isinstance(motion, CircularMove):
+    elif motion.target == state.position and not isinstance(motion, CircularMove) and not compensated:
         state.programmed = programmed
         return None
-    if check_target is not None:
+    if check_target is not None and not compensated:
         _check_move(state.position, motion, block.source, check_target)
-    if state.coordinates.limits:
-        check_limits(channel, state, block, motion)
+    if state.coordinates.limits and not compensated:
+        check_limits(channel, state.coordinates.limits, state.position, motion, block.source)
     if state.slope:
         motion = motion._replace(slope=state.slope)
     transition = state.once or state.transition
@@ -361,6 +394,7 @@ def check(
     centre_offset_ratio: float = CENTRE_OFFSET_RATIO,
     rotary: Collection[str] = (),
     tools: ToolTable = NO_TOOLS,
+    radius: RadiusSettings = DEFAULT_SETTINGS,
     references: tuple[float, ...] = (),
     files: Mapping[str, str] = NO_FILES,
     cycles: Mapping[str, str] = NO_FILES,
@@ -404,6 +438,7 @@ def check(
             offsets=offsets,
             soft_limits=soft_limits,
             tools=tools,
+            radius=radius,
             references=references,
             limits=limits,
             runs=True,
@@ -416,8 +451,10 @@ def check(
                 homed = homed or isinstance(block.motion, HomeAxes)
                 if reads_the_run(block):
                     break
-        except ProgramError:
+        except ProgramError as error:
             failed = True
+            if recovers:
+                recovery.ends_with(error)
         if not failed:
             break
     found = [*errors, *recovery.errors]

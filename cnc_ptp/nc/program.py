@@ -9,6 +9,7 @@ from cnc_ptp.nc.contour import DEFAULT_CONTOUR, PATH_DEFAULTS, THROUGH, Contour,
 from cnc_ptp.nc.coordinates.coordinates import Coordinates
 from cnc_ptp.nc.coordinates.frame import Frame
 from cnc_ptp.nc.faults import ProgramError
+from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, NOT_COMPENSATED, RadiusSettings, RadiusState
 from cnc_ptp.nc.tools.tool_state import ToolState
 from cnc_ptp.parameters import NO_OFFSET_TABLES, NO_TOOLS, OffsetTables, ToolTable
 
@@ -285,7 +286,7 @@ class Channel(NamedTuple):
 
     `rotary`: axes in deg; `offsets` of the machine file; `soft_limits`: the lowest and highest position of each axis,
     empty for none. `path`: how the path goes from block to block at the start; `references`: position of the reference
-    point of each axis (P-AXIS-00152), empty for 0.
+    point of each axis (P-AXIS-00152), empty for 0; `radius`: how the radius of tools is compensated.
     """
 
     axes: tuple[str, ...]
@@ -300,6 +301,7 @@ class Channel(NamedTuple):
     tools: ToolTable = NO_TOOLS
     path: PathDefaults = PATH_DEFAULTS
     references: tuple[float, ...] = ()
+    radius: RadiusSettings = DEFAULT_SETTINGS
 
     @property
     def main(self) -> tuple[int, int, int]:
@@ -354,9 +356,10 @@ class ModalState:
     `path`, `plane`, `feed_mode`: numbers of the active G codes; `block_time`: F with G93 (s); `radius`: last R (mm,
     signed, 0.0 none); `speeds`: S by spindle; `slope`: #SLOPE, "" is that of P-CHAN-00071. `position` in machine
     coordinates, `programmed`: the same point as programs name it, by `frame` (None: they are equal), which is what
-    `coordinates` amount to. `reported`: the canonical stream has them. `transition`: between blocks; `once`: at the
-    end of the active one instead; `contour`: what G261 means. While a block is resolved: `following`, its further
-    motions; `machine_words`, its axis words are machine positions (G53 of the vocabulary iso).
+    `coordinates` amount to; while the tool radius is compensated both are points of the contour. `reported`: the
+    canonical stream has them. `transition`: between blocks; `once`: at the end of the active one instead; `contour`:
+    what G261 means. While a block is resolved: `following`, its further motions; `machine_words`, its axis words are
+    machine positions (G53 of the vocabulary iso).
     """
 
     position: tuple[float, ...] = ()
@@ -383,6 +386,7 @@ class ModalState:
     following: Iterator[Step] | None = None
     machine_words: bool = False
     tool: ToolState = field(default_factory=ToolState)
+    radius_compensation: RadiusState = NOT_COMPENSATED
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""
@@ -404,3 +408,5 @@ class ModalState:
         self.transition, self.contour = other.transition, other.contour
         self.coordinates.changes = changes
         self.tool.d, self.tool.data = other.tool.d, other.tool.data
+        engaged = self.radius_compensation.engaged
+        self.radius_compensation = other.radius_compensation._replace(engaged=engaged)

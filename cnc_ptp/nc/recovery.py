@@ -74,6 +74,11 @@ class Recovery:
         self._skipped = execution.uncertain = True
         return len(self.errors) < MOST_ERRORS
 
+    def ends_with(self, error: ProgramError) -> None:
+        """An error of a contour whose blocks were executed already: the check ends."""
+        self._take(error)
+        self.unchecked, self.last = DEPENDS, error
+
     def ordered(self, block: CanonicalBlock) -> None:
         """Takes the #ERROR of a block, which stops the program there, and says from where the errors before came."""
         for error in self._noted:

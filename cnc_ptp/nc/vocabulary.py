@@ -8,6 +8,7 @@ from typing import Final
 from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, tapping, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
+from cnc_ptp.nc.radius import radius_codes
 from cnc_ptp.nc.tools.compensation import follow_plane
 
 
@@ -41,6 +42,7 @@ def centre(number: int, absolute: bool, minor: int = 0) -> GCode:
 FULL_OVERRIDE: Final = 166
 """The override has no effect on the motion of the block."""
 _ARC_WORDS = frozenset("IJKR")
+_APPROACH: Final = "another way to a contour than at right angles (G138)"
 
 _G_CODES = (
     GCode(0, "path", motion=motions.rapid),
@@ -65,9 +67,13 @@ _G_CODES = (
     GCode(23, "mirror", prepare=codes.mirror),
     GCode(351, "mirror", later="mirroring of single axes"),
     GCode(33, "path", later="thread cutting"),
-    GCode(40, "tool radius"),
-    GCode(41, "tool radius", later="compensation of the tool radius"),
-    GCode(42, "tool radius", later="compensation of the tool radius"),
+    GCode(10, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=False)),
+    GCode(11, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=True)),
+    GCode(25, "outer corners", select=radius_codes.outer_corners(by_lines=True)),
+    GCode(26, "outer corners", select=radius_codes.outer_corners(by_lines=False)),
+    *(GCode(code, "tool radius", select=radius_codes.side(code)) for code in (40, 41, 42)),
+    GCode(138, "approach"),
+    *(GCode(code, "approach", later=_APPROACH) for code in (139, 236, 237, 238, 239)),
     GCode(51, "diameter", later="diameter programming of the face turning axis"),
     GCode(52, "diameter"),
     *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),

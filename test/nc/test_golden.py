@@ -13,6 +13,7 @@ from cnc_ptp.nc.flow.execution import Limits
 from cnc_ptp.nc.interpreter import check, interpret
 from cnc_ptp.nc.iso import iso_faults
 from cnc_ptp.nc.parser import parse_program
+from cnc_ptp.nc.radius import radius_faults
 from cnc_ptp.nc.tools import tool_faults
 
 GOOD = sorted((HERE / "golden").glob("*.nc"))
@@ -26,7 +27,16 @@ def faults_of(part) -> list[Fault]:
     return values + [fault for table in tables for fault in table.values() if isinstance(fault, Fault)]
 
 
-PARTS = (iso_faults, faults, spindle_faults, expression_faults, flow_faults, coordinate_faults, tool_faults)
+PARTS = (
+    iso_faults,
+    faults,
+    spindle_faults,
+    expression_faults,
+    flow_faults,
+    coordinate_faults,
+    tool_faults,
+    radius_faults,
+)
 FAULTS = [fault for part in PARTS for fault in faults_of(part)]
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from cnc_ptp.nc.radius.radius_state import RadiusSettings, radius_settings
 from cnc_ptp.parameters import MachineParameters, ParameterError, load_machine, machine_text, read_machine
 
 MACHINE = """\
@@ -210,3 +211,38 @@ def test_folders_are_relative_to_the_machine_file(tmp_path: Path) -> None:
     assert channel.folders == (f"{tmp_path}/cycles", f"{tmp_path}/../shared")
     assert (channel.call_depth, channel.repeats, channel.known_blocks) == (3, 10, 5)
     assert (channel.checked_text, channel.blocks_per_cycle) == (0, 7)
+
+
+def test_compensation_of_the_tool_radius() -> None:
+    text = machine("tool_radius: {look_ahead: 7, other_blocks: 20}", "prog_start: {outer_corners: 25}")
+    assert radius_settings(load_machine(text, "m.yaml").channels["ch"]) == RadiusSettings(7, 20, True)
+    assert radius_settings(load_machine(machine("m_synch: {}"), "m.yaml").channels["ch"]) == RadiusSettings(
+        5, 100, False
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        (
+            "tool_radius: {look_ahead: 0}",
+            "25008 m.yaml:5:31: channel list, P-CHAN-90035 tool_radius.look_ahead of /ch: value 0 is below the minimum 1",
+        ),
+        (
+            "tool_radius: {look_ahead: 51}",
+            "25008 m.yaml:5:31: channel list, P-CHAN-90035 tool_radius.look_ahead of /ch: value 51 is above the maximum 50",
+        ),
+        (
+            "tool_radius: {other_blocks: 0}",
+            "25008 m.yaml:5:33: channel list, P-CHAN-90036 tool_radius.other_blocks of /ch: value 0 is below the minimum 1",
+        ),
+        (
+            "prog_start: {outer_corners: 27}",
+            "25008 m.yaml:5:33: channel list, P-CHAN-90037 prog_start.outer_corners of /ch: value 27 is none of 25 (straight lines), 26 (arcs)",
+        ),
+    ],
+)
+def test_errors_of_the_compensation_of_the_tool_radius(line: str, error: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        load_machine(machine(line), "m.yaml")
+    assert str(caught.value) == f"P-ERR-{error}{END}"

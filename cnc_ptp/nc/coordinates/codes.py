@@ -8,6 +8,7 @@ from cnc_ptp.nc.coordinates import coordinate_faults as faults
 from cnc_ptp.nc.coordinates.coordinates import INCH, NO_CHANGES, Coordinates, OffsetChanges, Offsets
 from cnc_ptp.nc.coordinates.placement import plane_axes, refresh
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.radius.radius_state import NOT_COMPENSATED
 
 LAST_OFFSET = 96
 """P-ZERO: np_grp[0] to np_grp[96]."""
@@ -78,7 +79,9 @@ def default_offset(channel: Channel, changes: OffsetChanges) -> int:
 def initial_state(channel: Channel, changes: OffsetChanges = NO_CHANGES, clamp_index: int = 0) -> ModalState:
     """That with which a program starts."""
     coordinates = initial_coordinates(channel, changes, clamp_index)
-    return ModalState(coordinates=coordinates, transition=channel.path.transition, contour=channel.path.contour)
+    state = ModalState(coordinates=coordinates, transition=channel.path.transition, contour=channel.path.contour)
+    state.radius_compensation = NOT_COMPENSATED._replace(by_lines=channel.radius.by_lines)
+    return state
 
 
 def initial_coordinates(channel: Channel, changes: OffsetChanges, clamp_index: int) -> Coordinates:

@@ -16,6 +16,7 @@ from cnc_ptp.nc.faults import AXIS_UNKNOWN
 from cnc_ptp.nc.flow.command_words import Words
 from cnc_ptp.nc.flow.lines import Flow, Line, Statement
 from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+from cnc_ptp.nc.radius.changes import require_same_system
 
 DEEPEST: Final = 10
 """Coordinate systems within each other."""
@@ -115,6 +116,8 @@ class SystemCommand(CoordinateCommand):
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
+        if self.action != "DEF":
+            require_same_system(state, line.source, self.column, f"{self.command} {self.action}")
         if coordinates.outside is not None:
             raise faults.IN_MACHINE.at(line.source, self.column, command=self.command)
         if self.action.startswith("OFF"):
@@ -184,6 +187,7 @@ class MachineCoordinates(CoordinateCommand):
 
     def change(self, channel: Channel, state: ModalState, execution: Flow, line: Line) -> None:
         coordinates = state.coordinates
+        require_same_system(state, line.source, self.column, "#MCS ON" if self.on else "#MCS OFF")
         if self.on == (coordinates.outside is not None):
             raise (faults.MACHINE_ON if self.on else faults.MACHINE_OFF).at(line.source, self.column)
         if self.on:

@@ -3,22 +3,27 @@
 An axis that does not move may be beyond a limit that came later.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from cnc_ptp.nc.arcs import extreme_points
 from cnc_ptp.nc.canonical import CircularMove, LinearMove, Source
 from cnc_ptp.nc.coordinates import coordinate_faults as faults
-from cnc_ptp.nc.program import Channel, ModalState, NcBlock
+from cnc_ptp.nc.program import Channel
+
+Limits = Mapping[int, tuple[float, float]]
+"""The lowest and highest position by place of the axis."""
 
 
-def check_limits(channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove | CircularMove) -> None:
-    """Raises ProgramError 120002 / 120003 for a motion (machine coordinates) beyond a limit of G98 or G99."""
+def check_limits(
+    channel: Channel, limits: Limits, start: tuple[float, ...], motion: LinearMove | CircularMove, source: Source
+) -> None:
+    """Raises ProgramError 120002 / 120003 for a motion from `start` (machine coordinates) beyond a limit."""
     points = [motion.target]
-    moving = moving_axes(state.position, motion.target)
+    moving = moving_axes(start, motion.target)
     if isinstance(motion, CircularMove):
-        points += extreme_points(state.position, motion)
+        points += extreme_points(start, motion)
         moving.update(index for index in range(len(channel.axes)) if motion.turns(index))
-    require_within(channel, state, points, moving, block.source)
+    require_within(channel, limits, points, moving, source)
 
 
 def moving_axes(start: tuple[float, ...], target: tuple[float, ...]) -> set[int]:
@@ -27,10 +32,10 @@ def moving_axes(start: tuple[float, ...], target: tuple[float, ...]) -> set[int]
 
 
 def require_within(
-    channel: Channel, state: ModalState, points: Sequence[tuple[float, ...]], moving: Collection[int], source: Source
+    channel: Channel, limits: Limits, points: Sequence[tuple[float, ...]], moving: Collection[int], source: Source
 ) -> None:
     """Raises ProgramError 120002 / 120003 if one of the `moving` axes is beyond a limit of G98 or G99 in a point."""
-    for index, (low, high) in (state.coordinates.limits or {}).items():
+    for index, (low, high) in limits.items():
         for point in points:
             if low <= point[index] <= high or index not in moving:
                 continue

@@ -17,6 +17,7 @@ from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.iso import iso_faults as faults
 from cnc_ptp.nc.iso.offsets import integer
 from cnc_ptp.nc.program import Channel, Drilling, GCode, ModalState, NcBlock, Step
+from cnc_ptp.nc.radius.changes import require_off
 from cnc_ptp.nc.spindles import current_main, require_spindle
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 
@@ -50,6 +51,8 @@ class Hole(NamedTuple):
 
 def drill(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """Notes the numbers of the cycle; with an axis word or R it drills. The motions are in `state.following`."""
+    source = block.source
+    require_off(state, source, source.columns[0] if source.columns else 1, f"the drilling cycle {code.name}")
     target = motions.target_of(channel, state, block, code)
     words = _own_words(block, code)
     name = DRILL_AXES[state.plane]

@@ -8,6 +8,7 @@ from cnc_ptp.nc.canonical import CircularMove, Dwell, LinearMove, number
 from cnc_ptp.nc.coordinates import coordinate_faults
 from cnc_ptp.nc.iso import iso_faults as faults
 from cnc_ptp.nc.program import NO_DRILLING, Channel, GCode, ModalState, NcBlock, Step
+from cnc_ptp.nc.radius.changes import require_off
 
 
 def end_cycle(state: ModalState) -> None:
@@ -52,7 +53,8 @@ def dwell(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> D
 
 
 def require_axes(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
-    """G28 moves the axes that it names. Raises ProgramError 21602 if it names none."""
+    """G28 moves the axes that it names. Raises ProgramError 21602 if it names none, 20651."""
+    require_off(state, block.source, block.source.column(code.name), code.name)
     if channel.axis_index.keys().isdisjoint(block.words):
         raise coordinate_faults.AXES_MISSING.at(block.source, block.source.column(code.name), word=code.name)
 

@@ -8,6 +8,7 @@ from cnc_ptp.nc.coordinates.codes import LAST_OFFSET, axis_values, offset_values
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.iso import iso_faults as faults
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.radius.changes import require_off
 
 G59: Final = 6
 """Index of the zero offset of G59; those of G59.1 and G54.1 P1 follow it."""
@@ -93,6 +94,7 @@ def _shift(channel: Channel, state: ModalState, added: tuple[float, ...]) -> Non
 def machine_coordinates(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """G53: the axis words of its block are machine positions, whatever other codes and tools are in it."""
     column = block.source.column(code.name)
+    require_off(state, block.source, column, code.name)
     if state.path not in (0, 1):
         raise faults.MACHINE_PATH.at(block.source, column)
     if not state.absolute:

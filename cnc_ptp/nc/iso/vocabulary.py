@@ -7,6 +7,7 @@ from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.iso import cycles, lengths, offsets
 from cnc_ptp.nc.iso import motions as own
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
+from cnc_ptp.nc.radius import radius_codes
 from cnc_ptp.nc.vocabulary import centre, dimension, plane
 
 
@@ -41,9 +42,17 @@ _G_CODES = (
     GCode(30, "block", later="a second reference point"),
     GCode(31, "path", motion=measuring.skip, modal=False),
     GCode(33, "path", later="thread cutting"),
-    GCode(40, "tool radius"),
-    GCode(41, "tool radius", later="compensation of the tool radius"),
-    GCode(42, "tool radius", later="compensation of the tool radius"),
+    GCode(40, "tool radius", select=radius_codes.side(40)),
+    *(
+        GCode(
+            code,
+            "tool radius",
+            select=radius_codes.side(code),
+            prepare=radius_codes.take_data,
+            words=frozenset("D"),
+        )
+        for code in (41, 42)
+    ),
     GCode(43, "tool length", prepare=lengths.length_on, words=frozenset("H")),
     GCode(43, "tool length", minor=1, later="tool lengths without a table"),
     GCode(49, "tool length", prepare=lengths.length_off),

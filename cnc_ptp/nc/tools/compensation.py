@@ -9,6 +9,7 @@ from cnc_ptp.nc.canonical import LinearMove, Source, number
 from cnc_ptp.nc.coordinates.placement import refresh
 from cnc_ptp.nc.functions import MAX_TOOL, number_function
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock
+from cnc_ptp.nc.radius.changes import require_same_plane, require_same_radius
 from cnc_ptp.nc.tools import tool_faults as faults
 from cnc_ptp.nc.tools.tool_state import NO_TOOL
 from cnc_ptp.parameters import Tool
@@ -57,6 +58,8 @@ def select(channel: Channel, state: ModalState, source: Source, number: int, wor
         data = NO_TOOL
     if not data.valid:
         raise faults.DATA_INVALID.at(source, column, word=shown, number=number)
+    if state.radius_compensation.data is None:
+        require_same_radius(state, data, source, column, shown)
     state.tool.d, state.tool.data = number, data
     apply(channel, state, source, column)
 
@@ -81,6 +84,7 @@ def data_of(channel: Channel, state: ModalState, number: int) -> Tool | None:
 
 def follow_plane(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> None:
     """G17 to G19: the length acts in the axis that is normal to the new plane."""
+    require_same_plane(state, block.source, code.name)
     if state.tool.data is not NO_TOOL:
         apply(channel, state, block.source, block.source.column(code.name))
 

@@ -10,6 +10,7 @@ from typing import Final
 from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.reading import Reading, Units, axis_of, in_mm, length
 from cnc_ptp.nc.expressions.values import Scalar, Values
+from cnc_ptp.nc.radius.changes import require_same_radius
 from cnc_ptp.nc.tools import tool_faults as faults
 from cnc_ptp.nc.tools.compensation import apply, data_of
 from cnc_ptp.parameters import Tool
@@ -104,7 +105,9 @@ def active(get: Get) -> Callable[[Values, Units, int], Scalar]:
 def set_active(name: str, change: Set) -> Callable[[Values, Units, Scalar, int], None]:
     def write(values: Values, units: Units, value: Scalar, column: int) -> None:
         state = values.state
-        state.tool.data = change(values, state.tool.data, units, value, column)
+        data = change(values, state.tool.data, units, value, column)
+        require_same_radius(state, data, values.source, column, name)
+        state.tool.data = data
         state.tool.written = (name, values.source.file, values.source.line)
         apply(values.channel, state, values.source, column)
 

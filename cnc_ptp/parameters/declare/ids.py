@@ -201,6 +201,9 @@ CONTOUR_TRACK_DEV = "P-CHAN-90013"  # prog_start.contour.track_dev
 HSC_PATH_DEV = "P-CHAN-90014"  # prog_start.hsc.path_dev
 HSC_TRACK_DEV = "P-CHAN-90015"  # prog_start.hsc.track_dev
 TAPPING_PITCH_TOLERANCE = "P-CHAN-90020"  # tapping.pitch_tolerance
+TOOL_RADIUS_LOOK_AHEAD = "P-CHAN-90035"  # tool_radius.look_ahead
+TOOL_RADIUS_OTHER_BLOCKS = "P-CHAN-90036"  # tool_radius.other_blocks
+PROG_START_OUTER_CORNERS = "P-CHAN-90037"  # prog_start.outer_corners
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

@@ -122,6 +122,12 @@ class ChannelParameters:
     """A measuring run without a signal of the probe is an error."""
     pitch_tolerance: float = 0.001
     """Ratio by which F / S of G63 may differ from a programmed pitch (P-CHAN-90020)."""
+    contour_look_ahead: Annotated[int, ids.TOOL_RADIUS_LOOK_AHEAD] = 5
+    """Elements of a contour that are known before the tool moves along one …"""
+    contour_other_blocks: Annotated[int, ids.TOOL_RADIUS_OTHER_BLOCKS] = 100
+    """… and blocks without motion in the plane between two of them."""
+    outer_corners: Annotated[int, ids.PROG_START_OUTER_CORNERS] = 26
+    """G function of outer corners at the start of programs."""
 
 
 def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder: Path) -> ChannelParameters:

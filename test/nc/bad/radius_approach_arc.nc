@@ -1,0 +1,6 @@
+; P-ERR-90008 radius_approach_arc.nc line 4 column 1 'G42 G02 X0 Y0 R20': G42 begins with an arc: the motion to the contour must be a straight line (G00, G01)
+; tools milling
+D2 F600 G00 X-10 Y-10
+G42 G02 X0 Y0 R20
+X20 R30
+M30

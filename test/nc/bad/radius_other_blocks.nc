@@ -1,0 +1,108 @@
+; P-ERR-90011 radius_other_blocks.nc line 106 column 1 'Z100': 101 blocks without motion in the plane G17 between two motions in it, at most 100 are possible (P-CHAN-90036)
+; tools milling
+D2 F600 G00 X-10 Y-10
+G41 G01 X0 Y0
+X20
+Z0
+G04 0.1
+Z2
+G04 0.1
+Z4
+G04 0.1
+Z6
+G04 0.1
+Z8
+G04 0.1
+Z10
+G04 0.1
+Z12
+G04 0.1
+Z14
+G04 0.1
+Z16
+G04 0.1
+Z18
+G04 0.1
+Z20
+G04 0.1
+Z22
+G04 0.1
+Z24
+G04 0.1
+Z26
+G04 0.1
+Z28
+G04 0.1
+Z30
+G04 0.1
+Z32
+G04 0.1
+Z34
+G04 0.1
+Z36
+G04 0.1
+Z38
+G04 0.1
+Z40
+G04 0.1
+Z42
+G04 0.1
+Z44
+G04 0.1
+Z46
+G04 0.1
+Z48
+G04 0.1
+Z50
+G04 0.1
+Z52
+G04 0.1
+Z54
+G04 0.1
+Z56
+G04 0.1
+Z58
+G04 0.1
+Z60
+G04 0.1
+Z62
+G04 0.1
+Z64
+G04 0.1
+Z66
+G04 0.1
+Z68
+G04 0.1
+Z70
+G04 0.1
+Z72
+G04 0.1
+Z74
+G04 0.1
+Z76
+G04 0.1
+Z78
+G04 0.1
+Z80
+G04 0.1
+Z82
+G04 0.1
+Z84
+G04 0.1
+Z86
+G04 0.1
+Z88
+G04 0.1
+Z90
+G04 0.1
+Z92
+G04 0.1
+Z94
+G04 0.1
+Z96
+G04 0.1
+Z98
+G04 0.1
+Z100
+X40
+M30

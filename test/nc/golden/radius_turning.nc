@@ -1,0 +1,19 @@
+; machine X Z / S
+; tools turning
+; finishing a contour with tip 3, boring with tip 4 and a larger nose
+N10 G18 T5 D5
+N20 G00 X30 Z5
+N30 G42 G01 X10 Z2 F200
+N40 Z-20
+N50 X14 Z-22
+N60 Z-40
+N70 G02 X20 Z-46 R6
+N80 G01 X30
+N90 G40 X35 Z-40
+N100 D15
+N105 V.G.WZ_AKT.R = 1.2
+N110 G00 X0 Z5
+N120 G41 G01 X10 Z2
+N130 Z-30
+N140 G40 X0 Z-30
+M30
