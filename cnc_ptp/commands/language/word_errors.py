@@ -16,9 +16,13 @@ from cnc_ptp.nc.expressions import expression_faults
 from cnc_ptp.nc.expressions.readable import READABLE
 from cnc_ptp.nc.faults import Fault
 from cnc_ptp.nc.flow import flow_faults
+from cnc_ptp.nc.radius import radius_faults
 from cnc_ptp.nc.tools import tool_faults
 
-PARTS: Final = (faults, flow_faults, expression_faults, coordinate_faults, spindle_faults, tool_faults)
+PARTS: Final = (
+    *(faults, flow_faults, expression_faults, coordinate_faults, spindle_faults, tool_faults),
+    *(radius_faults,),
+)
 READ_ONLY: Final = expression_faults.NOT_ASSIGNABLE.number
 
 

@@ -1,3 +1,3 @@
-; P-ERR-21615 hsc_auto_off.nc line 2 column 32 '#HSC ON [BSPLINE PATH_DEV=0.01 AUTO_OFF_PATH=1]': 'AUTO_OFF_PATH=1]' is not available in #HSC; its syntax is #HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF
+; P-ERR-21615 hsc_auto_off.nc line 2 column 32 '#HSC ON [BSPLINE PATH_DEV=0.01 AUTO_OFF_PATH=1]': 'AUTO_OFF_PATH=1' is not available in #HSC; its syntax is #HSC ON [BSPLINE PATH_DEV=0.01 TRACK_DEV=5] or #HSC OFF
 #HSC ON [BSPLINE PATH_DEV=0.01 AUTO_OFF_PATH=1]
 M30
