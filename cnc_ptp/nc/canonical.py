@@ -53,12 +53,29 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: SIN2, 3: "HSC"}
 """The slope for each value of P-CHAN-00071."""
 
 
+class Thread(NamedTuple):
+    """G33: the move follows the angle of a spindle that turns, by its canonical name.
+
+    angle    by which the spindle turns during the move, deg, > 0
+    lead     mm for one revolution along the axis at the place `axis`, as programmed
+    offset   deg from the zero passage of the spindle to the start of the thread
+    speed    of the spindle as far as the program knows it, deg/s, signed; 0.0: not known
+    """
+
+    spindle: str
+    angle: float
+    lead: float
+    axis: int
+    offset: float = 0.0
+    speed: float = 0.0
+
+
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
-    ends.
+    ends; `thread`: a spindle leads the move, and `feed` is what its speed amounts to (0.0: not known).
     """
 
     target: tuple[float, ...]
@@ -68,6 +85,7 @@ class LinearMove(NamedTuple):
     full_override: bool = False
     transition: Transition = THROUGH
     measures: tuple[int, ...] = ()
+    thread: Thread | None = None
 
 
 Direction = tuple[float, ...]

@@ -19,6 +19,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFeedforward,
     SpindleFunction,
     SpindleLink,
+    Thread,
     Timer,
     WaitForPath,
     number,
@@ -99,6 +100,8 @@ def _motion(motion: Motion) -> str:
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     slope += " G166" if motion.full_override else ""
     slope += _transition(motion.transition)
+    if isinstance(motion, LinearMove) and motion.thread is not None:
+        return f"thread {target} {_thread(motion.thread)}"
     if isinstance(motion, LinearMove):
         kind = "measure" if motion.measures else "line"
         return (f"rapid {target}" if motion.rapid else f"{kind} {target} feed {number(motion.feed)}") + slope
@@ -109,6 +112,11 @@ def _motion(motion: Motion) -> str:
         f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
         f" sweep {number(motion.sweep)} feed {number(motion.feed)}{slope}"
     )
+
+
+def _thread(thread: Thread) -> str:
+    turns, offset = number(thread.angle / 360.0), f" offset {number(thread.offset)}" if thread.offset else ""
+    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{offset}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

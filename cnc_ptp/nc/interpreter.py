@@ -35,6 +35,7 @@ from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
+from cnc_ptp.nc.thread_cutting import led_by_spindle, note_functions, note_motion, take_offset
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
 from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
@@ -192,6 +193,8 @@ def _resolve(
         elif code.function is not None:
             control += code.function(channel, state, block, code)
             moves = moves and not code.takes_axes
+    if block.values is not None:
+        take_offset(channel, state, block)
     before = state.programmed
     selected = block.functions and (path.spindle or not path.own_words) and tool_words(channel, state, block)
     if state.machine_words:
@@ -205,10 +208,14 @@ def _resolve(
     functions: tuple[Function, ...] = ()
     if block.functions and (path.spindle or not path.own_words):
         functions = block_functions(channel, state, block)
+        note_functions(channel, state, block, functions)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None:
+        if isinstance(motion, LinearMove) and motion.thread is not None:
+            motion = led_by_spindle(channel, state, block, motion, motion.thread)
         motion = _moved(channel, state, block, motion, check_target)
+        note_motion(state, motion)
     state.once = None
     stop = block.flow if block.flow != "return" else ""
     if stop == "end":

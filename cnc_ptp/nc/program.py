@@ -260,6 +260,27 @@ class Drilling(NamedTuple):
 NO_DRILLING: Final = Drilling()
 
 
+class ThreadState(NamedTuple):
+    """Numbers of G33 that stay to the end of the program.
+
+    letter    of the pitch (I, J, K), "" none yet; `pitch` in mm per revolution
+    offset    deg from the zero passage of the spindle to the start of the thread
+    runs      the last motion was one of G33: another one continues its thread
+    changed   what has commanded the spindle since, "" nothing
+    stopped   spindles that the program has stopped
+    """
+
+    letter: str = ""
+    pitch: float = 0.0
+    offset: float = 0.0
+    runs: bool = False
+    changed: str = ""
+    stopped: frozenset[str] = frozenset()
+
+
+NO_THREAD: Final = ThreadState()
+
+
 class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
@@ -362,6 +383,7 @@ class ModalState:
     following: Iterator[Step] | None = None
     machine_words: bool = False
     tool: ToolState = field(default_factory=ToolState)
+    thread: ThreadState = NO_THREAD
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""

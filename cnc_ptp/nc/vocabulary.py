@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, transitions
+from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, thread_cutting, transitions
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 from cnc_ptp.nc.tools.compensation import follow_plane
@@ -64,7 +64,7 @@ _G_CODES = (
     GCode(22, "mirror", prepare=codes.mirror),
     GCode(23, "mirror", prepare=codes.mirror),
     GCode(24, "mirror", later="mirroring of single axes"),
-    GCode(33, "path", later="thread cutting"),
+    GCode(33, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
     GCode(40, "tool radius"),
     GCode(41, "tool radius", later="compensation of the tool radius"),
     GCode(42, "tool radius", later="compensation of the tool radius"),
