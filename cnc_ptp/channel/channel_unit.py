@@ -425,7 +425,11 @@ class ChannelUnit(Unit):
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
         """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
-        points = self._motion.follow(missing)
+        try:
+            points = self._motion.follow(missing)
+        except CncError as error:
+            self._fault_in_line(cycle, error)
+            return
         self._add(rows, points)
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
@@ -575,10 +579,11 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
             elif isinstance(block, SpindleBlock):
                 self._check_refused(first_cycle, node, block)
-        try:
-            self._sequence.read(first_cycle, inputs)
-        except CncError as error:
-            self._fault_in_line(first_cycle, error)
+        for read in (self._motion.read_spindles, self._sequence.read):
+            try:
+                read(first_cycle, inputs)
+            except CncError as error:
+                self._fault_in_line(first_cycle, error)
         self._warn(first_cycle)
         self._report_held(first_cycle)
 

@@ -44,6 +44,9 @@ LONG_CYCLE: Final = 0.01
 
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
+    led = [isinstance(each, LinearMove) and each.thread is not None for each in (motion, following)]
+    if any(led):
+        return False  # a spindle leads one of them
     alike = motion.full_override == following.full_override and motion.slope == following.slope
     blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
     return alike and blended and not motion.transition.stops

@@ -200,6 +200,9 @@ CONTOUR_PATH_DEV = "P-CHAN-90012"  # prog_start.contour.path_dev
 CONTOUR_TRACK_DEV = "P-CHAN-90013"  # prog_start.contour.track_dev
 HSC_PATH_DEV = "P-CHAN-90014"  # prog_start.hsc.path_dev
 HSC_TRACK_DEV = "P-CHAN-90015"  # prog_start.hsc.track_dev
+THREAD_RUN_UP = "P-CHAN-90025"  # thread.run_up
+THREAD_RETRACT_AXIS = "P-CHAN-90026"  # thread.retract_axis
+THREAD_RETRACT_DISTANCE = "P-CHAN-90027"  # thread.retract_distance
 
 # startup list
 WERKZ_DATA = "P-STUP-00010"  # werkz_data

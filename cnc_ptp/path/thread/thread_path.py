@@ -1,0 +1,636 @@
+"""A thread (G33) as the path of a channel: the angle φ by which the spindle has turned takes the place of time.
+
+| phase | φ | next |
+|---|---|---|
+| WAITS | 0; the axes stand until the spindle is where the run-up has to begin | RUNS_UP |
+| RUNS_UP | a ramp with limited jerk to the speed ω of the spindle | FOLLOWS |
+| FOLLOWS | the angle that is expected of the spindle, after each of its blocks anew | RUNS_OUT |
+| RUNS_OUT | a ramp that ends exactly at the end of the last block | finished |
+| STOPS | a ramp to a standstill after `stop` | stopped |
+
+The thread begins (φ = 0) where the angle of the spindle is k · 360 deg + OFFSET, counted in the direction in which it
+turns. A run-up of the duration T goes as far as D = ∫φ'dt < ω·T, so it begins while the spindle still lacks ω·T - D. At
+its end φ is exactly the angle of the spindle, at every speed: passes from the same start lie in the same groove.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from enum import Enum, auto
+from math import ceil, hypot
+from typing import Final, NamedTuple
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stopping_distance
+from cnc_ptp.motion.setpoints import MotionState
+from cnc_ptp.nc.canonical import LinearMove
+from cnc_ptp.nc.canonical import Thread as ThreadWords
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
+from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.thread.lead import Fading, fading
+from cnc_ptp.path.thread.spindle_angle import SpindleAngle
+from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
+from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
+from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
+from cnc_ptp.protocol.spindle_states import SpindleBit
+
+SPINDLE_STANDS: Final = 22080
+THREAD_TOO_FAST: Final = 22082
+THREAD_TOO_SHORT: Final = 22083
+RUN_UP_TOO_LONG: Final = 22084
+SPINDLE_HELD: Final = 51109
+
+TURN: Final = 360.0
+PATIENCE: Final = 0.5
+"""s that a spindle has to start to turn after its command."""
+AHEAD: Final = 50
+"""Blocks behind the active one that are looked at."""
+SHORTEST_HORIZON: Final = 2.0
+"""Blocks of cycles within which the path at the soonest is where the spindle is."""
+STANDS: Final = 6.0
+"""deg/s below which a spindle that stops stands: 1 rpm."""
+ROUNDING: Final = 1e-9
+"""deg."""
+RETRACT_SHARE: Final = 0.4
+"""Of the acceleration and jerk of the retract axis, if it also takes part in the thread."""
+
+
+class Phase(Enum):
+    """Where a thread is."""
+
+    WAITS = auto()
+    RUNS_UP = auto()
+    FOLLOWS = auto()
+    RUNS_OUT = auto()
+    STOPS = auto()
+
+
+class Retract(NamedTuple):
+    """How the tool leaves a thread that is broken off: place and name of the axis, its way in mm, signed."""
+
+    axis: int
+    name: str
+    way: float
+
+
+class ThreadSettings(NamedTuple):
+    """What all threads of a channel have in common.
+
+    names        of the axes
+    limits       of the axes
+    path_axes    places of the axes whose path the feed is for
+    cycle_time   s
+    delay        cycles by which the axes act later than their setpoints come
+    run_up       longest way in mm from the start on that may be out of pitch, 0.0: any
+    retract      None: the path stops in the thread
+    """
+
+    names: Sequence[str]
+    limits: Sequence[AxisLimits]
+    path_axes: Sequence[int]
+    cycle_time: float
+    delay: int
+    run_up: float
+    retract: Retract | None
+
+
+class ThreadPath:
+    """Runs the blocks of a thread.
+
+    block   number of the active one, from 0
+    feed    programmed feed of the active block, mm/s: what the speed of the spindle amounts to
+    """
+
+    def __init__(
+        self, settings: ThreadSettings, node: str, motion: LinearMove, start: tuple[float, ...], source: MotionSource | None
+    ) -> None:
+        """`node` of the spindle; `source`: the motions behind `motion`."""
+        assert motion.thread is not None
+        self._settings, self._node, self._source = settings, node, source
+        self._words: ThreadWords = motion.thread
+        self._start = start
+        self._motions = [motion]
+        self._closed = source is None
+        self._geometry: ThreadGeometry | None = None
+        """From the moment on at which the speed is known."""
+        self._spindle = SpindleAngle(settings.cycle_time)
+        self._report: SpindleBlock | None = None
+        self._renewed = True
+        """The newest report has been used."""
+        self._block_cycles = 1
+        self._last_cycle = 0
+        """Of the block of cycles that is being computed."""
+        self._waited = 0
+        """Cycles that the spindle has not turned in."""
+        self._cycle = 0
+        """The last one that was given out."""
+        self._state: MotionState = (0.0, 0.0, 0.0, 0.0)
+        """φ and its derivatives in that cycle."""
+        self._pending: MotionState | None = None
+        """Of the next cycle, if that belongs to the next block already."""
+        self.phase = Phase.WAITS
+        self._profile: Profile | None = None
+        self._profile_begin = 0.0
+        self._fading: Fading | None = None
+        self._fading_begin = 0
+        self._sign, self._zero = 1.0, 0.0
+        self._speed = abs(motion.thread.speed)
+        self._run_up = self._run_out = 0.0
+        """Their angles, deg."""
+        self._retract: Profile | None = None
+        self._retract_begin = 0
+        self._stops = False
+        self.done = False
+        self.remaining_time = 0.0
+        """s from the end of the thread to the cycle that is still to be filled."""
+        self.released = True
+        """Override and feed hold permit the start."""
+        self.block = 0
+        self.notes: list[str] = []
+        self._extend()
+
+    # what the channel asks
+
+    @property
+    def waits(self) -> bool:
+        """The axes still stand at the start."""
+        return self.phase is Phase.WAITS
+
+    @property
+    def feed(self) -> float:
+        return self._motions[self.block].feed
+
+    @property
+    def target(self) -> tuple[float, ...]:
+        """End of the last block that is known."""
+        return self._motions[-1].target
+
+    @property
+    def stopped(self) -> bool:
+        """`stop` was called, and the axes are at a standstill."""
+        if not self._stops or not self._retracted:
+            return False
+        ramp = self._profile
+        ended = ramp is not None and self._time(self._cycle) >= ramp.duration
+        return self.done or self.waits or (self.phase in (Phase.STOPS, Phase.RUNS_OUT) and ended)
+
+    @property
+    def passes(self) -> bool:
+        """The active block is finished, and the path is in the next one already."""
+        return self._pending is not None and self._block_of(self._pending[0]) > self.block
+
+    def pass_block(self) -> None:
+        """The next block is the active one."""
+        self.block += 1
+
+    @property
+    def angle_to_go(self) -> float:
+        """deg to the end of the active block."""
+        begin = 0.0 if self.waits else self._state[0]
+        return max(0.0, self._end_of(self.block) - begin)
+
+    @property
+    def part_to_go(self) -> float:
+        """Part of the active block that is still to come."""
+        thread = self._motions[self.block].thread
+        assert thread is not None
+        return min(1.0, self.angle_to_go / thread.angle)
+
+    @property
+    def time_to_go(self) -> float:
+        """s to the end of the active block at the speed of the spindle, without waiting for it."""
+        return self.angle_to_go / self._speed if self._speed > 0.0 else -1.0
+
+    @property
+    def length_known(self) -> float:
+        """mm of path that are known."""
+        if self._geometry is None:
+            return 0.0
+        return (self._geometry.end - self._state[0]) * self._geometry.rate_of(self.block)
+
+    @property
+    def mismatch(self) -> float:
+        """deg by which the path is ahead of what is expected of the spindle; 0.0 while it does not follow."""
+        return self._state[0] - self._expected(self._cycle)[0] if self.phase is Phase.FOLLOWS else 0.0
+
+    @property
+    def waits_for(self) -> str:
+        """What the thread waits for and does not come with time alone."""
+        report = self._report
+        if not self.waits or report is None or not is_held(report):
+            return ""
+        return f"an override of spindle {self._node} above 0"
+
+    # from block to block
+
+    def begin(self, cycle: int) -> None:
+        """The thread begins behind `cycle`."""
+        self._cycle = cycle
+
+    def read(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
+        """The report of the spindle for the block before `first_cycle`.
+
+        Raises CncError 51109 for a spindle that is held or stopped, 22082 for one that has become too fast.
+        """
+        report = feedback.get(self._node)
+        self._report = report if isinstance(report, SpindleBlock) else None
+        self._extend()
+        if self._report is None:
+            return
+        self._block_cycles = self._report.count
+        self._last_cycle = first_cycle + self._report.count
+        self._spindle.read(self._report.first_cycle, self._report.actual_position_deg)
+        self._renewed = False
+        if not self.waits and not self._stops and self.phase is not Phase.RUNS_OUT and not self._report.error_id[-1]:
+            self._watch(self._report)
+
+    def _watch(self, report: SpindleBlock) -> None:
+        why = ""
+        if is_held(report):
+            why = "is held by override 0"
+        elif report.state[-1] != AxisStateCode.CONTINUOUS_MOTION:
+            why = f"is in {state_name(AxisStateCode(report.state[-1]))}"
+        if why:
+            raise CncError(SPINDLE_HELD, f"spindle {self._node} {why} within a thread (G33)")
+        if self._geometry is not None:
+            number = self._geometry.block_at(self._state[0])
+            self._check_velocity(self._geometry.slopes_of(number), number, abs(self._spindle.speed))
+
+    def follow(self, count: int) -> list[LinkedPoint]:
+        """The next `count` cycles of the active block; fewer when it ends before.
+
+        Raises CncError 22080 … 22084 for a thread that cannot be begun.
+        """
+        points: list[LinkedPoint] = []
+        self._renew()
+        while len(points) < count:
+            state = self._pending or self._next(self._cycle + 1)
+            if state is None:
+                break
+            self._pending = state
+            if self.passes:
+                break
+            self._pending = None
+            self._cycle += 1
+            self._state = state
+            points.append(self._point(state))
+        return points
+
+    def _point(self, state: MotionState) -> LinkedPoint:
+        geometry = self._geometry
+        if geometry is None or self.phase is Phase.WAITS:
+            still = tuple([(position, 0.0, 0.0, 0.0) for position in self._start])
+            return still, 0.0, self._length_of_first()
+        states = geometry.evaluate(*state)
+        if self._retract is not None:
+            states = self._with_retract(states)
+        velocity = hypot(*[states[axis][1] for axis in self._settings.path_axes])
+        return states, velocity, max(0.0, self._end_of(self.block) - state[0]) * geometry.rate_of(self.block)
+
+    def _length_of_first(self) -> float:
+        ways = [end - begin for begin, end in zip(self._start, self._motions[0].target, strict=True)]
+        return hypot(*[ways[axis] for axis in self._settings.path_axes])
+
+    def _end_of(self, block: int) -> float:
+        if self._geometry is not None:
+            return self._geometry.begin_of(block + 1)
+        return angle_of(self._motions[0])
+
+    def _block_of(self, angle: float) -> int:
+        return 0 if self._geometry is None else self._geometry.block_at(angle)
+
+    # the motions of the thread
+
+    def _extend(self) -> None:
+        """Takes the blocks of G33 that follow, as far as they are known; a joint that does not fit ends the thread."""
+        while not self._closed and len(self._motions) - self.block <= AHEAD:
+            assert self._source is not None
+            motion = self._source.peek()
+            if motion is None and self._source.busy:
+                return
+            if not isinstance(motion, LinearMove) or not self._continues(motion) or not self._joined(motion):
+                self._closed = True
+                return
+            self._source.accept()
+            self._motions.append(motion)
+
+    def _continues(self, motion: LinearMove) -> bool:
+        thread = motion.thread
+        return thread is not None and (thread.spindle, thread.offset) == (self._words.spindle, self._words.offset)
+
+    def _joined(self, motion: LinearMove) -> bool:
+        """Appends a motion to a thread that has begun; False if its joint does not fit."""
+        geometry = self._geometry
+        if geometry is None:
+            return True
+        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS) or self._stops:
+            return False
+        end = geometry.end
+        geometry.append(motion.target, angle_of(motion), self._speed)
+        last = len(geometry) - 1
+        reach = end - 0.5 * geometry.zone_of(last)
+        begin = geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1)
+        out = self._way_out(geometry, last)
+        fits = reach >= max(begin, self._run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
+        fits = fits and self._state[0] + self._speed * self._horizon < reach
+        if not fits or self._too_fast(geometry.slopes_of(last), self._speed):
+            geometry.pop()
+            return False
+        self._run_out = out
+        return True
+
+    @property
+    def _horizon(self) -> float:
+        return SHORTEST_HORIZON * self._block_cycles * self._settings.cycle_time
+
+    def _limits(self, geometry: ThreadGeometry, blocks: Sequence[int], velocity: float) -> Limits:
+        """Of φ; the retract axis keeps a part for its retract."""
+        spared = [1.0] * len(self._settings.limits)
+        if self._settings.retract is not None:
+            spared[self._settings.retract.axis] = 1.0 - RETRACT_SHARE
+        return geometry.limits(blocks, velocity, spared)
+
+    def _way_out(self, geometry: ThreadGeometry, block: int) -> float:
+        """deg of the ramp at the end of a block."""
+        limits = self._limits(geometry, [block], self._speed)
+        return stopping_distance(self._speed, 0.0, limits.deceleration, limits.jerk)
+
+    # start
+
+    def _renew(self) -> None:
+        """After each report of the spindle: the start, or how the path follows, is planned anew."""
+        if self._renewed:
+            return
+        self._renewed = True
+        if self.phase is Phase.WAITS:
+            self._try_to_begin()
+        elif self.phase is Phase.FOLLOWS:
+            self._follow_from(self._cycle, self._state)
+
+    def _try_to_begin(self) -> None:
+        report = self._report
+        if self._stops or not self.released or report is None or not self._spindle.known or not self._turns(report):
+            return
+        self._sign = 1.0 if self._spindle.speed > 0.0 else -1.0
+        self._speed = abs(self._spindle.speed)
+        geometry = self._checked()
+        limits = self._limits(geometry, [0], self._speed)
+        ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, limits)
+        cycle_time = self._settings.cycle_time
+        angle, speed, _, _ = self._turned(self._cycle + ramp.duration / cycle_time)
+        missing = ramp.end[0] - angle
+        turns = ceil(-missing / TURN - ROUNDING)
+        begin = self._cycle + (missing + turns * TURN) / speed / cycle_time
+        if begin >= self._last_cycle:
+            return
+        self._zero = turns * TURN
+        self._geometry, self._profile, self._profile_begin = geometry, ramp, begin
+        self.phase = Phase.RUNS_UP
+        self._note_begin(geometry)
+
+    def _turns(self, report: SpindleBlock) -> bool:
+        """The spindle turns at its speed. Raises CncError 22080."""
+        if report.state[-1] == AxisStateCode.CONTINUOUS_MOTION:
+            return report.speed_reached[-1] and abs(self._spindle.speed) > STANDS
+        self._waited += report.count
+        if self._waited * self._settings.cycle_time > PATIENCE:
+            state = state_name(AxisStateCode(report.state[-1]))
+            reason = f"spindle {self._node} does not turn for the thread (G33), it is in {state}"
+            raise CncError(SPINDLE_STANDS, reason, "the thread is not begun")
+        return False
+
+    def _checked(self) -> ThreadGeometry:
+        """The geometry at the present speed, if the axes can follow it. Raises CncError 22082 … 22084."""
+        settings = self._settings
+        geometry = ThreadGeometry(self._start, settings.limits, settings.path_axes)
+        for number, motion in enumerate(self._motions):
+            geometry.append(motion.target, angle_of(motion), self._speed)
+            self._check_velocity(geometry.slopes_of(number), number, self._speed)
+        last = len(geometry) - 1
+        ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, self._limits(geometry, [0], self._speed))
+        self._run_up, self._run_out = ramp.end[0], self._way_out(geometry, last)
+        for number in range(last + 1):
+            self._check_length(geometry, number)
+        self._check_run_up()
+        return geometry
+
+    def _too_fast(self, slopes: Sequence[float], speed: float) -> bool:
+        return any(abs(m) * speed > axis.velocity for m, axis in zip(slopes, self._settings.limits, strict=True))
+
+    def _check_velocity(self, slopes: Sequence[float], number: int, speed: float) -> None:
+        if not self._too_fast(slopes, speed):
+            return
+        settings, motion = self._settings, self._motions[number]
+        for name, m, axis in zip(settings.names, slopes, settings.limits, strict=True):
+            needed = abs(m) * speed
+            if needed > axis.velocity:
+                what = f"{lead_of(motion)} at {speed / DEG_S_PER_RPM:.6g} rpm needs {needed:.6g} mm/s of axis {name}"
+                reason = f"{what}, its limit is {axis.velocity:.6g} mm/s (P-AXIS-00212)"
+                raise CncError(THREAD_TOO_FAST, reason, needed=needed, limit=axis.velocity)
+
+    def _check_length(self, geometry: ThreadGeometry, number: int) -> None:
+        """A block must have room for what is at its begin and at its end."""
+        last = len(geometry) - 1
+        begin = self._run_up if number == 0 else 0.5 * geometry.zone_of(number)
+        end = self._run_out if number == last else 0.5 * geometry.zone_of(number + 1)
+        motion = self._motions[number]
+        angle, pitch = angle_of(motion), lead_value(motion) / TURN
+        missing = begin + end - angle
+        if missing > ROUNDING:
+            parts = f"{'run-up' if number == 0 else 'joint'} {begin * pitch:.3f} mm"
+            parts += f" and {'run-out' if number == last else 'joint'} {end * pitch:.3f} mm"
+            speed = f"{self._speed / DEG_S_PER_RPM:.6g} rpm"
+            reason = f"block {number + 1} of the thread is {missing * pitch:.3f} mm too short at {speed}: {parts}"
+            reason += f" need more than its {angle * pitch:.3f} mm"
+            raise CncError(THREAD_TOO_SHORT, reason, missing=missing * pitch)
+
+    def _check_run_up(self) -> None:
+        most = self._settings.run_up
+        way = self._run_up * lead_value(self._motions[0]) / TURN
+        if most and way > most:
+            reason = f"the run-up of the thread takes {way:.3f} mm, {way - most:.3f} mm more than"
+            reason += f" the {most:g} mm in which it may be out of pitch (P-CHAN-90025)"
+            raise CncError(RUN_UP_TOO_LONG, reason, way=way, limit=most)
+
+    def _note_begin(self, geometry: ThreadGeometry) -> None:
+        first, last = lead_value(self._motions[0]) / TURN, lead_value(self._motions[len(geometry) - 1]) / TURN
+        speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
+        ways = f"run-up {self._run_up * first:.3f} mm, run-out {self._run_out * last:.3f} mm"
+        self.notes.append(f"thread at {speed}: {ways}")
+
+    # the angle of the path
+
+    def _turned(self, cycle: float) -> MotionState:
+        """What the spindle is expected to have turned from the zero passage to when the axes act, in its direction."""
+        angle, speed, gain, jerk = self._spindle.at(cycle + self._settings.delay)
+        sign = self._sign
+        return sign * angle - sign * self._words.offset, sign * speed, sign * gain, sign * jerk
+
+    def _expected(self, cycle: float) -> MotionState:
+        angle, speed, gain, jerk = self._turned(cycle)
+        return angle - self._zero, speed, gain, jerk
+
+    def _time(self, cycle: int) -> float:
+        """s since the begin of the active ramp."""
+        return (cycle - self._profile_begin) * self._settings.cycle_time
+
+    def _next(self, cycle: int) -> MotionState | None:
+        """φ at the next cycle; None when the thread has ended before it."""
+        if self.phase is Phase.WAITS:
+            return self._state
+        if self.phase is Phase.FOLLOWS:
+            return self._following(cycle)
+        assert self._profile is not None
+        t = self._time(cycle)
+        state = self._profile.state_at(t)
+        if self.phase is Phase.RUNS_UP and t >= self._profile.duration:
+            self.phase = Phase.FOLLOWS
+            self._follow_from(cycle, state)
+        elif self.phase is Phase.RUNS_OUT and t >= self._profile.duration and self._retracted:
+            self.done = True
+            self.remaining_time = min(t - self._profile.duration, self._settings.cycle_time)
+            return None
+        return state
+
+    def _follow_from(self, cycle: int, state: MotionState) -> None:
+        """From a state at `cycle` on the path goes over to the angle that is expected of the spindle."""
+        assert self._geometry is not None
+        angle, speed, gain, _ = self._expected(cycle)
+        mismatch = (state[0] - angle, state[1] - speed, state[2] - gain)
+        near = sorted({self._block_of(state[0]), self._block_of(min(self._geometry.end, state[0] + speed * self._horizon))})
+        limits = self._limits(self._geometry, near, abs(speed))
+        self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
+
+    def _following(self, cycle: int) -> MotionState | None:
+        """φ at `cycle` from the spindle; its end, a stop and a retract may come first."""
+        geometry = self._geometry
+        assert self._fading is not None and geometry is not None
+        expected = self._expected(cycle)
+        correction = self._fading.at((cycle - self._fading_begin) * self._settings.cycle_time)
+        state = (
+            expected[0] + correction[0],
+            expected[1] + correction[1],
+            expected[2] + correction[2],
+            expected[3] + correction[3],
+        )
+        limits = self._limits(geometry, [len(geometry) - 1], max(self._state[1], STANDS))
+        way = stopping_distance(state[1], state[2], limits.deceleration, limits.jerk)
+        if state[0] + way > geometry.end:
+            angle, speed, gain, _ = self._state
+            self._ramp(Phase.RUNS_OUT, plan_to_position(angle, speed, gain, geometry.end, limits))
+            self._closed = True
+            return self._next(cycle)
+        if self._stops and self._may_stop(state):
+            self._ramp_down()
+            return self._next(cycle)
+        return state
+
+    def _ramp(self, phase: Phase, profile: Profile) -> None:
+        self.phase, self._profile, self._profile_begin = phase, profile, float(self._cycle)
+
+    # stop and retract
+
+    @property
+    def _stops_in_step(self) -> bool:
+        """The spindle is on its way to a standstill, and the path can follow it there."""
+        report = self._report
+        if report is None:
+            return False
+        return report.state[-1] != AxisStateCode.CONTINUOUS_MOTION or is_held(report)
+
+    def stop(self) -> None:
+        """Breaks the thread off: by a retract, in step with a spindle that stops, or on the ramp of the path."""
+        if self._stops:
+            return
+        self._stops = True
+        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
+            return
+        if self._settings.retract is not None:
+            self._begin_retract(self._settings.retract)
+        elif self.phase is Phase.RUNS_UP or not self._stops_in_step:
+            self._pending = None
+            self._ramp_down()
+
+    @property
+    def stop_text(self) -> str:
+        """What `stop` does now, for events; empty while nothing moves or the thread ends anyway."""
+        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
+            return ""
+        retract = self._settings.retract
+        if retract is not None:
+            where = f"axis {retract.name} retracts by {retract.way:g} mm while the path follows spindle {self._node}"
+            return f"{where}, then the path stops"
+        if self.phase is Phase.FOLLOWS and self._stops_in_step:
+            return f"the path follows spindle {self._node} to its standstill in the thread"
+        return "the path stops on its ramp in the thread"
+
+    def _may_stop(self, state: MotionState) -> bool:
+        if self._retract is not None:
+            return self._retracted
+        return not self._stops_in_step or state[1] < STANDS
+
+    def _ramp_down(self) -> None:
+        assert self._geometry is not None
+        angle, speed, gain, _ = self._state
+        number = self._block_of(angle)
+        blocks = [number] if number + 1 >= len(self._geometry) else [number, number + 1]
+        limits = self._limits(self._geometry, blocks, max(speed, STANDS))
+        self._ramp(Phase.STOPS, plan_to_velocity(angle, speed, gain, 0.0, limits))
+
+    def _begin_retract(self, retract: Retract) -> None:
+        """The retract gets the whole of its axis, or a part if the axis takes part in the thread."""
+        assert self._geometry is not None
+        axis = self._settings.limits[retract.axis]
+        slope = max(abs(self._geometry.slopes_of(block)[retract.axis]) for block in range(len(self._geometry)))
+        part = RETRACT_SHARE if slope else 1.0
+        velocity = max(axis.velocity - slope * self._speed, RETRACT_SHARE * axis.velocity)
+        limits = Limits(velocity, part * axis.acceleration, part * axis.deceleration, part * axis.jerk)
+        self._retract, self._retract_begin = plan_rest_to_rest(0.0, retract.way, limits), self._cycle
+
+    @property
+    def retracts(self) -> bool:
+        """The thread was broken off by a retract."""
+        return self._retract is not None
+
+    @property
+    def _retracted(self) -> bool:
+        """No retract is under way."""
+        if self._retract is None:
+            return True
+        return (self._cycle - self._retract_begin) * self._settings.cycle_time >= self._retract.duration
+
+    def _with_retract(self, states: tuple[AxisState, ...]) -> tuple[AxisState, ...]:
+        retract = self._settings.retract
+        assert self._retract is not None and retract is not None
+        t = (self._cycle - self._retract_begin) * self._settings.cycle_time
+        if t >= self._retract.duration:
+            added: MotionState = (retract.way, 0.0, 0.0, 0.0)
+        else:
+            added = self._retract.state_at(t)
+        q, v, a, j = states[retract.axis]
+        moved = (q + added[0], v + added[1], a + added[2], j + added[3])
+        return (*states[: retract.axis], moved, *states[retract.axis + 1 :])
+
+
+def angle_of(motion: LinearMove) -> float:
+    """deg by which the spindle turns in a block of a thread."""
+    assert motion.thread is not None
+    return motion.thread.angle
+
+
+def lead_value(motion: LinearMove) -> float:
+    """mm per revolution."""
+    assert motion.thread is not None
+    return motion.thread.lead
+
+
+def lead_of(motion: LinearMove) -> str:
+    """For messages."""
+    return f"a thread with {lead_value(motion):g} mm per revolution"
+
+
+def is_held(report: SpindleBlock) -> bool:
+    """Override 0 acts on the spindle."""
+    return report.override_percent[-1] == 0.0 and not report.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED
