@@ -59,6 +59,7 @@ NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
 INTERPRETER_SLOW = 22036
+THREAD_BROKEN = 22087
 
 ENOUGH = 0.5
 """Fill of the buffer of blocks at which the interpreter has kept up again."""
@@ -296,6 +297,9 @@ class ChannelUnit(Unit):
             if self._sequence.phase is Phase.RAMP_DOWN:
                 self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
             self._error_id = 0
+        if broken_off := self._motion.stop_text:
+            text = f"channel {self.name}: reset within a thread; {broken_off}"
+            self.event(cycle, Severity.WARNING, THREAD_BROKEN, text, self._sequence.source.line)
         self._sequence.ramp_down(keep=self._turning_after_reset)
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
@@ -460,6 +464,9 @@ class ChannelUnit(Unit):
             self._sequence.offsets = None
 
     def _warn(self, cycle: int) -> None:
+        line = self._sequence.source.line
+        for severity, number, text in self._motion.take_notes():
+            self.event(cycle, severity, number, f"channel {self.name}: {text} (line {line})", line)
         messages, self._sequence.messages = self._sequence.messages, []
         for number, text, line, values in messages:
             self.event(cycle, Severity.INFO, number, text, line, values)
@@ -664,7 +671,7 @@ class ChannelUnit(Unit):
         if self._error_id:
             return
         idle = self._sequence.phase is Phase.IDLE
-        effect = "the path stops on its ramp and the program is aborted"
+        effect = f"{self._motion.stop_text or 'the path stops on its ramp'} and the program is aborted"
         if idle:
             effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
         line = 0 if idle else self._sequence.source.line

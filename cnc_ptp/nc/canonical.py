@@ -88,6 +88,11 @@ class LinearMove(NamedTuple):
     thread: Thread | None = None
 
 
+def led_by_spindle(motion: object) -> bool:
+    """A motion of G33."""
+    return isinstance(motion, LinearMove) and motion.thread is not None
+
+
 Direction = tuple[float, ...]
 """A unit vector, one value for each axis of the channel."""
 

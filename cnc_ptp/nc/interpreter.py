@@ -35,7 +35,7 @@ from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.thread_cutting import led_by_spindle, note_functions, note_motion, take_offset
+from cnc_ptp.nc.thread_cutting import note_functions, note_motion, take_offset, with_speed
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
 from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
@@ -213,7 +213,7 @@ def _resolve(
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None:
         if isinstance(motion, LinearMove) and motion.thread is not None:
-            motion = led_by_spindle(channel, state, block, motion, motion.thread)
+            motion = with_speed(channel, state, block, motion, motion.thread)
         motion = _moved(channel, state, block, motion, check_target)
         note_motion(state, motion)
     state.once = None

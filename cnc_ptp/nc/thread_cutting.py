@@ -19,6 +19,7 @@ from cnc_ptp.nc.canonical import (
     Motion,
     SpindleFunction,
     Thread,
+    led_by_spindle,
     number,
 )
 from cnc_ptp.nc.motions import target_of
@@ -122,9 +123,7 @@ def note_functions(channel: Channel, state: ModalState, block: NcBlock, function
         state.thread = modes
 
 
-def led_by_spindle(
-    channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove, led: Thread
-) -> LinearMove:
+def with_speed(channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove, led: Thread) -> LinearMove:
     """The motion with the speed of its spindle, as the block has left it. Raises ProgramError 21665, 21666."""
     modes, key = state.thread, led.spindle
     name, column = name_of(channel, state, key), block.source.column("G33")
@@ -148,6 +147,6 @@ def led_by_spindle(
 def note_motion(state: ModalState, motion: Motion | None) -> None:
     """A motion of G33 begins or continues a thread, any other one ends it."""
     if isinstance(motion, (LinearMove, CircularMove, Dwell, HomeAxes)):
-        runs = isinstance(motion, LinearMove) and motion.thread is not None
+        runs = led_by_spindle(motion)
         if runs or state.thread.runs:
             state.thread = state.thread._replace(runs=runs, changed="")

@@ -277,6 +277,18 @@ class PathMotion:
         if self.thread is not None:
             self.thread.read(first_cycle, feedback)
 
+    @property
+    def stop_text(self) -> str:
+        """How a thread is broken off now, for events; empty without one that runs."""
+        return "" if self.thread is None else self.thread.stop_text
+
+    def take_notes(self) -> list[tuple[int, int, str]]:
+        """Severity, number and text of what there is to be told of the active thread."""
+        if self.thread is None or not self.thread.notes:
+            return []
+        notes, self.thread.notes = self.thread.notes, []
+        return notes
+
     def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource, cell_time: float) -> list[float]:
         """Seconds of a motion from `start`, at rest, and of those that are linked to it, with override 100 %.
 
@@ -372,7 +384,7 @@ class PathMotion:
         if self._linked is not None:
             self._linked.look_ahead.set_override(acting)
         if self.thread is not None:
-            self.thread.released = override > 0.0
+            self.thread.release(override, held=held)
 
     def _set_full_override(self, full: bool) -> None:
         if full != self._full_override:

@@ -55,9 +55,10 @@ class SpindleAngle:
         """deg/s, signed."""
         return self._state[1]
 
-    def forget(self) -> None:
-        """Nothing is known of the spindle."""
-        self._angles.clear()
+    @property
+    def acceleration(self) -> float:
+        """deg/s², signed."""
+        return self._state[2]
 
     def _fit(self) -> tuple[float, float, float]:
         last = self._angles[-1]

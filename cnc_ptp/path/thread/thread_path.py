@@ -33,13 +33,15 @@ from cnc_ptp.path.thread.lead import Fading, fading
 from cnc_ptp.path.thread.spindle_angle import SpindleAngle
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
+from cnc_ptp.protocol.blocks import CycleBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
 SPINDLE_STANDS: Final = 22080
 THREAD_TOO_FAST: Final = 22082
 THREAD_TOO_SHORT: Final = 22083
 RUN_UP_TOO_LONG: Final = 22084
+THREAD_BEGINS: Final = 22085
+NO_OVERRIDE: Final = 22086
 SPINDLE_HELD: Final = 51109
 
 TURN: Final = 360.0
@@ -49,6 +51,8 @@ AHEAD: Final = 50
 """Blocks behind the active one that are looked at."""
 SHORTEST_HORIZON: Final = 2.0
 """Blocks of cycles within which the path at the soonest is where the spindle is."""
+STEADY: Final = 10.0
+"""deg/s² below which the speed of a spindle is constant: 0.05 deg within 0.1 s."""
 STANDS: Final = 6.0
 """deg/s below which a spindle that stops stands: 1 rpm."""
 ROUNDING: Final = 1e-9
@@ -124,6 +128,8 @@ class ThreadPath:
         """Of the block of cycles that is being computed."""
         self._waited = 0
         """Cycles that the spindle has not turned in."""
+        self._steady = 0
+        """Cycles since its set speed is constant."""
         self._cycle = 0
         """The last one that was given out."""
         self._state: MotionState = (0.0, 0.0, 0.0, 0.0)
@@ -148,7 +154,9 @@ class ThreadPath:
         self.released = True
         """Override and feed hold permit the start."""
         self.block = 0
-        self.notes: list[str] = []
+        self.notes: list[tuple[int, int, str]] = []
+        """Severity, number and text of what is to be told."""
+        self._told_override = False
         self._extend()
 
     # what the channel asks
@@ -222,6 +230,15 @@ class ThreadPath:
         if not self.waits or report is None or not is_held(report):
             return ""
         return f"an override of spindle {self._node} above 0"
+
+    def release(self, override: float, *, held: bool) -> None:
+        """Override of the path and feed hold count before the start; within the thread one warning says so."""
+        self.released = override > 0.0
+        if self.waits or self._stops or self._told_override or (override == 1.0 and not held):
+            return
+        self._told_override = True
+        what = "feed hold" if held else f"path override {override * 100.0:g} %"
+        self.notes.append((Severity.WARNING, NO_OVERRIDE, f"{what} has no effect within a thread, it counts behind it"))
 
     # from block to block
 
@@ -393,13 +410,22 @@ class ThreadPath:
     def _turns(self, report: SpindleBlock) -> bool:
         """The spindle turns at its speed. Raises CncError 22080."""
         if report.state[-1] == AxisStateCode.CONTINUOUS_MOTION:
-            return report.speed_reached[-1] and abs(self._spindle.speed) > STANDS
+            return self._is_steady(report)
         self._waited += report.count
         if self._waited * self._settings.cycle_time > PATIENCE:
             state = state_name(AxisStateCode(report.state[-1]))
             reason = f"spindle {self._node} does not turn for the thread (G33), it is in {state}"
             raise CncError(SPINDLE_STANDS, reason, "the thread is not begun")
         return False
+
+    def _is_steady(self, report: SpindleBlock) -> bool:
+        """The spindle has reached its speed and keeps it; after a while that is taken for granted."""
+        if not report.speed_reached[-1] or any(report.set_acceleration_deg_s2) or abs(self._spindle.speed) < STANDS:
+            self._steady = 0
+            return False
+        self._steady += report.count
+        settled = self._steady * self._settings.cycle_time > PATIENCE
+        return settled or abs(self._spindle.acceleration) < STEADY
 
     def _checked(self) -> ThreadGeometry:
         """The geometry at the present speed, if the axes can follow it. Raises CncError 22082 … 22084."""
@@ -458,7 +484,7 @@ class ThreadPath:
         first, last = lead_value(self._motions[0]) / TURN, lead_value(self._motions[len(geometry) - 1]) / TURN
         speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
         ways = f"run-up {self._run_up * first:.3f} mm, run-out {self._run_out * last:.3f} mm"
-        self.notes.append(f"thread at {speed}: {ways}")
+        self.notes.append((Severity.INFO, THREAD_BEGINS, f"thread at {speed}: {ways}"))
 
     # the angle of the path
 
@@ -556,7 +582,7 @@ class ThreadPath:
     @property
     def stop_text(self) -> str:
         """What `stop` does now, for events; empty while nothing moves or the thread ends anyway."""
-        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
+        if self._stops or self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
             return ""
         retract = self._settings.retract
         if retract is not None:
