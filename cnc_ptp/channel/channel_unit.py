@@ -576,6 +576,7 @@ class ChannelUnit(Unit):
     def _read_feedback(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """Takes over what axes and spindles reported for the previous block."""
         self._feedback = inputs
+        self._read(self._motion.read_spindles, first_cycle)
         self._read_releases(first_cycle, inputs)
         for reason in self._axes.read(inputs, just_started=self._just_started):
             self._fault(first_cycle, AXIS_NOT_READY, reason)
@@ -586,13 +587,16 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
             elif isinstance(block, SpindleBlock):
                 self._check_refused(first_cycle, node, block)
-        for read in (self._motion.read_spindles, self._sequence.read):
-            try:
-                read(first_cycle, inputs)
-            except CncError as error:
-                self._fault_in_line(first_cycle, error)
+        self._read(self._sequence.read, first_cycle)
         self._warn(first_cycle)
         self._report_held(first_cycle)
+
+    def _read(self, read: Callable[[int, Mapping[str, CycleBlock]], None], first_cycle: int) -> None:
+        """What the path or the program reads of the reports, which may be a fault of the active block."""
+        try:
+            read(first_cycle, self._feedback)
+        except CncError as error:
+            self._fault_in_line(first_cycle, error)
 
     def _report_held(self, cycle: int) -> None:
         """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
@@ -634,6 +638,8 @@ class ChannelUnit(Unit):
         if not isinstance(block, (AxisBlock, SpindleBlock)):
             return
         if block.error_id[-1]:
+            if isinstance(block, AxisBlock):
+                self._motion.axis_failed(self._axes.nodes.index(node))
             self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
         elif isinstance(block, SpindleBlock):
             self._check_refused(first_cycle, node, block)

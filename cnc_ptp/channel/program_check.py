@@ -24,6 +24,7 @@ from cnc_ptp.nc.canonical import (
     Source,
     SpindleCommand,
     SpindleFunction,
+    Thread,
 )
 from cnc_ptp.nc.contour import path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
@@ -38,6 +39,7 @@ from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.streamed_program import stream_program
+from cnc_ptp.nc.thread_faults import NO_ENCODER
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
@@ -49,6 +51,8 @@ from cnc_ptp.parameters import (
 )
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.homing_view import DISABLED
+from cnc_ptp.path.path_motion import thread_settings
+from cnc_ptp.path.thread.thread_check import require_velocity
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
@@ -148,6 +152,7 @@ class ProgramCheck:
             self._references,
         )
         """The channel as the interpreter knows it."""
+        self._threads = thread_settings(channel, self._axes, 0.0)
         self._limits = Limits(channel.call_depth, channel.repeats)
         self.block_skip = 0
         """Bit n - 1: blocks with /n are skipped."""
@@ -349,6 +354,9 @@ class ProgramCheck:
                 missing.difference_update(self._homed(block.motion, block.source))
             elif missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
+            if isinstance(block.motion, LinearMove) and block.motion.thread is not None:
+                self._require_thread(position, block.motion, block.motion.thread, block.source)
+            if isinstance(block.motion, (LinearMove, CircularMove)):
                 position = block.motion.target
             yield block
             if (isinstance(block.motion, HomeAxes) or measures(block.motion)) and state.values.position:
@@ -394,6 +402,17 @@ class ProgramCheck:
             if axis.homing.required and name in missing and (turns or motion.target[index] != start[index]):
                 text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
                 raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
+
+    def _require_thread(self, start: tuple[float, ...], motion: LinearMove, thread: Thread, source: Source) -> None:
+        """Raises ProgramError 21667 for a spindle without encoder, 22082 for axes that cannot follow its speed."""
+        spindle, column = self._units.get(self._nodes[thread.spindle]), source.column("G33")
+        if spindle is None or not spindle.has_position:
+            raise NO_ENCODER.at(source, column, spindle=thread.spindle)
+        slopes = [(end - begin) / thread.angle for begin, end in zip(start, motion.target, strict=True)]
+        try:
+            require_velocity(self._threads, slopes, motion, abs(thread.speed))
+        except CncError as error:
+            raise ProgramError(error.number, error.reason, source, column, **error.values) from None
 
     def check_target(self, target: tuple[float, ...], source: Source, unlimited: Collection[str] = ()) -> None:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none."""

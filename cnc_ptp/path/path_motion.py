@@ -17,7 +17,8 @@ from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
-from cnc_ptp.path.thread.thread_path import Retract, ThreadPath, ThreadSettings, angle_of
+from cnc_ptp.path.thread.thread_check import Retract, ThreadSettings, angle_of
+from cnc_ptp.path.thread.thread_path import ThreadPath
 from cnc_ptp.protocol.blocks import CycleBlock
 
 CARTESIAN = ("X", "Y", "Z")
@@ -75,10 +76,10 @@ class PathMotion:
     def __init__(self, channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> None:
         """`axes` in the order of the channel, standing at their start positions; `cycle_time` in s."""
         self._cycle_time = cycle_time
-        self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        self._feed_limits = feed_limits(axes)
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._path_axes = path_axes(channel)
-        self._threads = thread_settings(channel, axes, self._feed_limits, cycle_time)
+        self._threads = thread_settings(channel, axes, cycle_time)
         self._spindle_nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
@@ -282,6 +283,12 @@ class PathMotion:
         """How a thread is broken off now, for events; empty without one that runs."""
         return "" if self.thread is None else self.thread.stop_text
 
+    def axis_failed(self, axis: int) -> None:
+        """It cannot retract."""
+        thread = self.thread
+        if thread is not None and not thread.retracts and thread.retract is not None and thread.retract.axis == axis:
+            thread.retract = None
+
     def take_notes(self) -> list[tuple[int, int, str]]:
         """Severity, number and text of what there is to be told of the active thread."""
         if self.thread is None or not self.thread.notes:
@@ -454,9 +461,12 @@ def path_axes(channel: ChannelParameters) -> frozenset[int]:
     return cartesian or frozenset(range(len(channel.axes)))
 
 
-def thread_settings(
-    channel: ChannelParameters, axes: Sequence[AxisParameters], limits: Sequence[AxisLimits], cycle_time: float
-) -> ThreadSettings:
+def feed_limits(axes: Sequence[AxisParameters]) -> list[AxisLimits]:
+    """Of axes on a path with a feed."""
+    return [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+
+
+def thread_settings(channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> ThreadSettings:
     """Of the threads of a channel. All axes of a path act equally late."""
     names = [axis.name for axis in channel.axes]
     retract = None
@@ -465,7 +475,7 @@ def thread_settings(
         retract = Retract(axis, channel.thread_retract_axis, channel.thread_retract)
     delay = max((axis.control.delay_cycles for axis in axes), default=0)
     places = sorted(path_axes(channel))
-    return ThreadSettings(names, limits, places, cycle_time, delay, channel.thread_run_up, retract)
+    return ThreadSettings(names, feed_limits(axes), places, cycle_time, delay, channel.thread_run_up, retract)
 
 
 def begins_element(before: float, now: float) -> bool:

@@ -1,7 +1,7 @@
 """The geometry of a thread: each axis over the angle φ (deg) by which the spindle has turned since its start.
 
-A block is a straight line over its angle. At a joint the slope of each axis changes; there a zone of the length L lies
-symmetrically around the joint, in which the slope goes from m to m + Δm by the smoothstep S(x) = 3x² - 2x³ of its part x:
+A block is a straight line over its angle. At a joint the slope of each axis changes; a zone of the length L lies
+symmetrically around it, in which the slope goes from m to m + Δm by the smoothstep S(x) = 3x² - 2x³ of its part x:
 
     q1 = m + Δm·S(x)     q2 = Δm·6x(1 - x)/L     q3 = Δm·(6 - 12x)/L²     q = line + Δm·L·(x³ - x⁴/2)
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from enum import Enum, auto
 from math import ceil, hypot
-from typing import Final, NamedTuple
+from typing import Final
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stopping_distance
@@ -26,25 +26,35 @@ from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.nc.canonical import LinearMove
 from cnc_ptp.nc.canonical import Thread as ThreadWords
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
-from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.path.thread.lead import Fading, fading
 from cnc_ptp.path.thread.spindle_angle import SpindleAngle
+from cnc_ptp.path.thread.thread_check import (
+    RETRACT_SHARE,
+    ROUNDING,
+    TURN,
+    Ramps,
+    Retract,
+    ThreadSettings,
+    angle_of,
+    checked_geometry,
+    limits_of,
+    pitch_of,
+    require_velocity,
+    too_fast,
+    way_out,
+)
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import CycleBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
 SPINDLE_STANDS: Final = 22080
-THREAD_TOO_FAST: Final = 22082
-THREAD_TOO_SHORT: Final = 22083
-RUN_UP_TOO_LONG: Final = 22084
 THREAD_BEGINS: Final = 22085
 NO_OVERRIDE: Final = 22086
 SPINDLE_HELD: Final = 51109
 
-TURN: Final = 360.0
 PATIENCE: Final = 0.5
 """s that a spindle has to start to turn after its command."""
 AHEAD: Final = 50
@@ -55,10 +65,6 @@ STEADY: Final = 10.0
 """deg/s² below which the speed of a spindle is constant: 0.05 deg within 0.1 s."""
 STANDS: Final = 6.0
 """deg/s below which a spindle that stops stands: 1 rpm."""
-ROUNDING: Final = 1e-9
-"""deg."""
-RETRACT_SHARE: Final = 0.4
-"""Of the acceleration and jerk of the retract axis, if it also takes part in the thread."""
 
 
 class Phase(Enum):
@@ -71,35 +77,6 @@ class Phase(Enum):
     STOPS = auto()
 
 
-class Retract(NamedTuple):
-    """How the tool leaves a thread that is broken off: place and name of the axis, its way in mm, signed."""
-
-    axis: int
-    name: str
-    way: float
-
-
-class ThreadSettings(NamedTuple):
-    """What all threads of a channel have in common.
-
-    names        of the axes
-    limits       of the axes
-    path_axes    places of the axes whose path the feed is for
-    cycle_time   s
-    delay        cycles by which the axes act later than their setpoints come
-    run_up       longest way in mm from the start on that may be out of pitch, 0.0: any
-    retract      None: the path stops in the thread
-    """
-
-    names: Sequence[str]
-    limits: Sequence[AxisLimits]
-    path_axes: Sequence[int]
-    cycle_time: float
-    delay: int
-    run_up: float
-    retract: Retract | None
-
-
 class ThreadPath:
     """Runs the blocks of a thread.
 
@@ -108,7 +85,12 @@ class ThreadPath:
     """
 
     def __init__(
-        self, settings: ThreadSettings, node: str, motion: LinearMove, start: tuple[float, ...], source: MotionSource | None
+        self,
+        settings: ThreadSettings,
+        node: str,
+        motion: LinearMove,
+        start: tuple[float, ...],
+        source: MotionSource | None,
     ) -> None:
         """`node` of the spindle; `source`: the motions behind `motion`."""
         assert motion.thread is not None
@@ -143,10 +125,11 @@ class ThreadPath:
         self._fading_begin = 0
         self._sign, self._zero = 1.0, 0.0
         self._speed = abs(motion.thread.speed)
-        self._run_up = self._run_out = 0.0
-        """Their angles, deg."""
+        self._ramps = Ramps(0.0, 0.0)
         self._retract: Profile | None = None
         self._retract_begin = 0
+        self.retract = settings.retract
+        """None: the path stops in the thread."""
         self._stops = False
         self.done = False
         self.remaining_time = 0.0
@@ -273,7 +256,8 @@ class ThreadPath:
             raise CncError(SPINDLE_HELD, f"spindle {self._node} {why} within a thread (G33)")
         if self._geometry is not None:
             number = self._geometry.block_at(self._state[0])
-            self._check_velocity(self._geometry.slopes_of(number), number, abs(self._spindle.speed))
+            slopes, motion = self._geometry.slopes_of(number), self._motions[number]
+            require_velocity(self._settings, slopes, motion, abs(self._spindle.speed))
 
     def follow(self, count: int) -> list[LinkedPoint]:
         """The next `count` cycles of the active block; fewer when it ends before.
@@ -349,13 +333,13 @@ class ThreadPath:
         last = len(geometry) - 1
         reach = end - 0.5 * geometry.zone_of(last)
         begin = geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1)
-        out = self._way_out(geometry, last)
-        fits = reach >= max(begin, self._run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
+        out = way_out(self._settings, geometry, last, self._speed)
+        fits = reach >= max(begin, self._ramps.run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
         fits = fits and self._state[0] + self._speed * self._horizon < reach
-        if not fits or self._too_fast(geometry.slopes_of(last), self._speed):
+        if not fits or too_fast(self._settings, geometry.slopes_of(last), self._speed):
             geometry.pop()
             return False
-        self._run_out = out
+        self._ramps = self._ramps._replace(run_out=out)
         return True
 
     @property
@@ -363,16 +347,7 @@ class ThreadPath:
         return SHORTEST_HORIZON * self._block_cycles * self._settings.cycle_time
 
     def _limits(self, geometry: ThreadGeometry, blocks: Sequence[int], velocity: float) -> Limits:
-        """Of φ; the retract axis keeps a part for its retract."""
-        spared = [1.0] * len(self._settings.limits)
-        if self._settings.retract is not None:
-            spared[self._settings.retract.axis] = 1.0 - RETRACT_SHARE
-        return geometry.limits(blocks, velocity, spared)
-
-    def _way_out(self, geometry: ThreadGeometry, block: int) -> float:
-        """deg of the ramp at the end of a block."""
-        limits = self._limits(geometry, [block], self._speed)
-        return stopping_distance(self._speed, 0.0, limits.deceleration, limits.jerk)
+        return limits_of(self._settings, geometry, blocks, velocity)
 
     # start
 
@@ -392,7 +367,7 @@ class ThreadPath:
             return
         self._sign = 1.0 if self._spindle.speed > 0.0 else -1.0
         self._speed = abs(self._spindle.speed)
-        geometry = self._checked()
+        geometry, self._ramps = checked_geometry(self._settings, self._start, self._motions, self._speed)
         limits = self._limits(geometry, [0], self._speed)
         ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, limits)
         cycle_time = self._settings.cycle_time
@@ -427,63 +402,10 @@ class ThreadPath:
         settled = self._steady * self._settings.cycle_time > PATIENCE
         return settled or abs(self._spindle.acceleration) < STEADY
 
-    def _checked(self) -> ThreadGeometry:
-        """The geometry at the present speed, if the axes can follow it. Raises CncError 22082 … 22084."""
-        settings = self._settings
-        geometry = ThreadGeometry(self._start, settings.limits, settings.path_axes)
-        for number, motion in enumerate(self._motions):
-            geometry.append(motion.target, angle_of(motion), self._speed)
-            self._check_velocity(geometry.slopes_of(number), number, self._speed)
-        last = len(geometry) - 1
-        ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, self._limits(geometry, [0], self._speed))
-        self._run_up, self._run_out = ramp.end[0], self._way_out(geometry, last)
-        for number in range(last + 1):
-            self._check_length(geometry, number)
-        self._check_run_up()
-        return geometry
-
-    def _too_fast(self, slopes: Sequence[float], speed: float) -> bool:
-        return any(abs(m) * speed > axis.velocity for m, axis in zip(slopes, self._settings.limits, strict=True))
-
-    def _check_velocity(self, slopes: Sequence[float], number: int, speed: float) -> None:
-        if not self._too_fast(slopes, speed):
-            return
-        settings, motion = self._settings, self._motions[number]
-        for name, m, axis in zip(settings.names, slopes, settings.limits, strict=True):
-            needed = abs(m) * speed
-            if needed > axis.velocity:
-                what = f"{lead_of(motion)} at {speed / DEG_S_PER_RPM:.6g} rpm needs {needed:.6g} mm/s of axis {name}"
-                reason = f"{what}, its limit is {axis.velocity:.6g} mm/s (P-AXIS-00212)"
-                raise CncError(THREAD_TOO_FAST, reason, needed=needed, limit=axis.velocity)
-
-    def _check_length(self, geometry: ThreadGeometry, number: int) -> None:
-        """A block must have room for what is at its begin and at its end."""
-        last = len(geometry) - 1
-        begin = self._run_up if number == 0 else 0.5 * geometry.zone_of(number)
-        end = self._run_out if number == last else 0.5 * geometry.zone_of(number + 1)
-        motion = self._motions[number]
-        angle, pitch = angle_of(motion), lead_value(motion) / TURN
-        missing = begin + end - angle
-        if missing > ROUNDING:
-            parts = f"{'run-up' if number == 0 else 'joint'} {begin * pitch:.3f} mm"
-            parts += f" and {'run-out' if number == last else 'joint'} {end * pitch:.3f} mm"
-            speed = f"{self._speed / DEG_S_PER_RPM:.6g} rpm"
-            reason = f"block {number + 1} of the thread is {missing * pitch:.3f} mm too short at {speed}: {parts}"
-            reason += f" need more than its {angle * pitch:.3f} mm"
-            raise CncError(THREAD_TOO_SHORT, reason, missing=missing * pitch)
-
-    def _check_run_up(self) -> None:
-        most = self._settings.run_up
-        way = self._run_up * lead_value(self._motions[0]) / TURN
-        if most and way > most:
-            reason = f"the run-up of the thread takes {way:.3f} mm, {way - most:.3f} mm more than"
-            reason += f" the {most:g} mm in which it may be out of pitch (P-CHAN-90025)"
-            raise CncError(RUN_UP_TOO_LONG, reason, way=way, limit=most)
-
     def _note_begin(self, geometry: ThreadGeometry) -> None:
-        first, last = lead_value(self._motions[0]) / TURN, lead_value(self._motions[len(geometry) - 1]) / TURN
+        first, last = pitch_of(self._motions[0]), pitch_of(self._motions[len(geometry) - 1])
         speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
-        ways = f"run-up {self._run_up * first:.3f} mm, run-out {self._run_out * last:.3f} mm"
+        ways = f"run-up {self._ramps.run_up * first:.3f} mm, run-out {self._ramps.run_out * last:.3f} mm"
         self.notes.append((Severity.INFO, THREAD_BEGINS, f"thread at {speed}: {ways}"))
 
     # the angle of the path
@@ -525,7 +447,9 @@ class ThreadPath:
         assert self._geometry is not None
         angle, speed, gain, _ = self._expected(cycle)
         mismatch = (state[0] - angle, state[1] - speed, state[2] - gain)
-        near = sorted({self._block_of(state[0]), self._block_of(min(self._geometry.end, state[0] + speed * self._horizon))})
+        near = sorted(
+            {self._block_of(state[0]), self._block_of(min(self._geometry.end, state[0] + speed * self._horizon))}
+        )
         limits = self._limits(self._geometry, near, abs(speed))
         self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
 
@@ -573,8 +497,8 @@ class ThreadPath:
         self._stops = True
         if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
             return
-        if self._settings.retract is not None:
-            self._begin_retract(self._settings.retract)
+        if self.retract is not None:
+            self._begin_retract(self.retract)
         elif self.phase is Phase.RUNS_UP or not self._stops_in_step:
             self._pending = None
             self._ramp_down()
@@ -584,7 +508,7 @@ class ThreadPath:
         """What `stop` does now, for events; empty while nothing moves or the thread ends anyway."""
         if self._stops or self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
             return ""
-        retract = self._settings.retract
+        retract = self.retract
         if retract is not None:
             where = f"axis {retract.name} retracts by {retract.way:g} mm while the path follows spindle {self._node}"
             return f"{where}, then the path stops"
@@ -628,7 +552,7 @@ class ThreadPath:
         return (self._cycle - self._retract_begin) * self._settings.cycle_time >= self._retract.duration
 
     def _with_retract(self, states: tuple[AxisState, ...]) -> tuple[AxisState, ...]:
-        retract = self._settings.retract
+        retract = self.retract
         assert self._retract is not None and retract is not None
         t = (self._cycle - self._retract_begin) * self._settings.cycle_time
         if t >= self._retract.duration:
@@ -638,23 +562,6 @@ class ThreadPath:
         q, v, a, j = states[retract.axis]
         moved = (q + added[0], v + added[1], a + added[2], j + added[3])
         return (*states[: retract.axis], moved, *states[retract.axis + 1 :])
-
-
-def angle_of(motion: LinearMove) -> float:
-    """deg by which the spindle turns in a block of a thread."""
-    assert motion.thread is not None
-    return motion.thread.angle
-
-
-def lead_value(motion: LinearMove) -> float:
-    """mm per revolution."""
-    assert motion.thread is not None
-    return motion.thread.lead
-
-
-def lead_of(motion: LinearMove) -> str:
-    """For messages."""
-    return f"a thread with {lead_value(motion):g} mm per revolution"
 
 
 def is_held(report: SpindleBlock) -> bool:

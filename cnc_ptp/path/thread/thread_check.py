@@ -1,0 +1,144 @@
+"""Whether the axes can follow a spindle through a thread: velocities, run-up, joints and run-out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from cnc_ptp.errors import CncError
+from cnc_ptp.motion import Limits, plan_to_velocity, stopping_distance
+from cnc_ptp.nc.canonical import LinearMove
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
+
+THREAD_TOO_FAST: Final = 22082
+THREAD_TOO_SHORT: Final = 22083
+RUN_UP_TOO_LONG: Final = 22084
+TURN: Final = 360.0
+ROUNDING: Final = 1e-9
+"""deg."""
+RETRACT_SHARE: Final = 0.4
+"""Of the acceleration and jerk of the retract axis, if it also takes part in the thread."""
+
+
+class Retract(NamedTuple):
+    """How the tool leaves a thread that is broken off: place and name of the axis, its way in mm, signed."""
+
+    axis: int
+    name: str
+    way: float
+
+
+class ThreadSettings(NamedTuple):
+    """What all threads of a channel have in common.
+
+    names        of the axes
+    limits       of the axes
+    path_axes    places of the axes whose path the feed is for
+    cycle_time   s
+    delay        cycles by which the axes act later than their setpoints come
+    run_up       longest way in mm from the start on that may be out of pitch, 0.0: any
+    retract      None: the path stops in the thread
+    """
+
+    names: Sequence[str]
+    limits: Sequence[AxisLimits]
+    path_axes: Sequence[int]
+    cycle_time: float
+    delay: int
+    run_up: float
+    retract: Retract | None
+
+
+class Ramps(NamedTuple):
+    """deg of the run-up at the begin of a thread, and of the run-out at its end."""
+
+    run_up: float
+    run_out: float
+
+
+def angle_of(motion: LinearMove) -> float:
+    """deg by which the spindle turns in a block of a thread."""
+    assert motion.thread is not None
+    return motion.thread.angle
+
+
+def pitch_of(motion: LinearMove) -> float:
+    """mm per deg along the axis of the pitch."""
+    assert motion.thread is not None
+    return motion.thread.lead / TURN
+
+
+def limits_of(settings: ThreadSettings, geometry: ThreadGeometry, blocks: Sequence[int], velocity: float) -> Limits:
+    """What the axes permit of the angle φ on these blocks: its `velocity`, acceleration and jerk.
+
+    The retract axis keeps a part for its retract.
+    """
+    spared = [1.0] * len(settings.limits)
+    if settings.retract is not None:
+        spared[settings.retract.axis] = 1.0 - RETRACT_SHARE
+    return geometry.limits(blocks, velocity, spared)
+
+
+def way_out(settings: ThreadSettings, geometry: ThreadGeometry, block: int, speed: float) -> float:
+    """deg of the ramp at the end of a block."""
+    limits = limits_of(settings, geometry, [block], speed)
+    return stopping_distance(speed, 0.0, limits.deceleration, limits.jerk)
+
+
+def checked_geometry(
+    settings: ThreadSettings, start: tuple[float, ...], motions: Sequence[LinearMove], speed: float
+) -> tuple[ThreadGeometry, Ramps]:
+    """The geometry of a thread at a speed (deg/s) that the axes can follow. Raises CncError 22082 … 22084."""
+    geometry = ThreadGeometry(start, settings.limits, settings.path_axes)
+    for number, motion in enumerate(motions):
+        geometry.append(motion.target, angle_of(motion), speed)
+        require_velocity(settings, geometry.slopes_of(number), motion, speed)
+    ramp = plan_to_velocity(0.0, 0.0, 0.0, speed, limits_of(settings, geometry, [0], speed))
+    ramps = Ramps(ramp.end[0], way_out(settings, geometry, len(geometry) - 1, speed))
+    for number, motion in enumerate(motions):
+        _require_length(geometry, ramps, number, motion, speed)
+    _require_pitch_soon(settings, ramps, motions[0])
+    return geometry, ramps
+
+
+def too_fast(settings: ThreadSettings, slopes: Sequence[float], speed: float) -> bool:
+    """An axis cannot follow the spindle; `slopes` in mm per deg, `speed` in deg/s."""
+    return any(abs(m) * speed > axis.velocity for m, axis in zip(slopes, settings.limits, strict=True))
+
+
+def require_velocity(settings: ThreadSettings, slopes: Sequence[float], motion: LinearMove, speed: float) -> None:
+    """Raises CncError 22082 when an axis cannot follow the spindle at `speed` (deg/s)."""
+    if not too_fast(settings, slopes, speed):
+        return
+    for name, m, axis in zip(settings.names, slopes, settings.limits, strict=True):
+        needed = abs(m) * speed
+        if needed > axis.velocity:
+            thread = f"a thread with {pitch_of(motion) * TURN:g} mm per revolution at {speed / DEG_S_PER_RPM:.6g} rpm"
+            reason = f"{thread} needs {needed:.6g} mm/s of axis {name}, its limit is {axis.velocity:.6g} mm/s"
+            raise CncError(THREAD_TOO_FAST, f"{reason} (P-AXIS-00212)", needed=needed, limit=axis.velocity)
+
+
+def _require_length(geometry: ThreadGeometry, ramps: Ramps, number: int, motion: LinearMove, speed: float) -> None:
+    """A block must have room for what is at its begin and at its end. Raises CncError 22083."""
+    is_last = number == len(geometry) - 1
+    begin = ramps.run_up if number == 0 else 0.5 * geometry.zone_of(number)
+    end = ramps.run_out if is_last else 0.5 * geometry.zone_of(number + 1)
+    angle, pitch = angle_of(motion), pitch_of(motion)
+    missing = begin + end - angle
+    if missing > ROUNDING:
+        parts = f"{'run-up' if number == 0 else 'joint'} {begin * pitch:.3f} mm"
+        parts += f" and {'run-out' if is_last else 'joint'} {end * pitch:.3f} mm"
+        reason = f"block {number + 1} of the thread is {missing * pitch:.3f} mm too short at"
+        reason += f" {speed / DEG_S_PER_RPM:.6g} rpm: {parts} need more than its {angle * pitch:.3f} mm"
+        raise CncError(THREAD_TOO_SHORT, reason, missing=missing * pitch)
+
+
+def _require_pitch_soon(settings: ThreadSettings, ramps: Ramps, motion: LinearMove) -> None:
+    """Raises CncError 22084 for a run-up that is longer than permitted."""
+    most, way = settings.run_up, ramps.run_up * pitch_of(motion)
+    if most and way > most:
+        reason = f"the run-up of the thread takes {way:.3f} mm, {way - most:.3f} mm more than"
+        reason += f" the {most:g} mm in which it may be out of pitch (P-CHAN-90025)"
+        raise CncError(RUN_UP_TOO_LONG, reason, way=way, limit=most)
