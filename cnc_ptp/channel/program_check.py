@@ -39,7 +39,6 @@ from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
 from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
 from cnc_ptp.nc.streamed_program import stream_program
-from cnc_ptp.nc.thread_faults import NO_ENCODER
 from cnc_ptp.nc.vocabularies import VOCABULARIES
 from cnc_ptp.parameters import (
     AxisParameters,
@@ -58,6 +57,7 @@ from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 NO_MEASURING_AXIS = 50059
 UNKNOWN_M_FUNCTION = 22011
+NO_ENCODER = 22081
 NOT_REFERENCED = 22034
 NO_CHANNEL = 26112
 
@@ -407,7 +407,8 @@ class ProgramCheck:
         """Raises ProgramError 21667 for a spindle without encoder, 22082 for axes that cannot follow its speed."""
         spindle, column = self._units.get(self._nodes[thread.spindle]), source.column("G33")
         if spindle is None or not spindle.has_position:
-            raise NO_ENCODER.at(source, column, spindle=thread.spindle)
+            why = f"spindle {thread.spindle} has no actual position (P-AXIS-00320, P-SIM-00050)"
+            raise ProgramError(NO_ENCODER, f"{why} and cannot lead a thread (G33)", source, column)
         slopes = [(end - begin) / thread.angle for begin, end in zip(start, motion.target, strict=True)]
         try:
             require_velocity(self._threads, slopes, motion, abs(thread.speed))

@@ -14,6 +14,5 @@ SPINDLE_STANDS = Fault(21665, "spindle {spindle} does not turn ({why}); G33 need
 SPINDLE_COMMANDED = Fault(
     21666, "{word} commands spindle {spindle} between two blocks of G33; it must not change within a thread"
 )
-NO_ENCODER = Fault(21667, "spindle {spindle} has no actual position (P-AXIS-00320, P-SIM-00050), so it cannot lead G33")
 OFFSET_SPINDLE = Fault(21668, "OFFSET of spindle {spindle}; a thread is cut with the main spindle {main}")
 OFFSET_RANGE = Fault(21669, "OFFSET {value} deg of spindle {spindle} must be from 0 to below 360")
