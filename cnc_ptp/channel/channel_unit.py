@@ -297,7 +297,7 @@ class ChannelUnit(Unit):
             if self._sequence.phase is Phase.RAMP_DOWN:
                 self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
             self._error_id = 0
-        if broken_off := self._motion.stop_text:
+        if self._motion.cuts_thread and (broken_off := self._motion.stop_text):
             text = f"channel {self.name}: reset within a thread; {broken_off}"
             self.event(cycle, Severity.WARNING, THREAD_BROKEN, text, self._sequence.source.line)
         self._sequence.ramp_down(keep=self._turning_after_reset)

@@ -279,8 +279,13 @@ class PathMotion:
             self.thread.read(first_cycle, feedback)
 
     @property
+    def cuts_thread(self) -> bool:
+        """The axes are in a thread, and not on the ramp at its end."""
+        return self.thread is not None and self.thread.cuts
+
+    @property
     def stop_text(self) -> str:
-        """How a thread is broken off now, for events; empty without one that runs."""
+        """How a thread is broken off now, for events; empty without one."""
         return "" if self.thread is None else self.thread.stop_text
 
     def axis_failed(self, axis: int) -> None:

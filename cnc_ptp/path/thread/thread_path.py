@@ -159,6 +159,11 @@ class ThreadPath:
         return self._motions[-1].target
 
     @property
+    def cuts(self) -> bool:
+        """The axes are in the thread, and not on the ramp at its end."""
+        return self.phase in (Phase.RUNS_UP, Phase.FOLLOWS)
+
+    @property
     def stopped(self) -> bool:
         """`stop` was called, and the axes are at a standstill."""
         if not self._stops or not self._retracted:
@@ -326,7 +331,7 @@ class ThreadPath:
         geometry = self._geometry
         if geometry is None:
             return True
-        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS) or self._stops:
+        if self._stops or not self.cuts:
             return False
         end = geometry.end
         geometry.append(motion.target, angle_of(motion), self._speed)
@@ -390,7 +395,7 @@ class ThreadPath:
         if self._waited * self._settings.cycle_time > PATIENCE:
             state = state_name(AxisStateCode(report.state[-1]))
             reason = f"spindle {self._node} does not turn for the thread (G33), it is in {state}"
-            raise CncError(SPINDLE_STANDS, reason, "the thread is not begun")
+            raise CncError(SPINDLE_STANDS, reason)
         return False
 
     def _is_steady(self, report: SpindleBlock) -> bool:
@@ -495,7 +500,7 @@ class ThreadPath:
         if self._stops:
             return
         self._stops = True
-        if self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
+        if not self.cuts:
             return
         if self.retract is not None:
             self._begin_retract(self.retract)
@@ -505,8 +510,10 @@ class ThreadPath:
 
     @property
     def stop_text(self) -> str:
-        """What `stop` does now, for events; empty while nothing moves or the thread ends anyway."""
-        if self._stops or self.phase not in (Phase.RUNS_UP, Phase.FOLLOWS):
+        """What `stop` does now, for events; empty when the thread ends anyway."""
+        if self.waits:
+            return "the thread is not begun"
+        if self._stops or not self.cuts:
             return ""
         retract = self.retract
         if retract is not None:
