@@ -52,7 +52,7 @@ class ThreadSettings(NamedTuple):
 
 
 class Ramps(NamedTuple):
-    """deg of the run-up at the begin of a thread, and of the run-out at its end."""
+    """deg of the run-up at the start of a thread, and of the run-out at its end."""
 
     run_up: float
     run_out: float

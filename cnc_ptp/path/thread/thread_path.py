@@ -426,7 +426,7 @@ class ThreadPath:
         return angle - self._zero, speed, gain, jerk
 
     def _time(self, cycle: int) -> float:
-        """s since the begin of the active ramp."""
+        """s since the start of the active ramp."""
         return (cycle - self._profile_begin) * self._settings.cycle_time
 
     def _next(self, cycle: int) -> MotionState | None:
