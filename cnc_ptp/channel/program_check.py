@@ -52,6 +52,7 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.homing_view import DISABLED
 from cnc_ptp.path.path_motion import thread_settings
 from cnc_ptp.path.thread.thread_check import require_velocity
+from cnc_ptp.path.thread.thread_geometry import slopes_and_bends
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
@@ -409,9 +410,10 @@ class ProgramCheck:
         if spindle is None or not spindle.has_position:
             why = f"spindle {thread.spindle} has no actual position (P-AXIS-00320, P-SIM-00050)"
             raise ProgramError(NO_ENCODER, f"{why} and cannot lead a thread (G33)", source, column)
-        slopes = [(end - begin) / thread.angle for begin, end in zip(start, motion.target, strict=True)]
+        slopes, bends = slopes_and_bends(start, motion.target, thread)
+        fastest = [max(abs(m), abs(m + c * thread.angle)) for m, c in zip(slopes, bends, strict=True)]
         try:
-            require_velocity(self._threads, slopes, motion, abs(thread.speed))
+            require_velocity(self._threads, fastest, motion, abs(thread.speed))
         except CncError as error:
             raise ProgramError(error.number, error.reason, source, column, **error.values) from None
 

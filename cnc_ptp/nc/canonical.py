@@ -54,11 +54,12 @@ SLOPES = {0: STEP, 1: TRAPEZ, 2: SIN2, 3: "HSC"}
 
 
 class Thread(NamedTuple):
-    """G33: the move follows the angle of a spindle that turns, by its canonical name.
+    """G33, G34, G35: the move follows the angle of a spindle that turns, by its canonical name.
 
     angle    by which the spindle turns during the move, deg, > 0
-    lead     mm for one revolution along the axis at the place `axis`, as programmed
+    lead     mm for one revolution along the axis at the place `axis`, as programmed; at the start of the move
     offset   deg from the zero passage of the spindle to the start of the thread
+    change   of the lead with each revolution, mm
     speed    of the spindle as far as the program knows it, deg/s, signed; 0.0: not known
     """
 
@@ -68,6 +69,7 @@ class Thread(NamedTuple):
     axis: int
     offset: float = 0.0
     speed: float = 0.0
+    change: float = 0.0
 
 
 class LinearMove(NamedTuple):
@@ -89,7 +91,7 @@ class LinearMove(NamedTuple):
 
 
 def led_by_spindle(motion: object) -> bool:
-    """A motion of G33."""
+    """A motion of G33, G34, G35."""
     return isinstance(motion, LinearMove) and motion.thread is not None
 
 

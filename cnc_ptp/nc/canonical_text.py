@@ -116,7 +116,8 @@ def _motion(motion: Motion) -> str:
 
 def _thread(thread: Thread) -> str:
     turns, offset = number(thread.angle / 360.0), f" offset {number(thread.offset)}" if thread.offset else ""
-    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{offset}"
+    change = f" change {number(thread.change)}" if thread.change else ""
+    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{change}{offset}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

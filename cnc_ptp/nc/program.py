@@ -261,9 +261,10 @@ NO_DRILLING: Final = Drilling()
 
 
 class ThreadState(NamedTuple):
-    """Numbers of G33 that stay to the end of the program.
+    """Numbers of G33, G34 and G35 that stay to the end of the program.
 
     letter    of the pitch (I, J, K), "" none yet; `pitch` in mm per revolution
+    change    F of G34 and G35, mm per revolution and revolution
     offset    deg from the zero passage of the spindle to the start of the thread
     runs      the last motion was one of G33: another one continues its thread
     changed   what has commanded the spindle since, "" nothing
@@ -272,6 +273,7 @@ class ThreadState(NamedTuple):
 
     letter: str = ""
     pitch: float = 0.0
+    change: float = 0.0
     offset: float = 0.0
     runs: bool = False
     changed: str = ""

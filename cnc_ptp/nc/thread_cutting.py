@@ -1,12 +1,15 @@
-"""G33, thread cutting with a spindle that turns endlessly: pitch, offset of the start, and what leads the motion.
+"""G33, G34, G35: thread cutting with a spindle that turns endlessly: pitch, offset of the start, what leads the motion.
 
 The pitch belongs to the axis with the longest way (DIN 66025: I to X, J to Y, K to Z). That is the rule of 45 degrees:
 below 45 degrees to the longitudinal axis Z it is K, from there on I or J. Pitch and OFFSET stay to the end of the
-program; F has no effect. Source: TF5200 spindle 2.8.7.
+program; F has no effect on G33. Source: TF5200 spindle 2.8.7.
+
+G34 and G35 are our own, with the words of SINUMERIK: the lead grows or falls by F with each revolution. After n of them
+it has come K·n ± F·n²/2, so a length L takes n = 2·L/(K + √(K² ± 2·F·L)).
 """
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, sqrt
 from typing import Final
 
 from cnc_ptp.nc import faults, thread_faults
@@ -30,27 +33,59 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 PITCH_WORDS: Final = frozenset("IJK")
 LETTERS: Final = {"Z": "K", "X": "I", "Y": "J"}
 """Letter of the pitch by axis."""
+CONSTANT: Final = 33
+GROWING: Final = 34
+"""G codes with a constant and with a growing lead; that of G35 falls."""
 TURN: Final = 360.0
 SAME_WAY: Final = 1e-9
 """mm by which ways may differ at 45 degrees."""
 
 
 def thread(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> LinearMove | None:
-    """G33: straight to the target, led by the main spindle; takes the pitch into the state."""
+    """Straight to the target, led by the main spindle; takes the pitch into the state."""
     require_spindle(channel, block, code.name)
     _take_pitch(state, block)
-    target = target_of(channel, state, block, code)
+    target = _target_of(channel, state, block, code)
     if target is None:
         return None
-    ways = _ways(channel, state.programmed, target, block)
+    ways = _ways(channel, state.programmed, target, block, code)
     axis = max(ways, key=lambda name: ways[name] + (SAME_WAY if name != "Z" else 0.0), default="")
     if not axis or ways[axis] == 0.0:
         return None
     _require_pitch(state, block, code, axis, ways)
-    angle, pitch = TURN * ways[axis] / state.thread.pitch, state.thread.pitch
-    spindle = current_main(channel, state).key
-    led = Thread(spindle, angle, pitch, channel.axis_index[axis], state.thread.offset)
+    modes, change = state.thread, _change(state, block, code, ways[axis])
+    turns = 2.0 * ways[axis] / (modes.pitch + sqrt(modes.pitch**2 + 2.0 * change * ways[axis]))
+    spindle, place = current_main(channel, state).key, channel.axis_index[axis]
+    led = Thread(spindle, TURN * turns, modes.pitch, place, modes.offset, change=change)
     return LinearMove(tuple(target), False, 0.0, thread=led)
+
+
+def _target_of(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> list[float] | None:
+    """As of other motions; F of G34 and G35 is no feed."""
+    feed, block_time = state.feed, state.block_time
+    target = target_of(channel, state, block, code)
+    if code.number != CONSTANT and "F" in block.words:
+        state.feed, state.block_time = feed, block_time
+        state.thread = state.thread._replace(change=block.words["F"] * state.coordinates.unit)
+    return target
+
+
+def _change(state: ModalState, block: NcBlock, code: GCode, way: float) -> float:
+    """Of the lead with each revolution, mm, signed. Raises ProgramError 21670, 21671."""
+    modes = state.thread
+    if code.number == CONSTANT:
+        return 0.0
+    if not modes.change:
+        column = block.source.column("F" if "F" in block.words else code.name)
+        raise thread_faults.CHANGE_MISSING.at(block.source, column, g=code.name)
+    if code.number == GROWING:
+        return modes.change
+    length = modes.pitch**2 / (2.0 * modes.change)
+    if way >= length:
+        values = {"lead": number(modes.pitch), "change": number(modes.change)}
+        column, values["length"], values["way"] = block.source.column(code.name), number(length), number(way)
+        raise thread_faults.LEAD_ENDS.at(block.source, column, **values)
+    return -modes.change
 
 
 def _take_pitch(state: ModalState, block: NcBlock) -> None:
@@ -66,14 +101,16 @@ def _take_pitch(state: ModalState, block: NcBlock) -> None:
         state.thread = state.thread._replace(letter=letter, pitch=value * state.coordinates.unit)
 
 
-def _ways(channel: Channel, start: Sequence[float], target: Sequence[float], block: NcBlock) -> dict[str, float]:
+def _ways(
+    channel: Channel, start: Sequence[float], target: Sequence[float], block: NcBlock, code: GCode
+) -> dict[str, float]:
     """How far X, Y and Z move, mm. Raises ProgramError 21664 for another axis."""
     ways = {}
     for name, begin, end in zip(channel.axes, start, target, strict=True):
         if name in LETTERS:
             ways[name] = abs(end - begin)
         elif name in block.words:
-            raise thread_faults.AXIS.at(block.source, block.source.column(name), word=name)
+            raise thread_faults.AXIS.at(block.source, block.source.column(name), word=name, g=code.name)
     return ways
 
 
@@ -81,7 +118,7 @@ def _require_pitch(state: ModalState, block: NcBlock, code: GCode, axis: str, wa
     """Raises ProgramError 21660 and 21663."""
     letter, given = LETTERS[axis], state.thread.letter
     if not given:
-        raise thread_faults.PITCH_MISSING.at(block.source, block.source.column(code.name), letter=letter)
+        raise thread_faults.PITCH_MISSING.at(block.source, block.source.column(code.name), g=code.name, letter=letter)
     if given != letter:
         travels = ", ".join(f"{name} {number(way)} mm" for name, way in ways.items() if way)
         column = block.source.column(given if given in block.words else code.name)
@@ -126,13 +163,14 @@ def note_functions(channel: Channel, state: ModalState, block: NcBlock, function
 def with_speed(channel: Channel, state: ModalState, block: NcBlock, motion: LinearMove, led: Thread) -> LinearMove:
     """The motion with the speed of its spindle, as the block has left it. Raises ProgramError 21665, 21666."""
     modes, key = state.thread, led.spindle
-    name, column = name_of(channel, state, key), block.source.column("G33")
+    name, code = name_of(channel, state, key), f"G{state.path}"
+    column = block.source.column(code)
     m, speed = state.spindle.turning.get(key), state.speeds.get(key)
     if key in modes.stopped:
         why = "the program has stopped it"
-        raise thread_faults.SPINDLE_STANDS.at(block.source, column, spindle=name, why=why)
+        raise thread_faults.SPINDLE_STANDS.at(block.source, column, spindle=name, g=code, why=why)
     if m is not None and speed == 0.0:
-        raise thread_faults.SPINDLE_STANDS.at(block.source, column, spindle=name, why="its speed is 0 rpm")
+        raise thread_faults.SPINDLE_STANDS.at(block.source, column, spindle=name, g=code, why="its speed is 0 rpm")
     if modes.runs and modes.changed:
         word = modes.changed
         raise thread_faults.SPINDLE_COMMANDED.at(block.source, block.source.column(word), spindle=name, word=word)

@@ -65,6 +65,8 @@ _G_CODES = (
     GCode(23, "mirror", prepare=codes.mirror),
     GCode(24, "mirror", later="mirroring of single axes"),
     GCode(33, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
+    GCode(34, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
+    GCode(35, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
     GCode(40, "tool radius"),
     GCode(41, "tool radius", later="compensation of the tool radius"),
     GCode(42, "tool radius", later="compensation of the tool radius"),

@@ -322,3 +322,33 @@ def test_time_of_a_program_with_a_thread():
     half = next(block for block in bench.blocks["channel"] if block.first_cycle >= 4000)
     last = max(block.first_cycle for block in bench.blocks["channel"] if not block.done)
     assert half.time_left == pytest.approx((last - 4000) * 0.001, abs=0.05)
+
+
+# a lead that changes
+
+
+@pytest.mark.parametrize(("code", "lead", "change"), [("G34", 1.5, 0.1), ("G35", 4.0, -0.1)])
+def test_a_lead_that_changes_with_each_revolution(code, lead, change):
+    bench = cut(f"{code} Z48 K{lead} F{abs(change)}")
+    cut_part = Pass(bench, 4, lead)
+    inside = (cut_part.way > 2.0) & (cut_part.way < 54.0)
+    way = cut_part.way[inside]
+    turns = (np.sqrt(lead**2 + 2.0 * change * way) - lead) / change
+    phases = cut_part.angle[inside] - 360.0 * turns
+    assert phases == pytest.approx(360.0 * round(phases[0] / 360.0), abs=0.002)
+    assert bench.column("z", "set_position")[-1] == 48.0
+
+
+def test_a_chain_with_leads_that_change():
+    bench = cut("G33 Z90 K1.5\nG34 Z70 K1.5 F0.3\nG33 Z30 K4\nG35 Z20 K4 F0.5\nG33 X60 I2")
+    lines = column(bench, "channel", "line")
+    moving = np.hypot(column(bench, "x", "set_velocity"), column(bench, "z", "set_velocity"))
+    begin, end = np.nonzero(lines == 5)[0][0], np.nonzero(lines == 8)[0][0]
+    assert moving[begin:end].min() > 8.0
+    assert (bench.column("x", "set_position")[-1], bench.column("z", "set_position")[-1]) == (60.0, 20.0)
+
+
+def test_a_lead_that_changes_too_fast():
+    bench = cut("G34 Z95 K2 F6", head=HEAD.replace("S400", "S1500"))
+    change = "a lead that changes by 6 mm per revolution at 1500 rpm needs 3750 mm/s² of axis Z, it may take 600 mm/s²"
+    assert texts(bench) == [f"22088 channel channel: {change} in line 4 'G34 Z95 K2 F6'; {NOT_BEGUN}"]

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, plan_to_velocity, stopping_distance
-from cnc_ptp.nc.canonical import LinearMove
+from cnc_ptp.nc.canonical import LinearMove, Thread
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
@@ -15,6 +15,9 @@ from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 THREAD_TOO_FAST: Final = 22082
 THREAD_TOO_SHORT: Final = 22083
 RUN_UP_TOO_LONG: Final = 22084
+LEAD_TOO_FAST: Final = 22088
+BEND_SHARE: Final = 0.3
+"""Of the acceleration of an axis for a lead that changes."""
 TURN: Final = 360.0
 ROUNDING: Final = 1e-9
 """deg."""
@@ -60,14 +63,24 @@ class Ramps(NamedTuple):
 
 def angle_of(motion: LinearMove) -> float:
     """deg by which the spindle turns in a block of a thread."""
+    return words_of(motion).angle
+
+
+def words_of(motion: LinearMove) -> Thread:
+    """What a block of a thread has of it."""
     assert motion.thread is not None
-    return motion.thread.angle
+    return motion.thread
 
 
 def pitch_of(motion: LinearMove) -> float:
-    """mm per deg along the axis of the pitch."""
-    assert motion.thread is not None
-    return motion.thread.lead / TURN
+    """mm per deg along the axis of the pitch, at the start of the block."""
+    return words_of(motion).lead / TURN
+
+
+def last_pitch_of(motion: LinearMove) -> float:
+    """The same at its end."""
+    thread = words_of(motion)
+    return (thread.lead + thread.change * thread.angle / TURN) / TURN
 
 
 def limits_of(settings: ThreadSettings, geometry: ThreadGeometry, blocks: Sequence[int], velocity: float) -> Limits:
@@ -93,8 +106,9 @@ def checked_geometry(
     """The geometry of a thread at a speed (deg/s) that the axes can follow. Raises CncError 22082 … 22084."""
     geometry = ThreadGeometry(start, settings.limits, settings.path_axes)
     for number, motion in enumerate(motions):
-        geometry.append(motion.target, angle_of(motion), speed)
+        geometry.append(motion.target, words_of(motion), speed)
         require_velocity(settings, geometry.slopes_of(number), motion, speed)
+        _require_acceleration(settings, geometry.bends_of(number), motion, speed)
     ramp = plan_to_velocity(0.0, 0.0, 0.0, speed, limits_of(settings, geometry, [0], speed))
     ramps = Ramps(ramp.end[0], way_out(settings, geometry, len(geometry) - 1, speed))
     for number, motion in enumerate(motions):
@@ -115,9 +129,29 @@ def require_velocity(settings: ThreadSettings, slopes: Sequence[float], motion: 
     for name, m, axis in zip(settings.names, slopes, settings.limits, strict=True):
         needed = abs(m) * speed
         if needed > axis.velocity:
-            thread = f"a thread with {pitch_of(motion) * TURN:g} mm per revolution at {speed / DEG_S_PER_RPM:.6g} rpm"
+            lead = max(pitch_of(motion), last_pitch_of(motion)) * TURN
+            thread = f"a thread with {lead:g} mm per revolution at {speed / DEG_S_PER_RPM:.6g} rpm"
             reason = f"{thread} needs {needed:.6g} mm/s of axis {name}, its limit is {axis.velocity:.6g} mm/s"
             raise CncError(THREAD_TOO_FAST, f"{reason} (P-AXIS-00212)", needed=needed, limit=axis.velocity)
+
+
+def bends_too_much(settings: ThreadSettings, bends: Sequence[float], speed: float) -> bool:
+    """The lead changes faster than the axes can; `bends` in mm per deg², `speed` in deg/s."""
+    pairs = zip(bends, settings.limits, strict=True)
+    return any(abs(c) * speed * speed > BEND_SHARE * min(axis.acceleration, axis.deceleration) for c, axis in pairs)
+
+
+def _require_acceleration(settings: ThreadSettings, bends: Sequence[float], motion: LinearMove, speed: float) -> None:
+    """Raises CncError 22088 when the lead changes too fast."""
+    if not bends_too_much(settings, bends, speed):
+        return
+    for name, c, axis in zip(settings.names, bends, settings.limits, strict=True):
+        needed, limit = abs(c) * speed * speed, BEND_SHARE * min(axis.acceleration, axis.deceleration)
+        if needed > limit:
+            change = f"a lead that changes by {abs(words_of(motion).change):g} mm per revolution"
+            reason = f"{change} at {speed / DEG_S_PER_RPM:.6g} rpm needs {needed:.6g} mm/s² of axis {name}"
+            reason += f", it may take {limit:.6g} mm/s²"
+            raise CncError(LEAD_TOO_FAST, reason, needed=needed, limit=limit)
 
 
 def _require_length(geometry: ThreadGeometry, ramps: Ramps, number: int, motion: LinearMove, speed: float) -> None:
@@ -125,14 +159,15 @@ def _require_length(geometry: ThreadGeometry, ramps: Ramps, number: int, motion:
     is_last = number == len(geometry) - 1
     begin = ramps.run_up if number == 0 else 0.5 * geometry.zone_of(number)
     end = ramps.run_out if is_last else 0.5 * geometry.zone_of(number + 1)
-    angle, pitch = angle_of(motion), pitch_of(motion)
+    angle, pitch, last_pitch = angle_of(motion), pitch_of(motion), last_pitch_of(motion)
     missing = begin + end - angle
     if missing > ROUNDING:
         parts = f"{'run-up' if number == 0 else 'joint'} {begin * pitch:.3f} mm"
-        parts += f" and {'run-out' if is_last else 'joint'} {end * pitch:.3f} mm"
-        reason = f"block {number + 1} of the thread is {missing * pitch:.3f} mm too short at"
-        reason += f" {speed / DEG_S_PER_RPM:.6g} rpm: {parts} need more than its {angle * pitch:.3f} mm"
-        raise CncError(THREAD_TOO_SHORT, reason, missing=missing * pitch)
+        parts += f" and {'run-out' if is_last else 'joint'} {end * last_pitch:.3f} mm"
+        length = 0.5 * angle * (pitch + last_pitch)
+        reason = f"block {number + 1} of the thread is {missing * last_pitch:.3f} mm too short at"
+        reason += f" {speed / DEG_S_PER_RPM:.6g} rpm: {parts} need more than its {length:.3f} mm"
+        raise CncError(THREAD_TOO_SHORT, reason, missing=missing * last_pitch)
 
 
 def _require_pitch_soon(settings: ThreadSettings, ramps: Ramps, motion: LinearMove) -> None:

@@ -1,38 +1,50 @@
 """The geometry of a thread: each axis over the angle φ (deg) by which the spindle has turned since its start.
 
-A block is a straight line over its angle. At a joint the slope of each axis changes; a zone of the length L lies
-symmetrically around it, in which the slope goes from m to m + Δm by the smoothstep S(x) = 3x² - 2x³ of its part x:
+A block is a straight line; over its angle w the axes go by q = m·w + c·w²/2 with the slope m and, where the lead
+changes, the bend c. At a joint m and c change; in a zone of the length L that lies symmetrically around it, the
+polynomial of fifth degree that has q, q1 and q2 of both sides at its ends takes their place. Where only m changes, by
+Δm, it is
 
-    q1 = m + Δm·S(x)     q2 = Δm·6x(1 - x)/L     q3 = Δm·(6 - 12x)/L²     q = line + Δm·L·(x³ - x⁴/2)
+    q1 = m + Δm·(3x² - 2x³)     q2 = Δm·6x(1 - x)/L     q3 = Δm·(6 - 12x)/L²     x: part of the zone
 
-S is symmetric, so outside of the zone the axes are exactly on the lines of the blocks.
+and a change Δc of the bend adds at most 9·Δc/L to q3. Outside of the zone the axes are exactly on the lines.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from math import hypot, inf, sqrt
+from math import inf, sqrt
 from typing import Final, NamedTuple
 
 from cnc_ptp.motion import Limits
 from cnc_ptp.motion.limits import LARGEST_LIMIT
+from cnc_ptp.nc.canonical import Thread
 from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.shape import AxisState, Shape
 
 RESERVE: Final = 1.2
 """Multiple of the speed at the start up to which the axes pass a joint within their limits."""
+TURN: Final = 360.0
 ZONE_SHARE: Final = 0.8
 """Of acceleration and jerk of an axis in a zone; the rest is for following the spindle."""
 
 
 class Block(NamedTuple):
-    """A block of a thread: angle and axes at its begin, mm per deg of each axis, the zone around its begin (deg)."""
+    """A block of a thread: angle and axes at its start, m (mm/deg) and c (mm/deg²) of each axis, zone there (deg)."""
 
     begin: float
     start: tuple[float, ...]
     slopes: tuple[float, ...]
+    bends: tuple[float, ...]
     zone: float
+
+    def shape(self, way: float) -> list[Shape]:
+        """q, q1, q2, q3 of each axis at `way` deg behind its start, without zones."""
+        return [
+            (q + way * (m + 0.5 * c * way), m + c * way, c, 0.0)
+            for q, m, c in zip(self.start, self.slopes, self.bends, strict=True)
+        ]
 
 
 class ThreadGeometry:
@@ -49,14 +61,13 @@ class ThreadGeometry:
         self.end = 0.0
         self.target = tuple(start)
 
-    def append(self, target: tuple[float, ...], angle: float, speed: float) -> None:
-        """A block that takes `angle` (deg); at its joint the axes keep their limits up to `RESERVE` · `speed`."""
-        pairs = zip(self.target, target, strict=True)
-        slopes = tuple([(end - begin) / angle for begin, end in pairs])
-        zone = self._zone(slopes, speed * RESERVE) if self._blocks else 0.0
-        self._blocks.append(Block(self.end, self.target, slopes, zone))
+    def append(self, target: tuple[float, ...], thread: Thread, speed: float) -> None:
+        """A block; at its joint the axes keep their limits up to `RESERVE` · `speed`."""
+        slopes, bends = slopes_and_bends(self.target, target, thread)
+        zone = self._zone(slopes, bends, speed * RESERVE) if self._blocks else 0.0
+        self._blocks.append(Block(self.end, self.target, slopes, bends, zone))
         self._begins.append(self.end)
-        self.end += angle
+        self.end += thread.angle
         self.target = tuple(target)
 
     def pop(self) -> None:
@@ -65,14 +76,18 @@ class ThreadGeometry:
         self._begins.pop()
         self.end, self.target = block.begin, block.start
 
-    def _zone(self, slopes: Sequence[float], speed: float) -> float:
-        """Length of the zone that the axes need: a = 1.5·|Δm|·ω²/L, j = 6·|Δm|·ω³/L²."""
+    def _zone(self, slopes: Sequence[float], bends: Sequence[float], speed: float) -> float:
+        """Length of the zone that the axes need, with a = (1.5·|Δm|/L + |c|)·ω² and j = (6·|Δm|/L² + 9·|Δc|/L)·ω³."""
         longest = 0.0
-        for before, behind, axis in zip(self._blocks[-1].slopes, slopes, self._limits, strict=True):
-            change = abs(behind - before)
+        last, square = self._blocks[-1], speed * speed
+        before = last.shape(self.end - last.begin)
+        for (_, m, c, _), slope, bend, axis in zip(before, slopes, bends, self._limits, strict=True):
+            change, bent = abs(slope - m), abs(bend - c)
             weakest = ZONE_SHARE * min(axis.acceleration, axis.deceleration)
-            longest = max(longest, 1.5 * change * speed * speed / weakest)
-            longest = max(longest, sqrt(6.0 * change * speed * speed * speed / (ZONE_SHARE * axis.jerk)))
+            left = max(weakest - max(abs(c), abs(bend)) * square, 0.1 * weakest)
+            longest = max(longest, 1.5 * change * square / left)
+            jerk, by_slope, by_bend = ZONE_SHARE * axis.jerk, 6.0 * change * square * speed, 9.0 * bent * square * speed
+            longest = max(longest, (by_bend + sqrt(by_bend * by_bend + 4.0 * jerk * by_slope)) / (2.0 * jerk))
         return longest
 
     def __len__(self) -> int:
@@ -86,14 +101,19 @@ class ThreadGeometry:
         """Length of the zone around its begin; 0 at both ends of the thread."""
         return self._blocks[block].zone if block < len(self._blocks) else 0.0
 
-    def slopes_of(self, block: int) -> tuple[float, ...]:
-        """mm per deg of each axis."""
-        return self._blocks[block].slopes
+    def start_of(self, block: int) -> tuple[float, ...]:
+        """The axes where a block starts; the target behind the last one."""
+        return self._blocks[block].start if block < len(self._blocks) else self.target
 
-    def rate_of(self, block: int) -> float:
-        """mm of path per deg."""
-        slopes = self._blocks[block].slopes
-        return hypot(*[slopes[axis] for axis in self._path_axes]) or hypot(*slopes)
+    def slopes_of(self, block: int) -> list[float]:
+        """Largest |mm per deg| of each axis."""
+        angle = self.begin_of(block + 1) - self._blocks[block].begin
+        slopes, bends = self._blocks[block].slopes, self._blocks[block].bends
+        return [max(abs(m), abs(m + c * angle)) for m, c in zip(slopes, bends, strict=True)]
+
+    def bends_of(self, block: int) -> tuple[float, ...]:
+        """mm per deg² of each axis."""
+        return self._blocks[block].bends
 
     def limits(self, blocks: Sequence[int], velocity: float, spared: Sequence[float]) -> Limits:
         """What the axes permit of φ' (here `velocity`), φ'' and φ''' on these blocks.
@@ -102,11 +122,14 @@ class ThreadGeometry:
         """
         acceleration = deceleration = jerk = inf
         for block in blocks:
-            for slope, axis, part in zip(self._blocks[block].slopes, self._limits, spared, strict=True):
+            of_axes = zip(self.slopes_of(block), self._blocks[block].bends, self._limits, spared, strict=True)
+            for slope, bend, axis, part in of_axes:
                 if slope:
-                    acceleration = min(acceleration, part * axis.acceleration / abs(slope))
-                    deceleration = min(deceleration, part * axis.deceleration / abs(slope))
-                    jerk = min(jerk, part * axis.jerk / abs(slope))
+                    bent = abs(bend) * velocity
+                    up = (part * axis.acceleration - bent * velocity) / slope
+                    down = (part * axis.deceleration - bent * velocity) / slope
+                    acceleration, deceleration = min(acceleration, up), min(deceleration, down)
+                    jerk = min(jerk, (part * axis.jerk - 3.0 * bent * max(up, down)) / slope)
         return Limits(
             velocity, min(acceleration, LARGEST_LIMIT), min(deceleration, LARGEST_LIMIT), min(jerk, LARGEST_LIMIT)
         )
@@ -117,39 +140,27 @@ class ThreadGeometry:
 
     def shape(self, angle: float) -> list[Shape]:
         """q, q1, q2, q3 of each axis at an angle; exactly the target at the end."""
-        if angle >= self.end:
-            slopes = self._blocks[-1].slopes
-            return [(q, q1, 0.0, 0.0) for q, q1 in zip(self.target, slopes, strict=True)]
         number = self.block_at(angle)
         block = self._blocks[number]
         way = angle - block.begin
+        if angle >= self.end:
+            end = block.shape(self.end - block.begin)
+            return [(q, q1, q2, 0.0) for q, (_, q1, q2, _) in zip(self.target, end, strict=True)]
         if way < 0.5 * block.zone:
             return self._in_zone(number, way)
         if number + 1 < len(self._blocks):
             behind = self._blocks[number + 1]
             if behind.begin - angle < 0.5 * behind.zone:
                 return self._in_zone(number + 1, angle - behind.begin)
-        return [(q + m * way, m, 0.0, 0.0) for q, m in zip(block.start, block.slopes, strict=True)]
+        return block.shape(way)
 
     def _in_zone(self, number: int, way: float) -> list[Shape]:
         """`way`: deg from the joint, negative before it."""
-        block, before = self._blocks[number], self._blocks[number - 1].slopes
+        block, before = self._blocks[number], self._blocks[number - 1]
         size = block.zone
         x = way / size + 0.5
-        square = x * x
-        bulge = size * square * x * (1.0 - 0.5 * x)
-        shapes: list[Shape] = []
-        for q, m, behind in zip(block.start, before, block.slopes, strict=True):
-            change = behind - m
-            shapes.append(
-                (
-                    q + m * way + change * bulge,
-                    m + change * square * (3.0 - 2.0 * x),
-                    change * 6.0 * x * (1.0 - x) / size,
-                    change * (6.0 - 12.0 * x) / (size * size),
-                )
-            )
-        return shapes
+        begins = before.shape(block.begin - before.begin - 0.5 * size)
+        return [blend(begin, end, size, x) for begin, end in zip(begins, block.shape(0.5 * size), strict=True)]
 
     def evaluate(self, angle: float, rate: float, gain: float, jerk: float) -> tuple[AxisState, ...]:
         """State of each axis at φ with φ', φ'', φ'''."""
@@ -161,3 +172,32 @@ class ThreadGeometry:
                 for q, q1, q2, q3 in self.shape(angle)
             ]
         )
+
+
+def slopes_and_bends(
+    start: Sequence[float], target: Sequence[float], thread: Thread
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """mm per deg at the start, and mm per deg², of each axis in a block.
+
+    With the relative change r of the lead in a revolution, Δq = m·(w + r·w²/720) and c = m·r/360.
+    """
+    rate = thread.change / thread.lead / TURN
+    whole = thread.angle * (1.0 + 0.5 * rate * thread.angle)
+    slopes = tuple([(end - begin) / whole for begin, end in zip(start, target, strict=True)])
+    return slopes, tuple([m * rate for m in slopes])
+
+
+def blend(begin: Shape, end: Shape, size: float, x: float) -> Shape:
+    """The polynomial of fifth degree over `size` with q, q1, q2 of both ends, at its part x."""
+    square = size * size
+    d = end[0] - begin[0]
+    v0, v1, a0, a1 = begin[1] * size, end[1] * size, begin[2] * square, end[2] * square
+    c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1
+    c4 = -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1
+    c5 = 6.0 * d - 3.0 * v0 - 3.0 * v1 - 0.5 * a0 + 0.5 * a1
+    return (
+        begin[0] + x * (v0 + x * (0.5 * a0 + x * (c3 + x * (c4 + x * c5)))),
+        (v0 + x * (a0 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / size,
+        (a0 + x * (6.0 * c3 + x * (12.0 * c4 + x * 20.0 * c5))) / square,
+        (6.0 * c3 + x * (24.0 * c4 + x * 60.0 * c5)) / (square * size),
+    )

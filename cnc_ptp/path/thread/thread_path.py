@@ -24,7 +24,6 @@ from cnc_ptp.errors import CncError
 from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.nc.canonical import LinearMove
-from cnc_ptp.nc.canonical import Thread as ThreadWords
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
 from cnc_ptp.path.shape import AxisState
@@ -38,12 +37,15 @@ from cnc_ptp.path.thread.thread_check import (
     Retract,
     ThreadSettings,
     angle_of,
+    bends_too_much,
     checked_geometry,
+    last_pitch_of,
     limits_of,
     pitch_of,
     require_velocity,
     too_fast,
     way_out,
+    words_of,
 )
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
@@ -93,9 +95,8 @@ class ThreadPath:
         source: MotionSource | None,
     ) -> None:
         """`node` of the spindle; `source`: the motions behind `motion`."""
-        assert motion.thread is not None
         self._settings, self._node, self._source = settings, node, source
-        self._words: ThreadWords = motion.thread
+        self._words = words_of(motion)
         self._start = start
         self._motions = [motion]
         self._closed = source is None
@@ -124,7 +125,7 @@ class ThreadPath:
         self._fading: Fading | None = None
         self._fading_begin = 0
         self._sign, self._zero = 1.0, 0.0
-        self._speed = abs(motion.thread.speed)
+        self._speed = abs(self._words.speed)
         self._ramps = Ramps(0.0, 0.0)
         self._retract: Profile | None = None
         self._retract_begin = 0
@@ -190,9 +191,7 @@ class ThreadPath:
     @property
     def part_to_go(self) -> float:
         """Part of the active block that is still to come."""
-        thread = self._motions[self.block].thread
-        assert thread is not None
-        return min(1.0, self.angle_to_go / thread.angle)
+        return min(1.0, self.angle_to_go / angle_of(self._motions[self.block]))
 
     @property
     def time_to_go(self) -> float:
@@ -204,12 +203,7 @@ class ThreadPath:
         """mm of path that are known."""
         if self._geometry is None:
             return 0.0
-        return (self._geometry.end - self._state[0]) * self._geometry.rate_of(self.block)
-
-    @property
-    def mismatch(self) -> float:
-        """deg by which the path is ahead of what is expected of the spindle; 0.0 while it does not follow."""
-        return self._state[0] - self._expected(self._cycle)[0] if self.phase is Phase.FOLLOWS else 0.0
+        return (self._geometry.end - self._state[0]) * pitch_of(self._motions[self.block])
 
     @property
     def waits_for(self) -> str:
@@ -288,16 +282,17 @@ class ThreadPath:
         geometry = self._geometry
         if geometry is None or self.phase is Phase.WAITS:
             still = tuple([(position, 0.0, 0.0, 0.0) for position in self._start])
-            return still, 0.0, self._length_of_first()
+            return still, 0.0, self._distance(still, self._motions[0].target)
         states = geometry.evaluate(*state)
+        distance = self._distance(states, geometry.start_of(self.block + 1))
         if self._retract is not None:
             states = self._with_retract(states)
         velocity = hypot(*[states[axis][1] for axis in self._settings.path_axes])
-        return states, velocity, max(0.0, self._end_of(self.block) - state[0]) * geometry.rate_of(self.block)
+        return states, velocity, distance
 
-    def _length_of_first(self) -> float:
-        ways = [end - begin for begin, end in zip(self._start, self._motions[0].target, strict=True)]
-        return hypot(*[ways[axis] for axis in self._settings.path_axes])
+    def _distance(self, states: Sequence[AxisState], end: Sequence[float]) -> float:
+        """mm of path to a point."""
+        return hypot(*[end[axis] - states[axis][0] for axis in self._settings.path_axes])
 
     def _end_of(self, block: int) -> float:
         if self._geometry is not None:
@@ -334,14 +329,15 @@ class ThreadPath:
         if self._stops or not self.cuts:
             return False
         end = geometry.end
-        geometry.append(motion.target, angle_of(motion), self._speed)
+        geometry.append(motion.target, words_of(motion), self._speed)
         last = len(geometry) - 1
         reach = end - 0.5 * geometry.zone_of(last)
         begin = geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1)
         out = way_out(self._settings, geometry, last, self._speed)
         fits = reach >= max(begin, self._ramps.run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
         fits = fits and self._state[0] + self._speed * self._horizon < reach
-        if not fits or too_fast(self._settings, geometry.slopes_of(last), self._speed):
+        fits = fits and not too_fast(self._settings, geometry.slopes_of(last), self._speed)
+        if not fits or bends_too_much(self._settings, geometry.bends_of(last), self._speed):
             geometry.pop()
             return False
         self._ramps = self._ramps._replace(run_out=out)
@@ -408,7 +404,7 @@ class ThreadPath:
         return settled or abs(self._spindle.acceleration) < STEADY
 
     def _note_begin(self, geometry: ThreadGeometry) -> None:
-        first, last = pitch_of(self._motions[0]), pitch_of(self._motions[len(geometry) - 1])
+        first, last = pitch_of(self._motions[0]), last_pitch_of(self._motions[len(geometry) - 1])
         speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
         ways = f"run-up {self._ramps.run_up * first:.3f} mm, run-out {self._ramps.run_out * last:.3f} mm"
         self.notes.append((Severity.INFO, THREAD_BEGINS, f"thread at {speed}: {ways}"))
@@ -540,7 +536,7 @@ class ThreadPath:
         """The retract gets the whole of its axis, or a part if the axis takes part in the thread."""
         assert self._geometry is not None
         axis = self._settings.limits[retract.axis]
-        slope = max(abs(self._geometry.slopes_of(block)[retract.axis]) for block in range(len(self._geometry)))
+        slope = max(self._geometry.slopes_of(block)[retract.axis] for block in range(len(self._geometry)))
         part = RETRACT_SHARE if slope else 1.0
         velocity = max(axis.velocity - slope * self._speed, RETRACT_SHARE * axis.velocity)
         limits = Limits(velocity, part * axis.acceleration, part * axis.deceleration, part * axis.jerk)
