@@ -310,9 +310,11 @@ def test_what_is_refused_when_the_program_is_read():
     fast = "a thread with 20 mm per revolution at 3000 rpm needs 1000 mm/s of axis Z, its limit is 400 mm/s"
     where = "test.nc line 5 column 1 'G33 Z48 K20'"
     assert refusal("S3000\nG33 Z48 K20") == f"22082 {where}: {fast} (P-AXIS-00212)"
-    blind = "spindle S has no actual position (P-AXIS-00320, P-SIM-00050) and cannot lead a thread (G33)"
-    where = "test.nc line 4 column 1 'G33 Z48 K1.5'"
-    assert refusal(THREAD, lathe(spindle={"feedback": "SPEED"})) == f"22081 {where}: {blind}"
+    blind = lathe(spindle={"feedback": "SPEED"})
+    assert refusal(THREAD, blind) == (
+        "22081 test.nc line 4 column 1 'G33 Z48 K1.5': spindle S has no actual position (P-AXIS-00320, P-SIM-00050)"
+        " and cannot lead a thread (G33)"
+    )
 
 
 def test_time_of_a_program_with_a_thread():

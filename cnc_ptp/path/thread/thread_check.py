@@ -12,10 +12,10 @@ from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.geometry import AxisLimits
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 
-THREAD_TOO_FAST: Final = 22082
-THREAD_TOO_SHORT: Final = 22083
-RUN_UP_TOO_LONG: Final = 22084
-LEAD_TOO_FAST: Final = 22088
+THREAD_TOO_FAST = 22082
+THREAD_TOO_SHORT = 22083
+RUN_UP_TOO_LONG = 22084
+LEAD_TOO_FAST = 22088
 BEND_SHARE: Final = 0.3
 """Of the acceleration of an axis for a lead that changes."""
 TURN: Final = 360.0

@@ -52,10 +52,10 @@ from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
 from cnc_ptp.protocol.blocks import CycleBlock, Severity, SpindleBlock
 from cnc_ptp.protocol.spindle_states import SpindleBit
 
-SPINDLE_STANDS: Final = 22080
-THREAD_BEGINS: Final = 22085
-NO_OVERRIDE: Final = 22086
-SPINDLE_HELD: Final = 51109
+SPINDLE_STANDS = 22080
+THREAD_BEGINS = 22085
+NO_OVERRIDE = 22086
+SPINDLE_HELD = 51109
 
 PATIENCE: Final = 0.5
 """s that a spindle has to start to turn after its command."""
