@@ -17,7 +17,8 @@ from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
-from cnc_ptp.path.thread.thread_check import Retract, ThreadSettings, angle_of
+from cnc_ptp.path.thread.retract import Retract
+from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of
 from cnc_ptp.path.thread.thread_path import ThreadPath
 from cnc_ptp.protocol.blocks import CycleBlock
 

@@ -10,6 +10,7 @@ from cnc_ptp.motion import Limits, plan_to_velocity, stopping_distance
 from cnc_ptp.nc.canonical import LinearMove, Thread
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.geometry import AxisLimits
+from cnc_ptp.path.thread.retract import RETRACT_SHARE, Retract
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
 
 THREAD_TOO_FAST = 22082
@@ -21,16 +22,6 @@ BEND_SHARE: Final = 0.3
 TURN: Final = 360.0
 ROUNDING: Final = 1e-9
 """deg."""
-RETRACT_SHARE: Final = 0.4
-"""Of the acceleration and jerk of the retract axis, if it also takes part in the thread."""
-
-
-class Retract(NamedTuple):
-    """How the tool leaves a thread that is broken off: place and name of the axis, its way in mm, signed."""
-
-    axis: int
-    name: str
-    way: float
 
 
 class ThreadSettings(NamedTuple):

@@ -20,21 +20,19 @@ from enum import Enum, auto
 from math import ceil, hypot
 from typing import Final
 
-from cnc_ptp.errors import CncError
-from cnc_ptp.motion import Limits, Profile, plan_rest_to_rest, plan_to_position, plan_to_velocity, stopping_distance
+from cnc_ptp.motion import Limits, Profile, plan_to_position, plan_to_velocity, stopping_distance
 from cnc_ptp.motion.setpoints import MotionState
 from cnc_ptp.nc.canonical import LinearMove
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.path.thread.lead import Fading, fading
-from cnc_ptp.path.thread.spindle_angle import SpindleAngle
+from cnc_ptp.path.thread.leading_spindle import STANDS, LeadingSpindle
+from cnc_ptp.path.thread.retract import Retract, RetractMotion
 from cnc_ptp.path.thread.thread_check import (
-    RETRACT_SHARE,
     ROUNDING,
     TURN,
     Ramps,
-    Retract,
     ThreadSettings,
     angle_of,
     bends_too_much,
@@ -48,25 +46,15 @@ from cnc_ptp.path.thread.thread_check import (
     words_of,
 )
 from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
-from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import CycleBlock, Severity, SpindleBlock
-from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.protocol.blocks import CycleBlock, Severity
 
-SPINDLE_STANDS = 22080
 THREAD_BEGINS = 22085
 NO_OVERRIDE = 22086
-SPINDLE_HELD = 51109
 
-PATIENCE: Final = 0.5
-"""s that a spindle has to start to turn after its command."""
 AHEAD: Final = 50
 """Blocks behind the active one that are looked at."""
 SHORTEST_HORIZON: Final = 2.0
 """Blocks of cycles within which the path at the soonest is where the spindle is."""
-STEADY: Final = 10.0
-"""deg/s² below which the speed of a spindle is constant: 0.05 deg within 0.1 s."""
-STANDS: Final = 6.0
-"""deg/s below which a spindle that stops stands: 1 rpm."""
 
 
 class Phase(Enum):
@@ -95,24 +83,19 @@ class ThreadPath:
         source: MotionSource | None,
     ) -> None:
         """`node` of the spindle; `source`: the motions behind `motion`."""
-        self._settings, self._node, self._source = settings, node, source
+        self._settings, self._source = settings, source
+        self._spindle = LeadingSpindle(node, settings.cycle_time)
         self._words = words_of(motion)
         self._start = start
         self._motions = [motion]
         self._closed = source is None
         self._geometry: ThreadGeometry | None = None
         """From the moment on at which the speed is known."""
-        self._spindle = SpindleAngle(settings.cycle_time)
-        self._report: SpindleBlock | None = None
         self._renewed = True
         """The newest report has been used."""
         self._block_cycles = 1
         self._last_cycle = 0
         """Of the block of cycles that is being computed."""
-        self._waited = 0
-        """Cycles that the spindle has not turned in."""
-        self._steady = 0
-        """Cycles since its set speed is constant."""
         self._cycle = 0
         """The last one that was given out."""
         self._state: MotionState = (0.0, 0.0, 0.0, 0.0)
@@ -127,8 +110,7 @@ class ThreadPath:
         self._sign, self._zero = 1.0, 0.0
         self._speed = abs(self._words.speed)
         self._ramps = Ramps(0.0, 0.0)
-        self._retract: Profile | None = None
-        self._retract_begin = 0
+        self._retract: RetractMotion | None = None
         self.retract = settings.retract
         """None: the path stops in the thread."""
         self._stops = False
@@ -208,10 +190,7 @@ class ThreadPath:
     @property
     def waits_for(self) -> str:
         """What the thread waits for and does not come with time alone."""
-        report = self._report
-        if not self.waits or report is None or not is_held(report):
-            return ""
-        return f"an override of spindle {self._node} above 0"
+        return self._spindle.waits_for if self.waits else ""
 
     def release(self, override: float, *, held: bool) -> None:
         """Override of the path and feed hold count before the start; within the thread one warning says so."""
@@ -233,30 +212,18 @@ class ThreadPath:
 
         Raises CncError 51109 for a spindle that is held or stopped, 22082 for one that has become too fast.
         """
-        report = feedback.get(self._node)
-        self._report = report if isinstance(report, SpindleBlock) else None
+        reported = self._spindle.read(feedback)
         self._extend()
-        if self._report is None:
+        if not reported:
             return
-        self._block_cycles = self._report.count
-        self._last_cycle = first_cycle + self._report.count
-        self._spindle.read(self._report.first_cycle, self._report.actual_position_deg)
+        self._block_cycles = self._spindle.cycles
+        self._last_cycle = first_cycle + self._spindle.cycles
         self._renewed = False
-        if not self.waits and not self._stops and self.phase is not Phase.RUNS_OUT and not self._report.error_id[-1]:
-            self._watch(self._report)
-
-    def _watch(self, report: SpindleBlock) -> None:
-        why = ""
-        if is_held(report):
-            why = "is held by override 0"
-        elif report.state[-1] != AxisStateCode.CONTINUOUS_MOTION:
-            why = f"is in {state_name(AxisStateCode(report.state[-1]))}"
-        if why:
-            raise CncError(SPINDLE_HELD, f"spindle {self._node} {why} within a thread (G33)")
-        if self._geometry is not None:
+        if self.cuts and not self._stops and self._geometry is not None:
+            self._spindle.require_turning()
             number = self._geometry.block_at(self._state[0])
             slopes, motion = self._geometry.slopes_of(number), self._motions[number]
-            require_velocity(self._settings, slopes, motion, abs(self._spindle.speed))
+            require_velocity(self._settings, slopes, motion, abs(self._spindle.angle.speed))
 
     def follow(self, count: int) -> list[LinkedPoint]:
         """The next `count` cycles of the active block; fewer when it ends before.
@@ -286,7 +253,7 @@ class ThreadPath:
         states = geometry.evaluate(*state)
         distance = self._distance(states, geometry.start_of(self.block + 1))
         if self._retract is not None:
-            states = self._with_retract(states)
+            states = self._retract.applied(states, self._cycle)
         velocity = hypot(*[states[axis][1] for axis in self._settings.path_axes])
         return states, velocity, distance
 
@@ -363,11 +330,10 @@ class ThreadPath:
             self._follow_from(self._cycle, self._state)
 
     def _try_to_begin(self) -> None:
-        report = self._report
-        if self._stops or not self.released or report is None or not self._spindle.known or not self._turns(report):
+        if self._stops or not self.released or not self._spindle.ready:
             return
-        self._sign = 1.0 if self._spindle.speed > 0.0 else -1.0
-        self._speed = abs(self._spindle.speed)
+        speed = self._spindle.angle.speed
+        self._sign, self._speed = 1.0 if speed > 0.0 else -1.0, abs(speed)
         geometry, self._ramps = checked_geometry(self._settings, self._start, self._motions, self._speed)
         limits = self._limits(geometry, [0], self._speed)
         ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, limits)
@@ -383,26 +349,6 @@ class ThreadPath:
         self.phase = Phase.RUNS_UP
         self._note_begin(geometry)
 
-    def _turns(self, report: SpindleBlock) -> bool:
-        """The spindle turns at its speed. Raises CncError 22080."""
-        if report.state[-1] == AxisStateCode.CONTINUOUS_MOTION:
-            return self._is_steady(report)
-        self._waited += report.count
-        if self._waited * self._settings.cycle_time > PATIENCE:
-            state = state_name(AxisStateCode(report.state[-1]))
-            reason = f"spindle {self._node} does not turn for the thread (G33), it is in {state}"
-            raise CncError(SPINDLE_STANDS, reason)
-        return False
-
-    def _is_steady(self, report: SpindleBlock) -> bool:
-        """The spindle has reached its speed and keeps it; after a while that is taken for granted."""
-        if not report.speed_reached[-1] or any(report.set_acceleration_deg_s2) or abs(self._spindle.speed) < STANDS:
-            self._steady = 0
-            return False
-        self._steady += report.count
-        settled = self._steady * self._settings.cycle_time > PATIENCE
-        return settled or abs(self._spindle.acceleration) < STEADY
-
     def _note_begin(self, geometry: ThreadGeometry) -> None:
         first, last = pitch_of(self._motions[0]), last_pitch_of(self._motions[len(geometry) - 1])
         speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
@@ -413,7 +359,7 @@ class ThreadPath:
 
     def _turned(self, cycle: float) -> MotionState:
         """What the spindle is expected to have turned from the zero passage to when the axes act, in its direction."""
-        angle, speed, gain, jerk = self._spindle.at(cycle + self._settings.delay)
+        angle, speed, gain, jerk = self._spindle.angle.at(cycle + self._settings.delay)
         sign = self._sign
         return sign * angle - sign * self._words.offset, sign * speed, sign * gain, sign * jerk
 
@@ -448,10 +394,9 @@ class ThreadPath:
         assert self._geometry is not None
         angle, speed, gain, _ = self._expected(cycle)
         mismatch = (state[0] - angle, state[1] - speed, state[2] - gain)
-        near = sorted(
-            {self._block_of(state[0]), self._block_of(min(self._geometry.end, state[0] + speed * self._horizon))}
-        )
-        limits = self._limits(self._geometry, near, abs(speed))
+        soon = min(self._geometry.end, state[0] + speed * self._horizon)
+        blocks = range(self._block_of(state[0]), self._block_of(soon) + 1)
+        limits = self._limits(self._geometry, blocks, abs(speed))
         self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
 
     def _following(self, cycle: int) -> MotionState | None:
@@ -466,30 +411,29 @@ class ThreadPath:
             expected[2] + correction[2],
             expected[3] + correction[3],
         )
-        limits = self._limits(geometry, [len(geometry) - 1], max(self._state[1], STANDS))
+        limits = self._limits_at_end(geometry)
         way = stopping_distance(state[1], state[2], limits.deceleration, limits.jerk)
         if state[0] + way > geometry.end:
-            angle, speed, gain, _ = self._state
-            self._ramp(Phase.RUNS_OUT, plan_to_position(angle, speed, gain, geometry.end, limits))
-            self._closed = True
+            self._run_out(geometry)
             return self._next(cycle)
         if self._stops and self._may_stop(state):
             self._ramp_down()
             return self._next(cycle)
         return state
 
+    def _limits_at_end(self, geometry: ThreadGeometry) -> Limits:
+        return self._limits(geometry, [len(geometry) - 1], max(self._state[1], STANDS))
+
+    def _run_out(self, geometry: ThreadGeometry) -> None:
+        angle, speed, gain, _ = self._state
+        limits = self._limits_at_end(geometry)
+        self._ramp(Phase.RUNS_OUT, plan_to_position(angle, speed, gain, geometry.end, limits))
+        self._closed = True
+
     def _ramp(self, phase: Phase, profile: Profile) -> None:
         self.phase, self._profile, self._profile_begin = phase, profile, float(self._cycle)
 
     # stop and retract
-
-    @property
-    def _stops_in_step(self) -> bool:
-        """The spindle is on its way to a standstill, and the path can follow it there."""
-        report = self._report
-        if report is None:
-            return False
-        return report.state[-1] != AxisStateCode.CONTINUOUS_MOTION or is_held(report)
 
     def stop(self) -> None:
         """Breaks the thread off: by a retract, in step with a spindle that stops, or on the ramp of the path."""
@@ -500,7 +444,7 @@ class ThreadPath:
             return
         if self.retract is not None:
             self._begin_retract(self.retract)
-        elif self.phase is Phase.RUNS_UP or not self._stops_in_step:
+        elif self.phase is Phase.RUNS_UP or not self._spindle.stops:
             self._pending = None
             self._ramp_down()
 
@@ -513,34 +457,36 @@ class ThreadPath:
             return ""
         retract = self.retract
         if retract is not None:
-            where = f"axis {retract.name} retracts by {retract.way:g} mm while the path follows spindle {self._node}"
-            return f"{where}, then the path stops"
-        if self.phase is Phase.FOLLOWS and self._stops_in_step:
-            return f"the path follows spindle {self._node} to its standstill in the thread"
+            way = f"axis {retract.name} retracts by {retract.way:g} mm"
+            return f"{way} while the path follows spindle {self._spindle.node}, then the path stops"
+        if self.phase is Phase.FOLLOWS and self._spindle.stops:
+            return f"the path follows spindle {self._spindle.node} to its standstill in the thread"
         return "the path stops on its ramp in the thread"
 
     def _may_stop(self, state: MotionState) -> bool:
         if self._retract is not None:
             return self._retracted
-        return not self._stops_in_step or state[1] < STANDS
+        return not self._spindle.stops or state[1] < STANDS
 
     def _ramp_down(self) -> None:
-        assert self._geometry is not None
+        geometry = self._geometry
+        assert geometry is not None
         angle, speed, gain, _ = self._state
         number = self._block_of(angle)
-        blocks = [number] if number + 1 >= len(self._geometry) else [number, number + 1]
-        limits = self._limits(self._geometry, blocks, max(speed, STANDS))
-        self._ramp(Phase.STOPS, plan_to_velocity(angle, speed, gain, 0.0, limits))
+        blocks = [number] if number + 1 >= len(geometry) else [number, number + 1]
+        limits = self._limits(geometry, blocks, max(speed, STANDS))
+        ramp = plan_to_velocity(angle, speed, gain, 0.0, limits)
+        if ramp.end[0] <= geometry.end:
+            self._ramp(Phase.STOPS, ramp)
+        else:
+            self._run_out(geometry)
 
     def _begin_retract(self, retract: Retract) -> None:
-        """The retract gets the whole of its axis, or a part if the axis takes part in the thread."""
-        assert self._geometry is not None
-        axis = self._settings.limits[retract.axis]
-        slope = max(self._geometry.slopes_of(block)[retract.axis] for block in range(len(self._geometry)))
-        part = RETRACT_SHARE if slope else 1.0
-        velocity = max(axis.velocity - slope * self._speed, RETRACT_SHARE * axis.velocity)
-        limits = Limits(velocity, part * axis.acceleration, part * axis.deceleration, part * axis.jerk)
-        self._retract, self._retract_begin = plan_rest_to_rest(0.0, retract.way, limits), self._cycle
+        geometry = self._geometry
+        assert geometry is not None
+        slope = max(geometry.slopes_of(block)[retract.axis] for block in range(len(geometry)))
+        limits, cycle_time = self._settings.limits[retract.axis], self._settings.cycle_time
+        self._retract = RetractMotion(retract, limits, slope * self._speed, self._cycle, cycle_time)
 
     @property
     def retracts(self) -> bool:
@@ -550,23 +496,4 @@ class ThreadPath:
     @property
     def _retracted(self) -> bool:
         """No retract is under way."""
-        if self._retract is None:
-            return True
-        return (self._cycle - self._retract_begin) * self._settings.cycle_time >= self._retract.duration
-
-    def _with_retract(self, states: tuple[AxisState, ...]) -> tuple[AxisState, ...]:
-        retract = self.retract
-        assert self._retract is not None and retract is not None
-        t = (self._cycle - self._retract_begin) * self._settings.cycle_time
-        if t >= self._retract.duration:
-            added: MotionState = (retract.way, 0.0, 0.0, 0.0)
-        else:
-            added = self._retract.state_at(t)
-        q, v, a, j = states[retract.axis]
-        moved = (q + added[0], v + added[1], a + added[2], j + added[3])
-        return (*states[: retract.axis], moved, *states[retract.axis + 1 :])
-
-
-def is_held(report: SpindleBlock) -> bool:
-    """Override 0 acts on the spindle."""
-    return report.override_percent[-1] == 0.0 and not report.status_bits[-1] & SpindleBit.OVERRIDE_SUPPRESSED
+        return self._retract is None or self._retract.done(self._cycle)
