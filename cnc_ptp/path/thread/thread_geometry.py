@@ -26,7 +26,7 @@ from cnc_ptp.path.shape import AxisState, Shape
 RESERVE: Final = 1.2
 """Multiple of the speed at the start up to which the axes pass a joint within their limits."""
 TURN: Final = 360.0
-ZONE_SHARE: Final = 0.8
+ZONE_SHARE: Final = 0.7
 """Of acceleration and jerk of an axis in a zone; the rest is for following the spindle."""
 
 
@@ -133,6 +133,13 @@ class ThreadGeometry:
         return Limits(
             velocity, min(acceleration, LARGEST_LIMIT), min(deceleration, LARGEST_LIMIT), min(jerk, LARGEST_LIMIT)
         )
+
+    def in_joint(self, begin: float, end: float) -> bool:
+        """A part of the zone of a joint lies between two angles."""
+        for block in self._blocks[self.block_at(begin) : self.block_at(end) + 2]:
+            if block.begin - 0.5 * block.zone < end and begin < block.begin + 0.5 * block.zone:
+                return True
+        return False
 
     def block_at(self, angle: float) -> int:
         """Number of the block in which the axes are at an angle."""

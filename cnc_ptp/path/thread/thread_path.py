@@ -53,6 +53,8 @@ NO_OVERRIDE = 22086
 
 AHEAD: Final = 50
 """Blocks behind the active one that are looked at."""
+JOINT_SHARE: Final = 0.25
+"""Of acceleration and jerk that is left for following the spindle through a joint."""
 SHORTEST_HORIZON: Final = 2.0
 """Blocks of cycles within which the path at the soonest is where the spindle is."""
 
@@ -397,6 +399,8 @@ class ThreadPath:
         soon = min(self._geometry.end, state[0] + speed * self._horizon)
         blocks = range(self._block_of(state[0]), self._block_of(soon) + 1)
         limits = self._limits(self._geometry, blocks, abs(speed))
+        if self._geometry.in_joint(state[0], soon):
+            limits = Limits(limits.velocity, *[JOINT_SHARE * limit for limit in limits[1:]])
         self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
 
     def _following(self, cycle: int) -> MotionState | None:
