@@ -142,6 +142,17 @@ def test_random_chains_keep_the_limits_of_the_axes_while_the_speed_changes(seed)
     assert end == (pytest.approx(x, abs=1e-3), pytest.approx(z, abs=1e-3))
 
 
+def test_a_chain_of_many_blocks_that_hardly_turn():
+    """More blocks than are looked at ahead; their joints are much smaller than the way of a cycle."""
+    points = [(36.0 + 0.02 * np.sin(0.2 * n), 105.0 - 0.5 * n) for n in range(1, 101)]
+    bench = cut("G33 K1\n" + "\n".join(f"Z{z:.3f} X{x:.4f}" for x, z in points))
+    assert [text.split()[0] for text in texts(bench)] == ["22085"]
+    moving = abs(column(bench, "z", "set_velocity"))
+    lines = column(bench, "channel", "line")
+    assert moving[(lines > 6) & (lines < 104)].min() > 6.6
+    assert bench.column("z", "set_position")[-1] == 55.0
+
+
 def test_single_block_stops_behind_a_chain_but_not_within_it():
     scenario = "- {at: 0, to: channel, do: single_block, enabled: true}\n" + "".join(
         f"- {{at: {at}, to: channel, do: start}}\n" for at in (1, 2, 3, 8, 9)

@@ -26,6 +26,8 @@ from cnc_ptp.path.shape import AxisState, Shape
 RESERVE: Final = 1.2
 """Multiple of the speed at the start up to which the axes pass a joint within their limits."""
 TURN: Final = 360.0
+SMALLEST_ZONE: Final = 0.1
+"""deg; derivatives over a smaller one would be those of rounding."""
 ZONE_SHARE: Final = 0.7
 """Of acceleration and jerk of an axis in a zone; the rest is for following the spindle."""
 
@@ -88,7 +90,7 @@ class ThreadGeometry:
             longest = max(longest, 1.5 * change * square / left)
             jerk, by_slope, by_bend = ZONE_SHARE * axis.jerk, 6.0 * change * square * speed, 9.0 * bent * square * speed
             longest = max(longest, (by_bend + sqrt(by_bend * by_bend + 4.0 * jerk * by_slope)) / (2.0 * jerk))
-        return longest
+        return max(longest, SMALLEST_ZONE) if longest else 0.0
 
     def __len__(self) -> int:
         return len(self._blocks)
@@ -164,10 +166,17 @@ class ThreadGeometry:
     def _in_zone(self, number: int, way: float) -> list[Shape]:
         """`way`: deg from the joint, negative before it."""
         block, before = self._blocks[number], self._blocks[number - 1]
-        size = block.zone
-        x = way / size + 0.5
-        begins = before.shape(block.begin - before.begin - 0.5 * size)
-        return [blend(begin, end, size, x) for begin, end in zip(begins, block.shape(0.5 * size), strict=True)]
+        size, half = block.zone, 0.5 * block.zone
+        angle, x = block.begin - before.begin, way / size + 0.5
+        shapes: list[Shape] = []
+        for index, place in enumerate(block.start):
+            c0, m, c = before.bends[index], block.slopes[index], block.bends[index]
+            m0 = before.slopes[index] + c0 * angle
+            begin = (-half * (m0 - 0.5 * c0 * half), m0 - c0 * half, c0)
+            end = (half * (m + 0.5 * c * half), m + c * half, c)
+            q, q1, q2, q3 = blend(begin, end, size, x)
+            shapes.append((place + q, q1, q2, q3))
+        return shapes
 
     def evaluate(self, angle: float, rate: float, gain: float, jerk: float) -> tuple[AxisState, ...]:
         """State of each axis at φ with φ', φ'', φ'''."""
@@ -194,7 +203,7 @@ def slopes_and_bends(
     return slopes, tuple([m * rate for m in slopes])
 
 
-def blend(begin: Shape, end: Shape, size: float, x: float) -> Shape:
+def blend(begin: tuple[float, float, float], end: tuple[float, float, float], size: float, x: float) -> Shape:
     """The polynomial of fifth degree over `size` with q, q1, q2 of both ends, at its part x."""
     square = size * size
     d = end[0] - begin[0]
