@@ -35,7 +35,7 @@ from cnc_ptp.nc.parser import NO_FILES, parse_all
 from cnc_ptp.nc.program import Channel, GCode, ModalState, NcBlock, SpindleTable, Step, Vocabulary
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
-from cnc_ptp.nc.thread_cutting import note_functions, note_motion, take_offset, with_speed
+from cnc_ptp.nc.thread_cutting import end_thread, note_functions, note_motion, take_offset, with_speed
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
 from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
@@ -100,6 +100,7 @@ def interpret(
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
+    end_thread(state)
     refresh(channel, state)
     state.reported = True
     if words.first_offset and not state.coordinates.own.zero_index:
@@ -218,6 +219,8 @@ def _resolve(
         note_motion(state, motion)
     state.once = None
     stop = block.flow if block.flow != "return" else ""
+    if stop:
+        end_thread(state)
     if stop == "end":
         _require_speed(state, None)
         functions += end_of_links(state)

@@ -188,3 +188,9 @@ def note_motion(state: ModalState, motion: Motion | None) -> None:
         runs = led_by_spindle(motion)
         if runs or state.thread.runs:
             state.thread = state.thread._replace(runs=runs, changed="")
+
+
+def end_thread(state: ModalState) -> None:
+    """The program stops or begins: a thread does not continue behind it."""
+    if state.thread.runs:
+        state.thread = state.thread._replace(runs=False, changed="")

@@ -343,6 +343,19 @@ def test_what_is_refused_when_the_program_is_read():
     )
 
 
+def test_manual_blocks_are_threads_of_their_own():
+    bench = MachineBench(HEAD + THREAD + "\nM30\n", machine=LATHE, end_when_idle=False).run(9.0)
+    for text in ("G33 Z30 K2", "M03 S500", "G33 Z20 K2"):
+        assert bench.give("channel", "mdi", text=text).accepted
+        bench.run(4.0)
+    assert bench.column("z", "set_position")[-1] == 20.0
+    assert [text.split(":")[1] for text in texts(bench)] == [
+        " thread at 400.0 rpm",
+        " thread at 400.0 rpm",
+        " thread at 500.0 rpm",
+    ]
+
+
 def test_time_of_a_program_with_a_thread():
     bench = cut(THREAD)
     shares = [block.progress for block in bench.blocks["channel"]]

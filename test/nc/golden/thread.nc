@@ -22,5 +22,8 @@ N180 P1 = 90
 N190 G33 G91 Z-10 K[P1/60] S.OFFSET=P1*2
 N200 G90 G34 Z20 K1.5 F0.1 S.OFFSET=0 (the lead grows to 3.8 mm)
 N210 G35 Z10 K3 F0.2
+N212 M00
+N214 S200 (behind a stop it is another thread)
+N216 G33 Z5 K1
 N220 G01 Z0
 M30
