@@ -189,6 +189,7 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
         share("launch", "launch/*.launch.py"),
         share("config", "config/*.yaml"),
+        share("config/tools", "config/tools/*.yaml"),
         share("examples", "examples/*.*"),
     ],
     python_requires=">=3.11,<3.14",

@@ -61,6 +61,7 @@ NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
 INTERPRETER_SLOW = 22036
+THREAD_BROKEN = 22087
 
 ENOUGH = 0.5
 """Fill of the buffer of blocks at which the interpreter has kept up again."""
@@ -301,6 +302,9 @@ class ChannelUnit(Unit):
             if self._sequence.phase is Phase.RAMP_DOWN:
                 self._refuse("reset", STILL_MOVING, "the path still moves on its error ramp; wait for standstill")
             self._error_id = 0
+        if self._motion.cuts_thread and (broken_off := self._motion.stop_text):
+            text = f"channel {self.name}: reset within a thread; {broken_off}"
+            self.event(cycle, Severity.WARNING, THREAD_BROKEN, text, self._sequence.source.line)
         self._sequence.ramp_down(keep=self._turning_after_reset)
 
     def do_acknowledge(self, cycle: int, *, id: int) -> None:
@@ -434,7 +438,11 @@ class ChannelUnit(Unit):
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
         """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
-        points = self._motion.follow(missing)
+        try:
+            points = self._motion.follow(missing)
+        except CncError as error:
+            self._fault_in_line(cycle, error)
+            return
         self._add(rows, points, self._motion.spindle_states)
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
@@ -465,6 +473,9 @@ class ChannelUnit(Unit):
             self._sequence.offsets = None
 
     def _warn(self, cycle: int) -> None:
+        line = self._sequence.source.line
+        for severity, number, text in self._motion.take_notes():
+            self.event(cycle, severity, number, f"channel {self.name}: {text} (line {line})", line)
         messages, self._sequence.messages = self._sequence.messages, []
         for number, text, line, values in messages:
             self.event(cycle, Severity.INFO, number, text, line, values)
@@ -577,6 +588,7 @@ class ChannelUnit(Unit):
     def _read_feedback(self, first_cycle: int, inputs: Mapping[str, CycleBlock]) -> None:
         """Takes over what axes and spindles reported for the previous block."""
         self._feedback = inputs
+        self._read(self._motion.read_spindles, first_cycle)
         self._read_releases(first_cycle, inputs)
         for reason in self._axes.read(inputs, just_started=self._just_started):
             self._fault(first_cycle, AXIS_NOT_READY, reason)
@@ -587,14 +599,22 @@ class ChannelUnit(Unit):
                 self._check_member(first_cycle, node, block)
             elif isinstance(block, SpindleBlock):
                 self._check_refused(first_cycle, node, block)
-        try:
-            self._sequence.read(first_cycle, inputs)
-            if self._path_spindle.read(first_cycle):
-                self._apply_override()
-        except CncError as error:
-            self._fault_in_line(first_cycle, error)
+        self._read(self._sequence.read, first_cycle)
+        self._read(self._read_path_spindle, first_cycle)
         self._warn(first_cycle)
         self._report_held(first_cycle)
+
+    def _read(self, read: Callable[[int, Mapping[str, CycleBlock]], None], first_cycle: int) -> None:
+        """What the path or the program reads of the reports, which may be a fault of the active block."""
+        try:
+            read(first_cycle, self._feedback)
+        except CncError as error:
+            self._fault_in_line(first_cycle, error)
+
+    def _read_path_spindle(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
+        """The spindle on the path: its override acts on all of it."""
+        if self._path_spindle.read(first_cycle):
+            self._apply_override()
 
     def _report_held(self, cycle: int) -> None:
         """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
@@ -639,6 +659,8 @@ class ChannelUnit(Unit):
         if not isinstance(block, (AxisBlock, SpindleBlock)):
             return
         if block.error_id[-1]:
+            if isinstance(block, AxisBlock):
+                self._motion.axis_failed(self._axes.nodes.index(node))
             self._fault(first_cycle, MEMBER_IN_ERROR, f"{node} is in error P-ERR-{block.error_id[-1]}")
         elif isinstance(block, SpindleBlock):
             self._check_refused(first_cycle, node, block)
@@ -676,7 +698,7 @@ class ChannelUnit(Unit):
         if self._error_id:
             return
         idle = self._sequence.phase is Phase.IDLE
-        effect = "the path stops on its ramp and the program is aborted"
+        effect = f"{self._motion.stop_text or 'the path stops on its ramp'} and the program is aborted"
         if idle:
             effect = "its spindles stop" if self._sequence.spindles_move else "nothing moves"
         line = 0 if idle else self._sequence.source.line

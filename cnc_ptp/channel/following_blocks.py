@@ -9,7 +9,15 @@ from itertools import islice
 from cnc_ptp.channel.block_stream import NO_BLOCKS, BlockStream
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.waits import Moment
-from cnc_ptp.nc.canonical import BUSY, CanonicalBlock, CircularMove, ExplicitSynchronisation, LinearMove, Motion
+from cnc_ptp.nc.canonical import (
+    BUSY,
+    CanonicalBlock,
+    CircularMove,
+    ExplicitSynchronisation,
+    LinearMove,
+    Motion,
+    led_by_spindle,
+)
 from cnc_ptp.nc.faults import ProgramError
 from cnc_ptp.nc.measuring import measures
 
@@ -79,7 +87,9 @@ class FollowingBlocks:
 
     def awaits_next(self, motion: Motion | None) -> bool:
         """The path may continue behind `motion`, but with what is not known yet."""
-        if not isinstance(motion, (LinearMove, CircularMove)) or motion.transition.stops:
+        if not isinstance(motion, (LinearMove, CircularMove)):
+            return False
+        if motion.transition.stops and not led_by_spindle(motion):
             return False
         return self.peek() is None and self.busy
 

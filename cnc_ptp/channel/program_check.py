@@ -24,6 +24,7 @@ from cnc_ptp.nc.canonical import (
     Source,
     SpindleCommand,
     SpindleFunction,
+    Thread,
 )
 from cnc_ptp.nc.contour import path_defaults
 from cnc_ptp.nc.coordinates.codes import initial_state
@@ -52,11 +53,15 @@ from cnc_ptp.parameters import (
 )
 from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
 from cnc_ptp.parameters.view.homing_view import DISABLED
+from cnc_ptp.path.path_motion import thread_settings
+from cnc_ptp.path.thread.thread_check import require_velocity
+from cnc_ptp.path.thread.thread_geometry import slopes_and_bends
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
 from cnc_ptp.spindle.faults import NO_POSITION_VALUE, SENSORLESS
 
 NO_MEASURING_AXIS = 50059
 UNKNOWN_M_FUNCTION = 22011
+NO_ENCODER = 22081
 NOT_REFERENCED = 22034
 NO_CHANNEL = 26112
 
@@ -152,6 +157,7 @@ class ProgramCheck:
             radius_settings(channel),
         )
         """The channel as the interpreter knows it."""
+        self._threads = thread_settings(channel, self._axes, 0.0)
         self._limits = Limits(channel.call_depth, channel.repeats)
         self.block_skip = 0
         """Bit n - 1: blocks with /n are skipped."""
@@ -373,6 +379,9 @@ class ProgramCheck:
                 self._require_block(block, missing)
             if missing and required and isinstance(block.motion, (LinearMove, CircularMove)):
                 self._require_references(position, block.motion, block.source, missing)
+            if isinstance(block.motion, LinearMove) and block.motion.thread is not None:
+                self._require_thread(position, block.motion, block.motion.thread, block.source)
+            if isinstance(block.motion, (LinearMove, CircularMove)):
                 position = block.motion.target
             yield block
             if (isinstance(block.motion, HomeAxes) or measures(block.motion)) and state.values.position:
@@ -427,6 +436,19 @@ class ProgramCheck:
             if axis.homing.required and name in missing and (turns or motion.target[index] != start[index]):
                 text = f"axis {name} is not referenced (P-MACH-00061); G74 {name}1 first"
                 raise ProgramError(NOT_REFERENCED, text, source, source.column(name))
+
+    def _require_thread(self, start: tuple[float, ...], motion: LinearMove, thread: Thread, source: Source) -> None:
+        """Raises ProgramError 21667 for a spindle without encoder, 22082 for axes that cannot follow its speed."""
+        spindle, column = self._units.get(self._nodes[thread.spindle]), source.column("G33")
+        if spindle is None or not spindle.has_position:
+            why = f"spindle {thread.spindle} has no actual position (P-AXIS-00320, P-SIM-00050)"
+            raise ProgramError(NO_ENCODER, f"{why} and cannot lead a thread (G33)", source, column)
+        slopes, bends = slopes_and_bends(start, motion.target, thread)
+        fastest = [max(abs(m), abs(m + c * thread.angle)) for m, c in zip(slopes, bends, strict=True)]
+        try:
+            require_velocity(self._threads, fastest, motion, abs(thread.speed))
+        except CncError as error:
+            raise ProgramError(error.number, error.reason, source, column, **error.values) from None
 
     def check_target(self, target: tuple[float, ...], source: Source, unlimited: Collection[str] = ()) -> None:
         """Raises ProgramError 120002 / 120003 for a point (mm) beyond a soft limit; `unlimited` axes have none."""

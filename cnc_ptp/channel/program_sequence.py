@@ -49,6 +49,7 @@ from cnc_ptp.nc.canonical import (
     Tap,
     Timer,
     WaitForPath,
+    led_by_spindle,
 )
 from cnc_ptp.nc.faults import ProgramError, line_of_program
 from cnc_ptp.nc.measuring import measures
@@ -367,6 +368,8 @@ class ProgramSequence:
             return "start"
         if self.phase is Phase.MOTION and self._motion.held and self._motion.velocity == 0.0:
             return "an override above 0, the end of the feed hold or a feed release"
+        if self.phase is Phase.MOTION and self._motion.thread is not None and self._motion.thread.waits_for:
+            return self._motion.thread.waits_for
         if self.homing_held:
             return "an override above 0 or the end of the feed hold"
         waits = [wait.text(self.handshake) for wait in self._waited_for()]
@@ -555,8 +558,9 @@ class ProgramSequence:
         self.phase = Phase.MOTION
 
     def _open_waits(self) -> Container[Moment]:
-        """The moments before which the path has to stop; all in single block."""
-        return list(Moment) if self.single_block else [wait.until for wait in self._waits]
+        """The moments before which the path has to stop; all in single block, but not within a thread."""
+        threads = self._block is not None and led_by_spindle(self._block.motion)
+        return list(Moment) if self.single_block and not threads else [wait.until for wait in self._waits]
 
     def pass_block(self, cycle: int) -> None:
         """The path continues in the next block without a stop; blocks without motion in between are done at once.

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from cnc_ptp.channel.time_estimate import TimeEstimate
-from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove
+from cnc_ptp.nc.canonical import CanonicalBlock, CircularMove, LinearMove, led_by_spindle
 from cnc_ptp.path.path_motion import PathMotion
 
 NOT_KNOWN: Final = -1.0
@@ -18,7 +18,7 @@ NOT_KNOWN: Final = -1.0
 class BlockTimes:
     """Seconds of motion (at override 100 %) and of dwell from each block to the end: element n is that before block n.
 
-    Motions with G166 count as dwells: the override has no effect on them.
+    Motions with G166 and threads count as dwells: the override has no effect on them.
     There is one element more than blocks that are known; `total` blocks are in the program, None: not known.
     """
 
@@ -46,6 +46,7 @@ def block_times(
     for block, seconds in zip(reversed(blocks), reversed(estimate.seconds(blocks, start)), strict=True):
         motion = block.motion
         scaled = isinstance(motion, (LinearMove, CircularMove)) and not motion.full_override
+        scaled = scaled and not led_by_spindle(motion)
         of_motion.append(of_motion[-1] + (seconds if scaled else 0.0))
         of_dwell.append(of_dwell[-1] + (0.0 if scaled else seconds))
     return BlockTimes(of_motion[::-1], of_dwell[::-1], total)

@@ -128,6 +128,13 @@ class BlockWords:
         name = token.name.removesuffix(".POS")
         self.spindles.append(SpindleWords(name, None, None, float(token.text), din=True))
 
+    def offset(self, token: Token) -> None:
+        """Where a thread begins: `S.OFFSET=180`."""
+        if token.name in self.values:
+            first, second = number(self.values[token.name]), number(float(token.text))
+            raise faults.DUPLICATE_WORD.at(self.source, token.column, word=token.name, first=first, second=second)
+        self.values[token.name] = float(token.text)
+
     def bracket(self, token: Token) -> None:
         """A spindle's own words: `S2[M3 REV1000]`, `S[G135 G136=80]`; an axis': `X[COMP ON FRICT]`."""
         if token.name[0] in self.vocabulary.axis_letters:
@@ -170,6 +177,7 @@ _TAKERS = {
     "word": BlockWords.word,
     "named": BlockWords.named,
     "position": BlockWords.position,
+    "offset": BlockWords.offset,
     "bracket": BlockWords.bracket,
     "bare": BlockWords.bare,
     "valued": BlockWords.valued,

@@ -60,12 +60,32 @@ class Tap(NamedTuple):
     degrees_per_mm: float
 
 
+class Thread(NamedTuple):
+    """G33, G34, G35: the move follows the angle of a spindle that turns, by its canonical name.
+
+    angle    by which the spindle turns during the move, deg, > 0
+    lead     mm for one revolution along the axis at the place `axis`, as programmed; at the start of the move
+    offset   deg from the zero passage of the spindle to the start of the thread
+    change   of the lead with each revolution, mm
+    speed    of the spindle as far as the program knows it, deg/s, signed; 0.0: not known
+    """
+
+    spindle: str
+    angle: float
+    lead: float
+    axis: int
+    offset: float = 0.0
+    speed: float = 0.0
+    change: float = 0.0
+
+
 class LinearMove(NamedTuple):
     """Straight move of all axes to `target` (mm); `feed` in mm/s along the path, 0.0 when `rapid`.
 
     `slope` of its acceleration, "" is that of P-CHAN-00071; `full_override`: G166, the override has no effect;
     `transition` to the next motion; `measures`: places of the axes of a measuring run, which the signal of the probe
-    ends; `tap`: the spindle that turns with it.
+    ends; `tap`: the spindle that turns with it; `thread`: a spindle leads the move, `feed` is what its speed amounts to
+    (0.0: not known).
     """
 
     target: tuple[float, ...]
@@ -76,6 +96,12 @@ class LinearMove(NamedTuple):
     transition: Transition = THROUGH
     measures: tuple[int, ...] = ()
     tap: Tap | None = None
+    thread: Thread | None = None
+
+
+def led_by_spindle(motion: object) -> bool:
+    """A motion of G33, G34, G35."""
+    return isinstance(motion, LinearMove) and motion.thread is not None
 
 
 Direction = tuple[float, ...]

@@ -20,6 +20,7 @@ from cnc_ptp.nc.canonical import (
     SpindleFeedforward,
     SpindleFunction,
     SpindleLink,
+    Thread,
     Timer,
     WaitForPath,
     number,
@@ -102,6 +103,8 @@ def _motion(motion: Motion) -> str:
     target, slope = _numbers(motion.target), f" slope {motion.slope}" if motion.slope else ""
     slope += " G166" if motion.full_override else ""
     slope += _transition(motion.transition)
+    if isinstance(motion, LinearMove) and motion.thread is not None:
+        return f"thread {target} {_thread(motion.thread)}"
     if isinstance(motion, LinearMove):
         kind = "measure" if motion.measures else "line"
         if motion.tap is not None:
@@ -114,6 +117,12 @@ def _motion(motion: Motion) -> str:
         f"arc {target} plane {plane} center {_numbers(motion.center)} radius {number(motion.radius)}"
         f" sweep {number(motion.sweep)} feed {number(motion.feed)}{slope}"
     )
+
+
+def _thread(thread: Thread) -> str:
+    turns, offset = number(thread.angle / 360.0), f" offset {number(thread.offset)}" if thread.offset else ""
+    change = f" change {number(thread.change)}" if thread.change else ""
+    return f"spindle {thread.spindle} turns {turns} lead {number(thread.lead)}{change}{offset}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

@@ -50,7 +50,7 @@ def require_feed(state: ModalState, block: NcBlock, code: GCode) -> None:
 
 def timed(channel: Channel, state: ModalState, motion: LinearMove | CircularMove) -> LinearMove | CircularMove:
     """With G93: the motion (machine coordinates) with the feed that takes the programmed time at a constant speed."""
-    if state.feed_mode == PER_MINUTE or (isinstance(motion, LinearMove) and motion.rapid):
+    if state.feed_mode == PER_MINUTE or (isinstance(motion, LinearMove) and (motion.rapid or motion.thread)):
         return motion
     feed = path_length(channel, state.position, motion) / state.block_time
     if state.feed_mode == INVERSE:

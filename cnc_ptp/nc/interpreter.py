@@ -40,6 +40,7 @@ from cnc_ptp.nc.radius.radius_state import DEFAULT_SETTINGS, RadiusSettings
 from cnc_ptp.nc.recovery import Recovery
 from cnc_ptp.nc.spindle_links import end_of_links
 from cnc_ptp.nc.spindles import spindle_table
+from cnc_ptp.nc.thread_cutting import end_thread, note_functions, note_motion, take_offset, with_speed
 from cnc_ptp.nc.tools.compensation import compensating_move, tool_words
 from cnc_ptp.nc.tools.tool_state import NOT_WRITTEN
 from cnc_ptp.nc.vocabulary import FULL_OVERRIDE, TWINCAT
@@ -119,6 +120,7 @@ def interpret(
     state = initial_state(channel) if state is None else state
     state.position = tuple(start)
     state.tool.written = NOT_WRITTEN
+    end_thread(state)
     refresh(channel, state)
     state.reported = True
     if words.first_offset and not state.coordinates.own.zero_index:
@@ -240,6 +242,8 @@ def _resolve(
         elif code.function is not None:
             control += code.function(channel, state, block, code)
             moves = moves and not code.takes_axes
+    if block.values is not None:
+        take_offset(channel, state, block)
     before = state.programmed
     selected = block.functions and (path.spindle or not path.own_words) and tool_words(channel, state, block)
     if state.machine_words:
@@ -255,12 +259,18 @@ def _resolve(
         functions = tapping.functions(channel, state, block, path)
     elif block.functions and (path.spindle or not path.own_words):
         functions = block_functions(channel, state, block)
+        note_functions(channel, state, block, functions)
     if control or block.controls:
         functions += control + bracketed_controls(channel, state, block, functions)
     if motion is not None:
+        if isinstance(motion, LinearMove) and motion.thread is not None:
+            motion = with_speed(channel, state, block, motion, motion.thread)
         motion = _moved(channel, state, block, motion, check_target)
+        note_motion(state, motion)
     state.once = None
     stop = block.flow if block.flow != "return" else ""
+    if stop:
+        end_thread(state)
     if stop == "end":
         _require_speed(state, None)
         functions += end_of_links(state)

@@ -47,6 +47,7 @@ _TOKEN = re.compile(
     rf"""\s*(?:
       (?P<call> (?P<scope>LL?)\s+ (?P<callee>[^\s"\],#$\[]+) )
     | (?P<position> (?P<positioned>{_NAME}) \s*\.\s* POS \s*=?\s* (?P<angle>{NUMBER}) (?![\d.]) )
+    | (?P<offset> (?P<shifted>{_NAME}) \s*\.\s* OFFSET \s*=?\s* (?P<shift>{NUMBER}) (?![\d.]) )
     | (?P<word> (?P<letter>[A-Z]) \s*=?\s* (?P<number>{NUMBER}) (?!\s*[=\[]|[\d.]) )
     | (?P<named> (?P<name>{_NAME}) \s*=\s* (?P<value>{NUMBER}) (?![\d.]) )
     | (?P<bracket> (?P<owner>{_NAME}) \s*\[ (?P<inside>(?:[^\[\]\"]++|\[[^\[\]]*+\])*+) \] )
@@ -54,7 +55,7 @@ _TOKEN = re.compile(
     )""",
     re.ASCII | re.VERBOSE,
 )
-_KINDS = ("call", "position", "word", "named", "bracket", "bare")
+_KINDS = ("call", "position", "offset", "word", "named", "bracket", "bare")
 _BRACKET_WORD = re.compile(rf"\s*([A-Z_]+)\s*=?\s*({NUMBER})(?![\d.])", re.ASCII)
 _BRACKET_CODE = re.compile(r"\b([GM])\s*=?\s*(\d{1,9})(?![\d.])", re.ASCII)
 _BRACKET_NAME = re.compile(r"\s*([A-Z_]{2,}+)()(?=\s|$)", re.ASCII)
@@ -66,7 +67,7 @@ SKIP = re.compile(r"\s*/(\d*)", re.ASCII)
 
 
 class Token(NamedTuple):
-    """`kind`: call, position, word, named, valued, bracket, bare, assignment; `column` from 1.
+    """`kind`: call, position, offset, word, named, valued, bracket, bare, assignment; `column` from 1.
 
     `name`: letter or name (S.POS for a position, G159 for a code with a value), `text`: number or content. `value`: in
     place of the number an expression; `parts`: the content of a bracket with expressions; `target`: what is assigned.
@@ -337,8 +338,10 @@ class TokenReader:
             if match is None:
                 continue
             name = match[1]
-            if kind in ("position", "valued"):
-                name = f"{name}.POS" if kind == "position" else code_name(name, int(match[2]))
+            if kind == "valued":
+                name = code_name(name, int(match[2]))
+            elif kind in _SUFFIXES:
+                name = f"{name}.{_SUFFIXES[kind]}"
             begin = match.start(1)
             numeric = kind == "word" and _NUMBER_NEXT.match(self.line, match.end())
             if kind == "valued" or "=" in match[0] or numeric or self._opens(match.end()):
@@ -403,11 +406,14 @@ _TARGET = re.compile(r"\s*(?:P\s*[\d\[P]|V\s*\.)", re.ASCII)
 _ASSIGNS = re.compile(r"\s*([-+*/]?=)(?!=)", re.ASCII)
 _COMBINED: Final = {"+=": Add, "-=": Subtract, "*=": Multiply, "/=": Divide}
 _COMPUTED_POSITION = re.compile(rf"\s*({_NAME})\s*\.\s*POS\s*=?", re.ASCII)
+_COMPUTED_OFFSET = re.compile(rf"\s*({_NAME})\s*\.\s*OFFSET\s*=?", re.ASCII)
+_SUFFIXES: Final = {"position": "POS", "offset": "OFFSET"}
 _VALUED = re.compile(r"\s*([GHM])\s*(\d{1,3})\s*=(?!=)", re.ASCII)
 _COMPUTED_WORD = re.compile(r"\s*([A-Z])\s*=?", re.ASCII)
 _COMPUTED_NAME = re.compile(rf"\s*({_NAME})\s*=(?!=)", re.ASCII)
 _COMPUTED: Final = (
     (_COMPUTED_POSITION, "position"),
+    (_COMPUTED_OFFSET, "offset"),
     (_VALUED, "valued"),
     (_COMPUTED_NAME, "named"),
     (_COMPUTED_WORD, "word"),
@@ -417,7 +423,7 @@ _EXTENDED = re.compile(r"G\s*0*5[4-9](?![\d.])", re.ASCII)
 _DWELL = re.compile(r"G\s*0*4(?!\d)", re.ASCII)
 _BARE = re.compile(r"\s*\[", re.ASCII)
 _NUMBER_NEXT = re.compile(rf"\s*{NUMBER}(?![\d.])", re.ASCII)
-_NUMBERED = ("word", "named", "position")
+_NUMBERED = ("word", "named", "position", "offset")
 _COMPUTED_INSIDE = re.compile(r"[A-Z]\s*=?\s*[-+]*\s*(?:\[|P\s*[\d\[]|V\s*\.|@)|[\d.][-+*/]", re.ASCII)
 _INSIDE_WORD = re.compile(r"\s*([A-Z_]+)\s*=?", re.ASCII)
 _INSIDE_REST = re.compile(r"\s*[A-Z_]*\s*=?\s*[^A-Z\]]*", re.ASCII)
@@ -428,6 +434,8 @@ def _token(match: "re.Match[str]") -> Token:
     kind = next(kind for kind in _KINDS if part[kind] is not None)
     if kind == "position":
         return Token(kind, f"{part['positioned']}.POS", part["angle"], match.start(kind) + 1, part[kind])
+    if kind == "offset":
+        return Token(kind, f"{part['shifted']}.OFFSET", part["shift"], match.start(kind) + 1, part[kind])
     name = part["callee"] or part["letter"] or part["name"] or part["owner"] or ""
     text = part["scope"] or part["number"] or part["value"] or part["inside"] or part["bare"] or ""
     return Token(kind, name, text, match.start(kind) + 1, part[kind])

@@ -281,6 +281,29 @@ class Drilling(NamedTuple):
 NO_DRILLING: Final = Drilling()
 
 
+class ThreadState(NamedTuple):
+    """Numbers of G33, G34 and G35 that stay to the end of the program.
+
+    letter    of the pitch (I, J, K), "" none yet; `pitch` in mm per revolution
+    change    F of G34 and G35, mm per revolution and revolution
+    offset    deg from the zero passage of the spindle to the start of the thread
+    runs      the last motion was one of G33: another one continues its thread
+    changed   what has commanded the spindle since, "" nothing
+    stopped   spindles that the program has stopped
+    """
+
+    letter: str = ""
+    pitch: float = 0.0
+    change: float = 0.0
+    offset: float = 0.0
+    runs: bool = False
+    changed: str = ""
+    stopped: frozenset[str] = frozenset()
+
+
+NO_THREAD: Final = ThreadState()
+
+
 class Channel(NamedTuple):
     """Constants while a program is interpreted: axes, spindles, arc limits (mm, ratio), its vocabulary.
 
@@ -387,6 +410,7 @@ class ModalState:
     machine_words: bool = False
     tool: ToolState = field(default_factory=ToolState)
     radius_compensation: RadiusState = NOT_COMPENSATED
+    thread: ThreadState = NO_THREAD
 
     def copy(self) -> "ModalState":
         """An independent copy, so that a refused MDI line leaves the state unchanged."""

@@ -5,7 +5,17 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, tapping, transitions
+from cnc_ptp.nc import (
+    feedforward,
+    feeds,
+    functions,
+    measuring,
+    motions,
+    spindles,
+    tapping,
+    thread_cutting,
+    transitions,
+)
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 from cnc_ptp.nc.radius import radius_codes
@@ -66,7 +76,9 @@ _G_CODES = (
     GCode(22, "mirror", prepare=codes.mirror),
     GCode(23, "mirror", prepare=codes.mirror),
     GCode(351, "mirror", later="mirroring of single axes"),
-    GCode(33, "path", later="thread cutting"),
+    GCode(33, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
+    GCode(34, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
+    GCode(35, "path", motion=thread_cutting.thread, words=thread_cutting.PITCH_WORDS),
     GCode(10, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=False)),
     GCode(11, "feed of arcs", select=radius_codes.feed_of_arcs(at_contour=True)),
     GCode(25, "outer corners", select=radius_codes.outer_corners(by_lines=True)),

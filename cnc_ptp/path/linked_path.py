@@ -9,7 +9,7 @@ from typing import Final, Protocol
 
 from cnc_ptp.errors import CncError
 from cnc_ptp.motion.setpoints import MotionState
-from cnc_ptp.nc.canonical import CircularMove, LinearMove
+from cnc_ptp.nc.canonical import CircularMove, LinearMove, led_by_spindle
 from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.parts import PathPart
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
@@ -44,6 +44,8 @@ LONG_CYCLE: Final = 0.01
 
 def can_follow(motion: Path, following: Path) -> bool:
     """Nothing in the two motions asks for a stop between them."""
+    if led_by_spindle(motion) or led_by_spindle(following):
+        return False
     alike = motion.full_override == following.full_override and motion.slope == following.slope
     blended = motion.transition.contour is not None or is_rapid(motion) == is_rapid(following)
     return alike and blended and not motion.transition.stops and not taps(following)

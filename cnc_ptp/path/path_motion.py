@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from cnc_ptp.motion import Limits
@@ -17,6 +17,10 @@ from cnc_ptp.path.lookahead.look_ahead import LookAhead
 from cnc_ptp.path.lookahead.path_builder import LinkedMotion, PathBuilder
 from cnc_ptp.path.planner import PLANNERS, Planner
 from cnc_ptp.path.shape import AxisState, without_jerk
+from cnc_ptp.path.thread.retract import Retract
+from cnc_ptp.path.thread.thread_check import ThreadSettings, angle_of
+from cnc_ptp.path.thread.thread_path import ThreadPath
+from cnc_ptp.protocol.blocks import CycleBlock
 
 CARTESIAN = ("X", "Y", "Z")
 AxisStates = tuple[AxisState, ...]
@@ -88,7 +92,7 @@ class PathMotion:
         `spindle_limits`: those of a spindle, by its name in programs, as an axis of the path.
         """
         self._cycle_time = cycle_time
-        self._feed_limits = [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+        self._feed_limits = feed_limits(axes)
         self._rapid_limits = [AxisLimits(a.rapid_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
         self._path_axes = path_axes(channel)
         self._spindle_limits = spindle_limits
@@ -96,6 +100,8 @@ class PathMotion:
         self.spindle_state = AT_REST
         self._taps = False
         """The spindle is the last coordinate of the active element."""
+        self._threads = thread_settings(channel, axes, cycle_time)
+        self._spindle_nodes = {spindle.name: spindle.node for spindle in channel.spindles}
         self._max_override = channel.max_override_percent / 100.0
         self._interpolator = PathInterpolator()
         self._default_slope = channel.slope
@@ -110,6 +116,10 @@ class PathMotion:
         """States of the axes on the active element."""
         self._linked: LinkedPath | None = None
         """The path of several blocks that is active, in place of an element."""
+        self.thread: ThreadPath | None = None
+        """The thread that is active, in place of an element."""
+        self._cycle = 0
+        """The last one that was given out."""
         self.states = standing([a.start_position for a in axes])
         self.velocity = 0.0
         self.distance_to_go = 0.0
@@ -123,7 +133,7 @@ class PathMotion:
     @property
     def on_path(self) -> bool:
         """An element is active (a dwell is none)."""
-        return self._element is not None or self._linked is not None
+        return self._element is not None or self._linked is not None or self.thread is not None
 
     @property
     def override(self) -> float:
@@ -136,6 +146,8 @@ class PathMotion:
 
         Of a block that the path runs through: at its present velocity.
         """
+        if self.thread is not None:
+            return self.thread.time_to_go
         if self._linked is not None:
             return self.distance_to_go / self.velocity if self.velocity > 0.0 else -1.0
         return self._interpolator.time_to_go
@@ -143,6 +155,8 @@ class PathMotion:
     @property
     def part_to_go(self) -> float:
         """Part of the active element's length, or of the dwell's time, that is still to come; 0.0 without one."""
+        if self.thread is not None:
+            return self.thread.part_to_go
         if self._linked is not None:
             return self._linked.part_to_go(self.distance_to_go)
         if self._element is not None:
@@ -152,6 +166,8 @@ class PathMotion:
     @property
     def held(self) -> bool:
         """Feed hold or override 0 act; the path is at a standstill, or is on its ramp to standstill."""
+        if self.thread is not None:
+            return self.thread.waits and not self.thread.released
         return self.on_path and self._interpolator.override == 0.0
 
     @property
@@ -163,11 +179,15 @@ class PathMotion:
     @property
     def path_ahead(self) -> float:
         """Length of the path, mm, that the look-ahead knows."""
+        if self.thread is not None:
+            return self.thread.length_known
         return self.distance_to_go if self._linked is None else self._linked.look_ahead.known
 
     @property
     def can_be_held(self) -> bool:
         """An element is active that a feed hold would stop before its end."""
+        if self.thread is not None:
+            return self.thread.waits
         if self._linked is not None:
             return not self._linked.look_ahead.brakes_for_end
         return self._element is not None and not self._interpolator.ends_by_itself
@@ -175,6 +195,8 @@ class PathMotion:
     @property
     def stopped(self) -> bool:
         """True when `stop` was called and the path is at a standstill."""
+        if self.thread is not None:
+            return self.thread.stopped
         return self._linked.look_ahead.stopped if self._linked is not None else self._interpolator.stopped
 
     @property
@@ -185,10 +207,16 @@ class PathMotion:
     @property
     def passes(self) -> bool:
         """The active block is finished; the path continues in the next one without a stop."""
+        if self.thread is not None:
+            return self.thread.passes
         return self._linked is not None and self._linked.passes
 
     def pass_block(self) -> None:
         """The next block of the path is the active one."""
+        if self.thread is not None:
+            self.thread.pass_block()
+            self.feed = self.thread.feed
+            return
         assert self._linked is not None
         self._linked.pass_block()
         self.feed = self._linked.feed
@@ -243,6 +271,9 @@ class PathMotion:
             self._interpolator.dwell(motion.seconds)
             self._dwell = motion.seconds
             return
+        if isinstance(motion, LinearMove) and motion.thread is not None:
+            self._start_thread(motion, motion.thread.spindle, source)
+            return
         plan = self.plan(motion, self.position)
         element, feed = plan.element, plan.feed
         self._set_full_override(motion.full_override)
@@ -253,11 +284,52 @@ class PathMotion:
         self._element, self.feed, self.distance_to_go = element, feed, element.length
         self._evaluate = evaluation(element, steps=plan.steps)
 
+    def _start_thread(self, motion: LinearMove, spindle: str, source: MotionSource | None) -> None:
+        """The thread waits for its spindle from the last cycle on that was given out."""
+        thread = ThreadPath(self._threads, self._spindle_nodes[spindle], motion, self.position, source)
+        thread.released = self._override > 0.0
+        thread.begin(self._cycle)
+        self.thread, self.feed = thread, motion.feed
+
+    def read_spindles(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
+        """Before each block of cycles: what the spindles have reported of the one before.
+
+        Raises CncError 51109 and 22082, which break a thread off.
+        """
+        self._cycle = first_cycle
+        if self.thread is not None:
+            self.thread.read(first_cycle, feedback)
+
+    @property
+    def cuts_thread(self) -> bool:
+        """The axes are in a thread, and not on the ramp at its end."""
+        return self.thread is not None and self.thread.cuts
+
+    @property
+    def stop_text(self) -> str:
+        """How a thread is broken off now, for events; empty without one."""
+        return "" if self.thread is None else self.thread.stop_text
+
+    def axis_failed(self, axis: int) -> None:
+        """It cannot retract."""
+        thread = self.thread
+        if thread is not None and not thread.retracts and thread.retract is not None and thread.retract.axis == axis:
+            thread.retract = None
+
+    def take_notes(self) -> list[tuple[int, int, str]]:
+        """Severity, number and text of what there is to be told of the active thread."""
+        if self.thread is None or not self.thread.notes:
+            return []
+        notes, self.thread.notes = self.thread.notes, []
+        return notes
+
     def durations(self, motion: Path, start: tuple[float, ...], source: MotionSource, cell_time: float) -> list[float]:
         """Seconds of a motion from `start`, at rest, and of those that are linked to it, with override 100 %.
 
         They are planned in cells of at most `cell_time` s. Raises as `start`.
         """
+        if isinstance(motion, LinearMove) and motion.thread is not None:
+            return [angle_of(motion) / abs(motion.thread.speed) if motion.thread.speed else 0.0]
         plan = self.plan(motion, start)
         path = self._linked_path(plan, motion, source, LookAhead(1.0, 0.0, cell_time))
         return [plan.duration] if path is None else path.durations()
@@ -319,8 +391,12 @@ class PathMotion:
         self.spindle_state = AT_REST
 
     def follow(self, count: int) -> list[PathPoint]:
-        """The next `count` cycles of the active motion; fewer when it ends before."""
+        """The next `count` cycles of the active motion; fewer when it ends before.
+
+        Raises CncError 22080 … 22084 for a thread that cannot be begun.
+        """
         points = self._points(count)
+        self._cycle += len(points)
         self.spindle_states = []
         if self._taps:
             self.spindle_states = [states[-1] for states, _, _ in points]
@@ -331,6 +407,8 @@ class PathMotion:
         return points
 
     def _points(self, count: int) -> list[PathPoint]:
+        if self.thread is not None:
+            return self.thread.follow(count)
         if self._linked is not None:
             return self._linked.follow(count, self._cycle_time)
         rows = self._interpolator.step(count, self._cycle_time)
@@ -341,6 +419,7 @@ class PathMotion:
 
     def stand(self) -> None:
         """A cycle passes in which no motion is active."""
+        self._cycle += 1
         self._interpolator.step(1, self._cycle_time)
 
     def set_override(self, override: float, *, held: bool) -> None:
@@ -354,6 +433,8 @@ class PathMotion:
         self._interpolator.set_override(acting)
         if self._linked is not None:
             self._linked.look_ahead.set_override(acting)
+        if self.thread is not None:
+            self.thread.release(override, held=held)
 
     def _set_full_override(self, full: bool) -> None:
         if full != self._full_override:
@@ -362,15 +443,21 @@ class PathMotion:
 
     def stop(self) -> None:
         """Ramps down on the path; `follow` continues until `stopped` or the end of the element."""
-        if self._linked is not None:
+        if self.thread is not None:
+            self.thread.stop()
+        elif self._linked is not None:
             self._linked.look_ahead.stop()
         else:
             self._interpolator.stop()
 
     def finish(self) -> None:
         """The motion has finished: the axes are exactly at its target, or at the end of its stop ramp."""
-        linked, element = self._linked, self._element
-        if linked is not None:
+        linked, element, thread = self._linked, self._element, self.thread
+        if thread is not None:
+            self.states = standing(thread.target if thread.done and not thread.retracts else self.position)
+            self._interpolator.go_on(thread.remaining_time - self._cycle_time if thread.done else 0.0)
+            self.thread = None
+        elif linked is not None:
             self.states = standing(linked.target if linked.done else self.position)
             self._interpolator.go_on(linked.look_ahead.remaining_time - self._cycle_time if linked.done else 0.0)
             self._linked = None
@@ -421,6 +508,23 @@ def path_axes(channel: ChannelParameters) -> frozenset[int]:
     """Indices of the axes whose path the feed is for: X, Y and Z in any order, or all if there are none."""
     cartesian = frozenset(n for n, axis in enumerate(channel.axes) if axis.name in CARTESIAN)
     return cartesian or frozenset(range(len(channel.axes)))
+
+
+def feed_limits(axes: Sequence[AxisParameters]) -> list[AxisLimits]:
+    """Of axes on a path with a feed."""
+    return [AxisLimits(a.max_velocity, a.acceleration, a.deceleration, a.jerk) for a in axes]
+
+
+def thread_settings(channel: ChannelParameters, axes: Sequence[AxisParameters], cycle_time: float) -> ThreadSettings:
+    """Of the threads of a channel. All axes of a path act equally late."""
+    names = [axis.name for axis in channel.axes]
+    retract = None
+    if channel.thread_retract_axis in names and channel.thread_retract:
+        axis = names.index(channel.thread_retract_axis)
+        retract = Retract(axis, channel.thread_retract_axis, channel.thread_retract)
+    delay = max((axis.control.delay_cycles for axis in axes), default=0)
+    places = sorted(path_axes(channel))
+    return ThreadSettings(names, feed_limits(axes), places, cycle_time, delay, channel.thread_run_up, retract)
 
 
 def begins_element(before: float, now: float) -> bool:

@@ -71,3 +71,61 @@ def test_the_drilling_axis_is_normal_to_the_plane(plane: int, place: int, call: 
         else:
             assert one == other
     assert isinstance(turned[-2], LinearMove) and turned[-2].target[place] in (3.0, -3.0)
+
+
+# threads
+
+LATHE = {"axes": ("X", "Z"), "start": (30.0, 62.0)}
+
+
+def threading(arguments: str) -> list[str]:
+    """The blocks of the cycle from X30 Z62 on."""
+    call = f"L CYCLE [NAME=threading.nc {arguments}]"
+    return lines(f"M03 S100\n{call}\nM30", files=called_programs(call, [str(HERE / "library")]), **LATHE)[1:-1]
+
+
+def test_passes_of_a_thread_get_deeper_by_the_square_root_of_their_number() -> None:
+    """Depth 0.8 from 0.4 on: 0.4, 0.566, 0.693, 0.8, and one pass more."""
+    found = threading("@X=20 @Z=32 @LEAD=1.5 @DEPTH=0.8 @FIRST=0.4 @SPRING=1")
+    depths = ("19.6", "19.434315", "19.30718", "19.2", "19.2")
+    passes = [
+        [f"rapid ({x}, 62)", f"thread ({x}, 32) spindle S turns 20 lead 1.5", "rapid (21, 32)", "rapid (21, 62)"]
+        for x in depths
+    ]
+    assert found == ["rapid (21, 62)", *[line for each in passes for line in each]]
+
+
+def test_flank_infeed_taper_starts_and_chamfer_of_a_thread() -> None:
+    """Inside, from Z62 to Z32: cuts at 0.5 and 1; at 45 deg the first starts 0.5 mm farther away."""
+    arguments = "@X=20 @Z=32 @LEAD=3 @DEPTH=-0.8 @FIRST=0.5657 @ANGLE=45 @TAPER=-3 @CHAMFER=3 @STARTS=2 @CLEAR=2"
+    found = threading(arguments)
+    assert found[0] == "rapid (15, 62)"
+    first = [
+        "rapid (15, 62.2343)",
+        "rapid (20.58913, 62.2343)",
+        "thread (17.8657, 35) spindle S turns 9.0781 lead 3",
+        "thread (17, 32) spindle S turns 1 lead 3",
+        "rapid (15, 32)",
+    ]
+    assert found[1:6] == first
+    assert found[6:9] == [first[0], first[1], first[2] + " offset 180"]
+    assert found[11:14] == ["rapid (15, 62)", "rapid (20.8, 62)", "thread (18.1, 35) spindle S turns 9 lead 3"]
+    assert found[-1] == "rapid (15, 62)"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        ("@X=20 @Z=62 @LEAD=3 @DEPTH=1 @FIRST=0.5", "PM1 = the thread has no length: it begins at its end, PV1 = 62"),
+        (
+            "@X=20 @Z=32 @LEAD=3 @DEPTH=1 @FIRST=2",
+            "PM1 = depth of the first cut is not above 0 and up to the depth, PV1 = 2, PV2 = 1",
+        ),
+        (
+            "@X=20 @Z=32 @LEAD=3 @DEPTH=1 @FIRST=0.5 @CHAMFER=1",
+            "PM1 = chamfer is not longer than the depth, PV1 = 1, PV2 = 1",
+        ),
+    ],
+)
+def test_threads_that_the_cycle_refuses(arguments: str, reason: str) -> None:
+    assert threading(arguments) == [f"error 76 '#ERROR 76 of the program: {reason}'"]

@@ -118,6 +118,12 @@ class ChannelParameters:
     """Of #HSC ON, mm, 0 none …"""
     hsc_track_dev: Annotated[float, ids.HSC_TRACK_DEV] = 0.0
     """… and mm or deg of the other axes, 0 none."""
+    thread_run_up: Annotated[float, ids.THREAD_RUN_UP] = 0.0
+    """mm of a thread that may be out of pitch, 0: any (P-CHAN-90025)."""
+    thread_retract_axis: str = ""
+    """Axis by which the tool leaves a thread that is broken off, empty: none (P-CHAN-90026) …"""
+    thread_retract: Annotated[float, ids.THREAD_RETRACT_DISTANCE] = 0.0
+    """… and its way, mm, signed."""
     signal_required: Annotated[bool, ids.MEAS_ERROR_NO_SIGNAL] = True
     """A measuring run without a signal of the probe is an error."""
     pitch_tolerance: float = 0.001
@@ -151,6 +157,7 @@ def channel_view(channel: ParameterSet, sets: Mapping[str, ParameterSet], folder
         offsets=offset_tables(channel, len(axes)),
         cycles=cycles(channel),
         pitch_tolerance=channel.number(ids.TAPPING_PITCH_TOLERANCE) / 1000.0,
+        thread_retract_axis=channel.text(ids.THREAD_RETRACT_AXIS),
         folders=tuple(str(folder / name) for name in channel.names(ids.INTERPRETER_FOLDERS)),
         **given_fields(ChannelParameters, channel),
     )

@@ -1,0 +1,503 @@
+"""A thread (G33) as the path of a channel: the angle φ by which the spindle has turned takes the place of time.
+
+| phase | φ | next |
+|---|---|---|
+| WAITS | 0; the axes stand until the spindle is where the run-up has to begin | RUNS_UP |
+| RUNS_UP | a ramp with limited jerk to the speed ω of the spindle | FOLLOWS |
+| FOLLOWS | the angle that is expected of the spindle, after each of its blocks anew | RUNS_OUT |
+| RUNS_OUT | a ramp that ends exactly at the end of the last block | finished |
+| STOPS | a ramp to a standstill after `stop` | stopped |
+
+The thread begins (φ = 0) where the angle of the spindle is k · 360 deg + OFFSET, counted in the direction in which it
+turns. A run-up of the duration T goes as far as D = ∫φ'dt < ω·T, so it begins while the spindle still lacks ω·T - D. At
+its end φ is exactly the angle of the spindle, at every speed: passes from the same start lie in the same groove.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from enum import Enum, auto
+from math import ceil, hypot
+from typing import Final
+
+from cnc_ptp.motion import Limits, Profile, plan_to_position, plan_to_velocity, stopping_distance
+from cnc_ptp.motion.setpoints import MotionState
+from cnc_ptp.nc.canonical import LinearMove
+from cnc_ptp.parameters.list_units import DEG_S_PER_RPM
+from cnc_ptp.path.linked_path import LinkedPoint, MotionSource
+from cnc_ptp.path.shape import AxisState
+from cnc_ptp.path.thread.lead import Fading, fading
+from cnc_ptp.path.thread.leading_spindle import STANDS, LeadingSpindle
+from cnc_ptp.path.thread.retract import Retract, RetractMotion
+from cnc_ptp.path.thread.thread_check import (
+    ROUNDING,
+    TURN,
+    Ramps,
+    ThreadSettings,
+    angle_of,
+    bends_too_much,
+    checked_geometry,
+    last_pitch_of,
+    limits_of,
+    pitch_of,
+    require_velocity,
+    too_fast,
+    way_out,
+    words_of,
+)
+from cnc_ptp.path.thread.thread_geometry import ThreadGeometry
+from cnc_ptp.protocol.blocks import CycleBlock, Severity
+
+THREAD_BEGINS = 22085
+NO_OVERRIDE = 22086
+
+AHEAD: Final = 50
+"""Blocks behind the active one that are looked at."""
+JOINT_SHARE: Final = 0.25
+"""Of acceleration and jerk that is left for following the spindle through a joint."""
+SHORTEST_HORIZON: Final = 2.0
+"""Blocks of cycles within which the path at the soonest is where the spindle is."""
+
+
+class Phase(Enum):
+    """Where a thread is."""
+
+    WAITS = auto()
+    RUNS_UP = auto()
+    FOLLOWS = auto()
+    RUNS_OUT = auto()
+    STOPS = auto()
+
+
+class ThreadPath:
+    """Runs the blocks of a thread.
+
+    block   number of the active one, from 0
+    feed    programmed feed of the active block, mm/s: what the speed of the spindle amounts to
+    """
+
+    def __init__(
+        self,
+        settings: ThreadSettings,
+        node: str,
+        motion: LinearMove,
+        start: tuple[float, ...],
+        source: MotionSource | None,
+    ) -> None:
+        """`node` of the spindle; `source`: the motions behind `motion`."""
+        self._settings, self._source = settings, source
+        self._spindle = LeadingSpindle(node, settings.cycle_time)
+        self._words = words_of(motion)
+        self._start = start
+        self._motions = [motion]
+        self._closed = source is None
+        self._geometry: ThreadGeometry | None = None
+        """From the moment on at which the speed is known."""
+        self._renewed = True
+        """The newest report has been used."""
+        self._block_cycles = 1
+        self._last_cycle = 0
+        """Of the block of cycles that is being computed."""
+        self._cycle = 0
+        """The last one that was given out."""
+        self._state: MotionState = (0.0, 0.0, 0.0, 0.0)
+        """φ and its derivatives in that cycle."""
+        self._pending: MotionState | None = None
+        """Of the next cycle, if that belongs to the next block already."""
+        self.phase = Phase.WAITS
+        self._profile: Profile | None = None
+        self._profile_begin = 0.0
+        self._fading: Fading | None = None
+        self._fading_begin = 0
+        self._sign, self._zero = 1.0, 0.0
+        self._speed = abs(self._words.speed)
+        self._ramps = Ramps(0.0, 0.0)
+        self._retract: RetractMotion | None = None
+        self.retract = settings.retract
+        """None: the path stops in the thread."""
+        self._stops = False
+        self.done = False
+        self.remaining_time = 0.0
+        """s from the end of the thread to the cycle that is still to be filled."""
+        self.released = True
+        """Override and feed hold permit the start."""
+        self.block = 0
+        self.notes: list[tuple[int, int, str]] = []
+        """Severity, number and text of what is to be told."""
+        self._told_override = False
+        self._extend()
+
+    # what the channel asks
+
+    @property
+    def waits(self) -> bool:
+        """The axes still stand at the start."""
+        return self.phase is Phase.WAITS
+
+    @property
+    def feed(self) -> float:
+        return self._motions[self.block].feed
+
+    @property
+    def target(self) -> tuple[float, ...]:
+        """End of the last block that is known."""
+        return self._motions[-1].target
+
+    @property
+    def cuts(self) -> bool:
+        """The axes are in the thread, and not on the ramp at its end."""
+        return self.phase in (Phase.RUNS_UP, Phase.FOLLOWS)
+
+    @property
+    def stopped(self) -> bool:
+        """`stop` was called, and the axes are at a standstill."""
+        if not self._stops or not self._retracted:
+            return False
+        ramp = self._profile
+        ended = ramp is not None and self._time(self._cycle) >= ramp.duration
+        return self.done or self.waits or (self.phase in (Phase.STOPS, Phase.RUNS_OUT) and ended)
+
+    @property
+    def passes(self) -> bool:
+        """The active block is finished, and the path is in the next one already."""
+        return self._pending is not None and self._block_of(self._pending[0]) > self.block
+
+    def pass_block(self) -> None:
+        """The next block is the active one."""
+        self.block += 1
+
+    @property
+    def angle_to_go(self) -> float:
+        """deg to the end of the active block."""
+        begin = 0.0 if self.waits else self._state[0]
+        return max(0.0, self._end_of(self.block) - begin)
+
+    @property
+    def part_to_go(self) -> float:
+        """Part of the active block that is still to come."""
+        return min(1.0, self.angle_to_go / angle_of(self._motions[self.block]))
+
+    @property
+    def time_to_go(self) -> float:
+        """s to the end of the active block at the speed of the spindle, without waiting for it."""
+        return self.angle_to_go / self._speed if self._speed > 0.0 else -1.0
+
+    @property
+    def length_known(self) -> float:
+        """mm of path that are known."""
+        if self._geometry is None:
+            return 0.0
+        return (self._geometry.end - self._state[0]) * pitch_of(self._motions[self.block])
+
+    @property
+    def waits_for(self) -> str:
+        """What the thread waits for and does not come with time alone."""
+        return self._spindle.waits_for if self.waits else ""
+
+    def release(self, override: float, *, held: bool) -> None:
+        """Override of the path and feed hold count before the start; within the thread one warning says so."""
+        self.released = override > 0.0
+        if self.waits or self._stops or self._told_override or (override == 1.0 and not held):
+            return
+        self._told_override = True
+        what = "feed hold" if held else f"path override {override * 100.0:g} %"
+        self.notes.append((Severity.WARNING, NO_OVERRIDE, f"{what} has no effect within a thread, it counts behind it"))
+
+    # from block to block
+
+    def begin(self, cycle: int) -> None:
+        """The thread begins behind `cycle`."""
+        self._cycle = cycle
+
+    def read(self, first_cycle: int, feedback: Mapping[str, CycleBlock]) -> None:
+        """The report of the spindle for the block before `first_cycle`.
+
+        Raises CncError 51109 for a spindle that is held or stopped, 22082 for one that has become too fast.
+        """
+        reported = self._spindle.read(feedback)
+        self._extend()
+        if not reported:
+            return
+        self._block_cycles = self._spindle.cycles
+        self._last_cycle = first_cycle + self._spindle.cycles
+        self._renewed = False
+        if self.cuts and not self._stops and self._geometry is not None:
+            self._spindle.require_turning()
+            number = self._geometry.block_at(self._state[0])
+            slopes, motion = self._geometry.slopes_of(number), self._motions[number]
+            require_velocity(self._settings, slopes, motion, abs(self._spindle.angle.speed))
+
+    def follow(self, count: int) -> list[LinkedPoint]:
+        """The next `count` cycles of the active block; fewer when it ends before.
+
+        Raises CncError 22080 … 22084 for a thread that cannot be begun.
+        """
+        points: list[LinkedPoint] = []
+        self._renew()
+        while len(points) < count:
+            state = self._pending or self._next(self._cycle + 1)
+            if state is None:
+                break
+            self._pending = state
+            if self.passes:
+                break
+            self._pending = None
+            self._cycle += 1
+            self._state = state
+            points.append(self._point(state))
+        return points
+
+    def _point(self, state: MotionState) -> LinkedPoint:
+        geometry = self._geometry
+        if geometry is None or self.phase is Phase.WAITS:
+            still = tuple([(position, 0.0, 0.0, 0.0) for position in self._start])
+            return still, 0.0, self._distance(still, self._motions[0].target)
+        states = geometry.evaluate(*state)
+        distance = self._distance(states, geometry.start_of(self.block + 1))
+        if self._retract is not None:
+            states = self._retract.applied(states, self._cycle)
+        velocity = hypot(*[states[axis][1] for axis in self._settings.path_axes])
+        return states, velocity, distance
+
+    def _distance(self, states: Sequence[AxisState], end: Sequence[float]) -> float:
+        """mm of path to a point."""
+        return hypot(*[end[axis] - states[axis][0] for axis in self._settings.path_axes])
+
+    def _end_of(self, block: int) -> float:
+        if self._geometry is not None:
+            return self._geometry.begin_of(block + 1)
+        return angle_of(self._motions[0])
+
+    def _block_of(self, angle: float) -> int:
+        return 0 if self._geometry is None else self._geometry.block_at(angle)
+
+    # the motions of the thread
+
+    def _extend(self) -> None:
+        """Takes the blocks of G33 that follow, as far as they are known; a joint that does not fit ends the thread."""
+        while not self._closed and len(self._motions) - self.block <= AHEAD:
+            assert self._source is not None
+            motion = self._source.peek()
+            if motion is None and self._source.busy:
+                return
+            if not isinstance(motion, LinearMove) or not self._continues(motion) or not self._joined(motion):
+                self._closed = True
+                return
+            self._source.accept()
+            self._motions.append(motion)
+
+    def _continues(self, motion: LinearMove) -> bool:
+        thread = motion.thread
+        return thread is not None and (thread.spindle, thread.offset) == (self._words.spindle, self._words.offset)
+
+    def _joined(self, motion: LinearMove) -> bool:
+        """Appends a motion to a thread that has begun; False if its joint does not fit."""
+        geometry = self._geometry
+        if geometry is None:
+            return True
+        if self._stops or not self.cuts:
+            return False
+        end = geometry.end
+        geometry.append(motion.target, words_of(motion), self._speed)
+        last = len(geometry) - 1
+        reach = end - 0.5 * geometry.zone_of(last)
+        begin = geometry.begin_of(last - 1) + 0.5 * geometry.zone_of(last - 1)
+        out = way_out(self._settings, geometry, last, self._speed)
+        fits = reach >= max(begin, self._ramps.run_up) and end + 0.5 * geometry.zone_of(last) + out <= geometry.end
+        fits = fits and self._state[0] + self._speed * self._horizon < reach
+        fits = fits and not too_fast(self._settings, geometry.slopes_of(last), self._speed)
+        if not fits or bends_too_much(self._settings, geometry.bends_of(last), self._speed):
+            geometry.pop()
+            return False
+        self._ramps = self._ramps._replace(run_out=out)
+        return True
+
+    @property
+    def _horizon(self) -> float:
+        return SHORTEST_HORIZON * self._block_cycles * self._settings.cycle_time
+
+    def _limits(self, geometry: ThreadGeometry, blocks: Sequence[int], velocity: float) -> Limits:
+        return limits_of(self._settings, geometry, blocks, velocity)
+
+    # start
+
+    def _renew(self) -> None:
+        """After each report of the spindle: the start, or how the path follows, is planned anew."""
+        if self._renewed:
+            return
+        self._renewed = True
+        if self.phase is Phase.WAITS:
+            self._try_to_begin()
+        elif self.phase is Phase.FOLLOWS:
+            self._follow_from(self._cycle, self._state)
+
+    def _try_to_begin(self) -> None:
+        if self._stops or not self.released or not self._spindle.ready:
+            return
+        speed = self._spindle.angle.speed
+        self._sign, self._speed = 1.0 if speed > 0.0 else -1.0, abs(speed)
+        geometry, self._ramps = checked_geometry(self._settings, self._start, self._motions, self._speed)
+        limits = self._limits(geometry, [0], self._speed)
+        ramp = plan_to_velocity(0.0, 0.0, 0.0, self._speed, limits)
+        cycle_time = self._settings.cycle_time
+        angle, speed, _, _ = self._turned(self._cycle + ramp.duration / cycle_time)
+        missing = ramp.end[0] - angle
+        turns = ceil(-missing / TURN - ROUNDING)
+        begin = self._cycle + (missing + turns * TURN) / speed / cycle_time
+        if begin >= self._last_cycle:
+            return
+        self._zero = turns * TURN
+        self._geometry, self._profile, self._profile_begin = geometry, ramp, begin
+        self.phase = Phase.RUNS_UP
+        self._note_begin(geometry)
+
+    def _note_begin(self, geometry: ThreadGeometry) -> None:
+        first, last = pitch_of(self._motions[0]), last_pitch_of(self._motions[len(geometry) - 1])
+        speed = f"{self._speed / DEG_S_PER_RPM:.1f} rpm"
+        ways = f"run-up {self._ramps.run_up * first:.3f} mm, run-out {self._ramps.run_out * last:.3f} mm"
+        self.notes.append((Severity.INFO, THREAD_BEGINS, f"thread at {speed}: {ways}"))
+
+    # the angle of the path
+
+    def _turned(self, cycle: float) -> MotionState:
+        """What the spindle is expected to have turned from the zero passage to when the axes act, in its direction."""
+        angle, speed, gain, jerk = self._spindle.angle.at(cycle + self._settings.delay)
+        sign = self._sign
+        return sign * angle - sign * self._words.offset, sign * speed, sign * gain, sign * jerk
+
+    def _expected(self, cycle: float) -> MotionState:
+        angle, speed, gain, jerk = self._turned(cycle)
+        return angle - self._zero, speed, gain, jerk
+
+    def _time(self, cycle: int) -> float:
+        """s since the start of the active ramp."""
+        return (cycle - self._profile_begin) * self._settings.cycle_time
+
+    def _next(self, cycle: int) -> MotionState | None:
+        """φ at the next cycle; None when the thread has ended before it."""
+        if self.phase is Phase.WAITS:
+            return self._state
+        if self.phase is Phase.FOLLOWS:
+            return self._following(cycle)
+        assert self._profile is not None
+        t = self._time(cycle)
+        state = self._profile.state_at(t)
+        if self.phase is Phase.RUNS_UP and t >= self._profile.duration:
+            self.phase = Phase.FOLLOWS
+            self._follow_from(cycle, state)
+        elif self.phase is Phase.RUNS_OUT and t >= self._profile.duration and self._retracted:
+            self.done = True
+            self.remaining_time = min(t - self._profile.duration, self._settings.cycle_time)
+            return None
+        return state
+
+    def _follow_from(self, cycle: int, state: MotionState) -> None:
+        """From a state at `cycle` on the path goes over to the angle that is expected of the spindle."""
+        assert self._geometry is not None
+        angle, speed, gain, _ = self._expected(cycle)
+        mismatch = (state[0] - angle, state[1] - speed, state[2] - gain)
+        soon = min(self._geometry.end, state[0] + speed * self._horizon)
+        blocks = range(self._block_of(state[0]), self._block_of(soon) + 1)
+        limits = self._limits(self._geometry, blocks, abs(speed))
+        if self._geometry.in_joint(state[0], soon):
+            limits = Limits(limits.velocity, *[JOINT_SHARE * limit for limit in limits[1:]])
+        self._fading, self._fading_begin = fading(mismatch, self._horizon, gain, limits), cycle
+
+    def _following(self, cycle: int) -> MotionState | None:
+        """φ at `cycle` from the spindle; its end, a stop and a retract may come first."""
+        geometry = self._geometry
+        assert self._fading is not None and geometry is not None
+        expected = self._expected(cycle)
+        correction = self._fading.at((cycle - self._fading_begin) * self._settings.cycle_time)
+        state = (
+            expected[0] + correction[0],
+            expected[1] + correction[1],
+            expected[2] + correction[2],
+            expected[3] + correction[3],
+        )
+        limits = self._limits_at_end(geometry)
+        way = stopping_distance(state[1], state[2], limits.deceleration, limits.jerk)
+        if state[0] + way > geometry.end:
+            self._run_out(geometry)
+            return self._next(cycle)
+        if self._stops and self._may_stop(state):
+            self._ramp_down()
+            return self._next(cycle)
+        return state
+
+    def _limits_at_end(self, geometry: ThreadGeometry) -> Limits:
+        return self._limits(geometry, [len(geometry) - 1], max(self._state[1], STANDS))
+
+    def _run_out(self, geometry: ThreadGeometry) -> None:
+        angle, speed, gain, _ = self._state
+        limits = self._limits_at_end(geometry)
+        self._ramp(Phase.RUNS_OUT, plan_to_position(angle, speed, gain, geometry.end, limits))
+        self._closed = True
+
+    def _ramp(self, phase: Phase, profile: Profile) -> None:
+        self.phase, self._profile, self._profile_begin = phase, profile, float(self._cycle)
+
+    # stop and retract
+
+    def stop(self) -> None:
+        """Breaks the thread off: by a retract, in step with a spindle that stops, or on the ramp of the path."""
+        if self._stops:
+            return
+        self._stops = True
+        if not self.cuts:
+            return
+        if self.retract is not None:
+            self._begin_retract(self.retract)
+        elif self.phase is Phase.RUNS_UP or not self._spindle.stops:
+            self._pending = None
+            self._ramp_down()
+
+    @property
+    def stop_text(self) -> str:
+        """What `stop` does now, for events; empty when the thread ends anyway."""
+        if self.waits:
+            return "the thread is not begun"
+        if self._stops or not self.cuts:
+            return ""
+        retract = self.retract
+        if retract is not None:
+            way = f"axis {retract.name} retracts by {retract.way:g} mm"
+            return f"{way} while the path follows spindle {self._spindle.node}, then the path stops"
+        if self.phase is Phase.FOLLOWS and self._spindle.stops:
+            return f"the path follows spindle {self._spindle.node} to its standstill in the thread"
+        return "the path stops on its ramp in the thread"
+
+    def _may_stop(self, state: MotionState) -> bool:
+        if self._retract is not None:
+            return self._retracted
+        return not self._spindle.stops or state[1] < STANDS
+
+    def _ramp_down(self) -> None:
+        geometry = self._geometry
+        assert geometry is not None
+        angle, speed, gain, _ = self._state
+        number = self._block_of(angle)
+        blocks = [number] if number + 1 >= len(geometry) else [number, number + 1]
+        limits = self._limits(geometry, blocks, max(speed, STANDS))
+        ramp = plan_to_velocity(angle, speed, gain, 0.0, limits)
+        if ramp.end[0] <= geometry.end:
+            self._ramp(Phase.STOPS, ramp)
+        else:
+            self._run_out(geometry)
+
+    def _begin_retract(self, retract: Retract) -> None:
+        geometry = self._geometry
+        assert geometry is not None
+        slope = max(geometry.slopes_of(block)[retract.axis] for block in range(len(geometry)))
+        limits, cycle_time = self._settings.limits[retract.axis], self._settings.cycle_time
+        self._retract = RetractMotion(retract, limits, slope * self._speed, self._cycle, cycle_time)
+
+    @property
+    def retracts(self) -> bool:
+        """The thread was broken off by a retract."""
+        return self._retract is not None
+
+    @property
+    def _retracted(self) -> bool:
+        """No retract is under way."""
+        return self._retract is None or self._retract.done(self._cycle)
