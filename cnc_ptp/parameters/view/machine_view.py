@@ -10,6 +10,7 @@ from cnc_ptp.parameters.read.messages import Notice
 from cnc_ptp.parameters.read.parameter_set import ParameterSet
 from cnc_ptp.parameters.view.axis_view import AxisParameters, axis_view
 from cnc_ptp.parameters.view.channel_view import ChannelParameters, channel_view
+from cnc_ptp.parameters.view.control_view import ControlParameters
 from cnc_ptp.parameters.view.fields import given_fields
 from cnc_ptp.parameters.view.spindle_view import SpindleParameters, spindle_view
 
@@ -45,27 +46,43 @@ def machine_view(
     of_kind = {kind: [unit for unit in sets.values() if unit.kind == kind] for kind in ("channel", "axis", "spindle")}
     cycle_time = machine.kernel(ids.CYCLE_TIME_US)
     channels = {unit.node: channel_view(unit, sets, folder) for unit in of_kind["channel"]}
-    axes = {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]}
+    axes, spindles = with_equal_delays(
+        {unit.node: axis_view(unit, cycle_time) for unit in of_kind["axis"]},
+        {unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
+        channels.values(),
+    )
     return MachineParameters(
         channels=channels,
-        axes=equally_late(axes, channels.values()),
-        spindles={unit.node: spindle_view(unit, cycle_time) for unit in of_kind["spindle"]},
+        axes=axes,
+        spindles=spindles,
         warnings=warnings,
         sets={"machine": machine, **sets},
         **given_fields(MachineParameters, machine),
     )
 
 
-def equally_late(
-    axes: Mapping[str, AxisParameters], channels: Iterable[ChannelParameters]
-) -> dict[str, AxisParameters]:
-    """The axes, those of a channel behind delay lines of the same length: the longest that one of them needs.
+def with_equal_delays(
+    axes: Mapping[str, AxisParameters], spindles: Mapping[str, SpindleParameters], channels: Iterable[ChannelParameters]
+) -> tuple[dict[str, AxisParameters], dict[str, SpindleParameters]]:
+    """The axes and the spindles of each channel behind delay lines of the same length: the longest that one needs.
 
-    Otherwise they would leave their path by v · T for each cycle between them.
+    Otherwise they would leave their path by v · T for each cycle between them, a thread included.
     """
-    late = dict(axes)
+    late_axes, late_spindles = dict(axes), dict(spindles)
     for channel in channels:
-        path = [axes[axis.node] for axis in channel.axes]
-        cycles = max((axis.control.delay_cycles for axis in path), default=0)
-        late |= {axis.name: replace(axis, control=replace(axis.control, path_delay_cycles=cycles)) for axis in path}
-    return late
+        path = [late_axes[axis.node] for axis in channel.axes]
+        turning = [late_spindles[spindle.node] for spindle in channel.spindles if spindle.node in spindles]
+        gears = [gear for spindle in turning for gear in spindle.gears.values()]
+        cycles = max((part.control.delay_cycles for part in (*path, *gears)), default=0)
+        late_axes |= {axis.name: replace(axis, control=delayed(axis.control, cycles)) for axis in path}
+        for spindle in turning:
+            stages = {
+                stage: replace(gear, control=delayed(gear.control, cycles)) for stage, gear in spindle.gears.items()
+            }
+            late_spindles[spindle.name] = replace(spindle, gears=stages)
+    return late_axes, late_spindles
+
+
+def delayed(control: ControlParameters, cycles: int) -> ControlParameters:
+    """With a delay line of at least so many cycles; a spindle of two channels has the longer one."""
+    return replace(control, path_delay_cycles=max(cycles, control.path_delay_cycles))
