@@ -357,7 +357,7 @@ class ChannelUnit(Unit):
             self._state = ended if self._is_mdi else self._initial_state({})
         self._unfinished = self._sequence.phase in OFF_PATH and rows.axes[count - 1] != self._motion.states
         if self._sequence.phase is Phase.IDLE:
-            self._offsets.rest(first_cycle + count, self._state.modal.coordinates)
+            self._offsets.rest(first_cycle + count, self._state.modal)
         block = self._channel_block(tick, rows, outgoing, path_active=on_path)
         if spindle:
             add_spindle(block, spindle, rows.spindle[:count])
@@ -415,7 +415,7 @@ class ChannelUnit(Unit):
             done=self._sequence.phase is Phase.IDLE and not self._unfinished and not self._axes.beside,
             blocks_done=self._sequence.stream.done,
             blocks_total=self._sequence.stream.total,
-            programmed_position=self._offsets.programmed([state[0] for state in rows.axes[count - 1]]),
+            programmed_position=self._offsets.shown([state[0] for state in rows.axes[count - 1]]),
             offsets=self._offsets.news(),
             progress=self._progress.now.share,
             time_left=self._progress.now.time_left,
@@ -540,7 +540,7 @@ class ChannelUnit(Unit):
         self._links = state.modal.spindle.links
         self._state = self._initial_state({})
         self._state_at_end, self._is_mdi = state, command == "mdi"
-        self._offsets.begin(cycle, before.modal.coordinates)
+        self._offsets.begin(cycle, before.modal)
         self._progress = ProgramProgress(times, program.size)
         self._sequence.begin(stream, program=command == "start")
         self._just_started = True

@@ -36,7 +36,17 @@ from cnc_ptp.nc.flow.sections import Program
 from cnc_ptp.nc.interpreter import awaits_path, check, interpret, reads_the_run
 from cnc_ptp.nc.measuring import measures
 from cnc_ptp.nc.parser import NO_FILES, parse_all, parse_program
-from cnc_ptp.nc.program import Channel, ModalState, Pair, Pairs, Spindle, SpindleTable, Vocabulary
+from cnc_ptp.nc.program import (
+    Channel,
+    FacingAxis,
+    ModalState,
+    Pair,
+    Pairs,
+    Spindle,
+    SpindleTable,
+    TurningAxes,
+    Vocabulary,
+)
 from cnc_ptp.nc.program_text import ProgramText
 from cnc_ptp.nc.recovery import MOST_ERRORS
 from cnc_ptp.nc.streamed_program import stream_program
@@ -148,6 +158,7 @@ class ProgramCheck:
             channel.tool_table,
             path_defaults(channel),
             self._references,
+            turning=turning_axes(channel, self._axes),
         )
         """The channel as the interpreter knows it."""
         self._limits = Limits(channel.call_depth, channel.repeats)
@@ -190,6 +201,7 @@ class ProgramCheck:
             cycles=self.cycles,
             offsets=self._channel.offsets,
             soft_limits=self._soft_limits,
+            turning_axes=self.nc.turning,
             limits=self._limits,
             vocabulary=vocabulary or self.vocabulary,
         )
@@ -357,6 +369,7 @@ class ProgramCheck:
             soft_limits=self._soft_limits,
             tools=self._channel.tool_table,
             references=self._references,
+            turning_axes=self.nc.turning,
             limits=self._limits,
             block_skip=self.block_skip,
             runs=True,
@@ -467,6 +480,16 @@ class ProgramCheck:
             raise ProgramError(SENSORLESS, f"{why} positioned", source, 1)
         if isinstance(function, SpindleCommand) and function.command == "home":
             raise ProgramError(NO_POSITION_VALUE, f"{why} homed", source, 1)
+
+
+def turning_axes(channel: ChannelParameters, axes: Sequence[AxisParameters]) -> TurningAxes:
+    """The facing axes of a channel, whose axes these are in its order."""
+    facing = [
+        FacingAxis(index, axis.diameter_absolute, axis.diameter_relative)
+        for index, axis in enumerate(axes)
+        if axis.facing
+    ]
+    return TurningAxes(tuple(facing), channel.shows_diameter, channel.cutting_speed_in_feet)
 
 
 def spindle_table(channel: ChannelParameters, spindles: Mapping[str, SpindleParameters]) -> SpindleTable:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from cnc_ptp.errors import Value
-from cnc_ptp.nc import faults, feeds, spindle_faults
+from cnc_ptp.nc import faults, feeds, spindle_faults, turning_faults
 from cnc_ptp.nc.canonical import Function, GearChange, LinearMove, SpindleFunction, Tap, number
 from cnc_ptp.nc.contour import EXACT_STOP
 from cnc_ptp.nc.functions import block_functions
@@ -64,6 +64,10 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     require_main(channel, state, block, code)
     if main.key in state.spindle.turning and not is_slave(state, main.key):
         raise _fault(spindle_faults.TAPPING_WHILE_TURNING, block, code.name, g=code.name, spindle=main.key)
+    if state.turning.facing >= 0:
+        raise _fault(turning_faults.TAPPING, block, code.name, g=code.name)
+    if state.feed_mode == feeds.PER_TURN:
+        raise _fault(turning_faults.TAPPING_FEED, block, code.name, g=code.name)
     if state.feed_mode != feeds.PER_MINUTE:
         raise _fault(spindle_faults.TAPPING_FEED_MODE, block, code.name, g=code.name, mode=state.feed_mode)
     turn = _by_feed(channel, state, block, code, main) if code.number == TAPPING else _by_pitch(state, block, code, main)

@@ -5,7 +5,7 @@ Group names and initial states follow the vendor's G groups (P-CHAN-00063).
 
 from typing import Final
 
-from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, tapping, transitions
+from cnc_ptp.nc import feedforward, feeds, functions, measuring, motions, spindles, tapping, transitions, turning
 from cnc_ptp.nc.coordinates import codes
 from cnc_ptp.nc.program import GCode, MCode, ModalState, Vocabulary
 from cnc_ptp.nc.tools.compensation import follow_plane
@@ -68,8 +68,8 @@ _G_CODES = (
     GCode(40, "tool radius"),
     GCode(41, "tool radius", later="compensation of the tool radius"),
     GCode(42, "tool radius", later="compensation of the tool radius"),
-    GCode(51, "diameter", later="diameter programming of the face turning axis"),
-    GCode(52, "diameter"),
+    GCode(51, "diameter", prepare=turning.diameter_on),
+    GCode(52, "diameter", select=turning.diameter_off),
     *(GCode(code, "zero offset", prepare=codes.zero_offset) for code in range(53, 60)),
     GCode(159, "zero offset", prepare=codes.zero_offset, valued=True),
     GCode(160, "activity of offsets", function=codes.offset_activity, takes_axes=True, valued=True),
@@ -85,10 +85,10 @@ _G_CODES = (
     GCode(92, "reference offset", function=codes.reference_offset, takes_axes=True),
     GCode(93, "feed", select=feeds.time_of_block),
     GCode(94, "feed", select=feeds.per_minute),
-    GCode(95, "feed", later="feed per revolution"),
-    GCode(96, "cutting speed", later="constant cutting speed"),
-    GCode(97, "cutting speed"),
-    GCode(196, "cutting speed", later="constant cutting speed"),
+    GCode(95, "feed", select=feeds.per_turn),
+    GCode(turning.CONSTANT, turning.GROUP, prepare=turning.constant_on),
+    GCode(turning.SPEED, turning.GROUP),
+    GCode(turning.LARGEST, turning.LIMIT_GROUP, valued=True, bare=True),
     GCode(98, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(99, "software limits", function=codes.software_limit, takes_axes=True),
     GCode(74, "path", motion=spindles.homing, modal=False, own_words=True, spindle=True),
