@@ -13,6 +13,7 @@ from typing import ClassVar, NoReturn
 from cnc_ptp.channel.axis_homing import AxisHoming
 from cnc_ptp.channel.block_stream import BlockStream
 from cnc_ptp.channel.cycle_rows import CycleRows
+from cnc_ptp.channel.feed_per_turn import FeedPerTurn
 from cnc_ptp.channel.function_output import FunctionOutput
 from cnc_ptp.channel.measuring import Measuring
 from cnc_ptp.channel.offset_memory import OffsetMemory
@@ -40,7 +41,7 @@ from cnc_ptp.parameters.view.homing_view import IGNORE_ABSOLUTE
 from cnc_ptp.path.path_motion import PathMotion, PathPoint, begins_element
 from cnc_ptp.path.shape import AxisState
 from cnc_ptp.protocol.axis_states import AxisStateCode, state_name
-from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, CycleBlock, CycleTick, Severity, SpindleBlock
+from cnc_ptp.protocol.blocks import AxisBlock, ChannelBlock, Command, CycleBlock, CycleTick, Severity, SpindleBlock
 from cnc_ptp.protocol.channel_states import ChannelStateCode
 from cnc_ptp.protocol.commands import BAD_ARGUMENT
 from cnc_ptp.protocol.notes import START_STEP
@@ -61,6 +62,7 @@ NOTHING_AWAITS_EVENT = 22020
 HELD_BY_OVERRIDE = 22024
 FEED_WITHHELD = 22026
 INTERPRETER_SLOW = 22036
+SPINDLE_STANDS = 22140
 
 ENOUGH = 0.5
 """Fill of the buffer of blocks at which the interpreter has kept up again."""
@@ -94,7 +96,9 @@ class ChannelUnit(Unit):
         functions = FunctionOutput(parameters, spindles, request_numbers or numbers(1))
         self._path_spindle = PathSpindle(parameters.name, functions.spindles)
         on_path = [axes[node] for node in nodes]
-        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits)
+        self._cutting_speed, self._feed_per_turn = functions.cutting_speed, FeedPerTurn(functions.spindles)
+        turns = self._feed_per_turn.turns
+        self._motion = PathMotion(parameters, on_path, cycle_time, self._path_spindle.limits, turns)
         self._axes = PathAxes(nodes, axes, self._motion)
         self._handshake_timeout = handshake_timeout
         self._handshake_cycles = round(handshake_timeout / cycle_time)
@@ -343,6 +347,7 @@ class ChannelUnit(Unit):
         rows = CycleRows(with_spindle=bool(spindle))
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
+        outgoing.commands += self._cutting_commands(first_cycle, rows.axes[count // 2])
         if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
             self.runs_out = False
         else:
@@ -362,6 +367,17 @@ class ChannelUnit(Unit):
         if spindle:
             add_spindle(block, spindle, rows.spindle[:count])
         return block
+
+    def _cutting_commands(self, first_cycle: int, states: Sequence[AxisState]) -> list[Command]:
+        """G96: the speed for the `states` of the axes in the middle of the block."""
+        function = self._cutting_speed.function
+        if function is None or not self._sequence.cuts:
+            return []
+        radius = self._offsets.programmed([state[0] for state in states])[function.axis]
+        commands = self._cutting_speed.commands(first_cycle, radius)
+        if commands:
+            self._sequence.speed_follows(commands[-1].target)
+        return commands
 
     def _update_progress(self) -> None:
         sequence = self._sequence
@@ -593,8 +609,10 @@ class ChannelUnit(Unit):
                 self._apply_override()
         except CncError as error:
             self._fault_in_line(first_cycle, error)
+        self._motion.follow_spindle()
         self._warn(first_cycle)
         self._report_held(first_cycle)
+        self._report_standing(first_cycle)
 
     def _report_held(self, cycle: int) -> None:
         """When override 0 lets the program wait, perhaps without end: a warning of what it waits for, once."""
@@ -607,6 +625,13 @@ class ChannelUnit(Unit):
                 text = f"channel {self.name}: the program waits in line {line} for {what}"
                 self.event(cycle, Severity.WARNING, HELD_BY_OVERRIDE, text, line)
         self._held = held
+
+    def _report_standing(self, cycle: int) -> None:
+        """The path waits for a spindle (G95): a warning, once."""
+        node, line = self._feed_per_turn.awaited(self._motion), self._sequence.source.line
+        if node:
+            text = f"channel {self.name}: the path waits in line {line} for spindle {node} to turn (G95)"
+            self.event(cycle, Severity.WARNING, SPINDLE_STANDS, text, line)
 
     def _path_held(self) -> bool:
         """Override 0 alone has stopped the path within an element; a feed hold is visible anyway."""

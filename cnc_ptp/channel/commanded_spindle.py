@@ -25,8 +25,8 @@ from cnc_ptp.channel.spindle_reports import NOTHING, Condition, Expectation, com
 from cnc_ptp.nc.canonical import SpindleFunction
 from cnc_ptp.parameters import ChannelSpindle, SpindleParameters
 from cnc_ptp.protocol.blocks import CycleBlock, SpindleBlock
-from cnc_ptp.spindle.tool_limits import ToolLimits
 from cnc_ptp.protocol.spindle_states import SpindleBit
+from cnc_ptp.spindle.tool_limits import ToolLimits
 
 BEFORE_THE_RUN = -1
 
@@ -100,6 +100,11 @@ class CommandedSpindle:
     def pending(self) -> bool:
         """A command has not gone out yet, or its outcome is not reported."""
         return self._responsible_next is not None or bool(self._expected_next) or (self.responsible and not self.turns)
+
+    @property
+    def unsent(self) -> bool:
+        """A function of the program goes out with the next block."""
+        return self._responsible_next is not None or bool(self._expected_next)
 
     @property
     def stops_at_program_end(self) -> bool:

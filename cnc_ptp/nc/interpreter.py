@@ -110,7 +110,17 @@ def interpret(
     table, ratio = spindle_table(spindles), centre_offset_ratio
     words, turns = program.vocabulary, frozenset(rotary)
     channel = Channel(
-        axes, index, table, centre_offset, ratio, words, turns, offsets, soft_limits, tools, references=references,
+        axes,
+        index,
+        table,
+        centre_offset,
+        ratio,
+        words,
+        turns,
+        offsets,
+        soft_limits,
+        tools,
+        references=references,
         turning=turning_axes,
     )
     state = initial_state(channel) if state is None else state

@@ -175,9 +175,7 @@ def _constant_off(channel: Channel, state: ModalState) -> tuple[Function, ...]:
     return (CuttingSpeed(current_main(channel, state).key, 0.0),) if was_on else ()
 
 
-def _take_cutting_speed(
-    channel: Channel, state: ModalState, block: NcBlock
-) -> tuple[NcBlock, tuple[Function, ...]]:
+def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> tuple[NcBlock, tuple[Function, ...]]:
     """S in m/min (ft/min): the block with the speed at the present position in rpm. Raises ProgramError 20642, 120167."""
     main = current_main(channel, state)
     _refuse_positioning(channel, block)

@@ -3,7 +3,9 @@
 from cnc_ptp.nc.faults import Fault
 
 NO_FACING_AXIS = Fault(20042, "{g} without a facing axis in the plane {plane} (P-AXIS-00015 0x40)")
-TWO_FACING_AXES = Fault(20064, "{g} with two facing axes in the plane {plane}, {first} and {second} (P-AXIS-00015 0x40)")
+TWO_FACING_AXES = Fault(
+    20064, "{g} with two facing axes in the plane {plane}, {first} and {second} (P-AXIS-00015 0x40)"
+)
 MIRRORED = Fault(20019, "axis {axis} is mirrored ({g}) while its words are diameters (G51)")
 NO_FACING_AXIS_FOR_SPEED = Fault(20634, "{g} without a facing axis in the plane {plane} (P-AXIS-00015 0x40)")
 TAPPING_FEED = Fault(20635, "{g} with a feed per turn (G95); G94 ends it")
