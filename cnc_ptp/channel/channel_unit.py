@@ -347,7 +347,7 @@ class ChannelUnit(Unit):
         rows = CycleRows(with_spindle=bool(spindle))
         self._add(rows, [self._motion.point])
         self._fill(rows, first_cycle, count + 1)
-        outgoing.commands += self._cutting_commands(first_cycle, rows.axes[count // 2])
+        outgoing.commands += self._cutting_commands(first_cycle, rows, count)
         if self._sequence.phase in (Phase.IDLE, Phase.RAMP_DOWN):
             self.runs_out = False
         else:
@@ -368,11 +368,12 @@ class ChannelUnit(Unit):
             add_spindle(block, spindle, rows.spindle[:count])
         return block
 
-    def _cutting_commands(self, first_cycle: int, states: Sequence[AxisState]) -> list[Command]:
-        """G96: the speed for the `states` of the axes in the middle of the block."""
-        function = self._cutting_speed.function
-        if function is None or not self._sequence.cuts:
+    def _cutting_commands(self, first_cycle: int, rows: CycleRows, count: int) -> list[Command]:
+        """G96: the speed for the position of the axes in the middle of the block, or where their cut ends in it."""
+        function, end = self._cutting_speed.function, rows.cut_end
+        if function is None or end < 0:
             return []
+        states = rows.axes[end if end < count - 1 else count // 2]
         radius = self._offsets.programmed([state[0] for state in states])[function.axis]
         commands = self._cutting_speed.commands(first_cycle, radius)
         if commands:
@@ -450,8 +451,11 @@ class ChannelUnit(Unit):
 
     def _follow_path(self, rows: CycleRows, missing: int, cycle: int) -> None:
         """Rows of the active block; it ends early when its motion does, at the exact instant inside a cycle."""
+        cuts = self._sequence.cuts
         points = self._motion.follow(missing)
         self._add(rows, points, self._motion.spindle_states)
+        if cuts and points:
+            rows.cut_end = len(rows) - 1
         if self._motion.passes:
             self._sequence.pass_block(cycle + len(points))
             self._reach_offsets(cycle + len(points))

@@ -17,7 +17,7 @@ LEAST_CHANGE: Final = 0.0005
 LEAD: Final = 0.6
 """From the end of the block that is reported to the instant that counts, in blocks."""
 PATIENCE: Final = 3
-"""Blocks for which the path waits for a spindle before somebody is told: it may have been started only just."""
+"""Blocks for which the path waits for a spindle before there is a warning: it may have been started only just."""
 
 
 class FeedPerTurn:
@@ -26,7 +26,7 @@ class FeedPerTurn:
     def __init__(self, spindles: SpindleFunctions) -> None:
         self._spindles = spindles
         self._known: dict[str, float] = {}
-        """Turns per second that were told last."""
+        """Turns per second as the path knows them."""
         self._waited = 0
 
     def turns(self, name: str) -> float:

@@ -18,6 +18,6 @@ NO_DIAMETERS = Fault(
     21720, "G51 would have no effect: diameters of axis {axis} are off for G90 (P-AXIS-00058) and G91 (P-AXIS-00059)"
 )
 NEGATIVE_DIAMETER = Fault(21721, "diameter {axis}{value} is negative")
-LIMIT_TOO_LATE = Fault(21722, "G196 S{value} after G96: it limits the next G96 only, write it before, or G196={value}")
+LIMIT_TOO_LATE = Fault(21722, "G196 S{value} must be in a block before G96; beside G96 it is written G196={value}")
 LIMIT_MISSING = Fault(21723, "G196 without a speed, as in G196 S2500 or G196=2500")
 PLC_SPINDLE = Fault(21724, "{g} needs a spindle that the NC moves, the PLC controls {spindle} (P-CHAN-00069)")
