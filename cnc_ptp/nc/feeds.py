@@ -58,7 +58,11 @@ def require_feed(state: ModalState, block: NcBlock, code: GCode) -> None:
 
 
 def timed(
-    channel: Channel, state: ModalState, block: NcBlock, programmed: tuple[float, ...], motion: LinearMove | CircularMove
+    channel: Channel,
+    state: ModalState,
+    block: NcBlock,
+    programmed: tuple[float, ...],
+    motion: LinearMove | CircularMove,
 ) -> LinearMove | CircularMove:
     """With G93: the motion (machine coordinates) with the feed that takes the programmed time at a constant speed.
 

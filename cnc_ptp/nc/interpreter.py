@@ -96,7 +96,8 @@ def interpret(
     points where an axis turns back; it raises to refuse the move.
     `centre_offset` (mm, P-CHAN-00059), `centre_offset_ratio` (P-CHAN-00060 / 1000): how far the centre of an arc may be
     corrected, the smaller of both limits counts. `rotary`: axes in deg. `offsets` and `tools` of the machine,
-    `soft_limits` of its axes for V.A., `references` for G28, `turning_axes` for G51 and G96. `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
+    `soft_limits` of its axes for V.A., `references` for G28, `turning_axes` for G51 and G96.
+    `block_skip`: bit n - 1 skips blocks with /n (`/` is /1).
     Blocks without function, motion or stop give nothing, nor does a move to the present position; offsets that they
     change come with the next block, those at the end with one of their own.
     `runs`: while the blocks are executed; then WaitForPath comes before what only the run knows, when `values` must get

@@ -259,7 +259,7 @@ NO_TAPPING: Final = Tapping()
 class FacingAxis(NamedTuple):
     """A facing axis (P-AXIS-00015) by its place: its words are diameters with G51 and G90, with G51 and G91."""
 
-    index: int
+    place: int
     absolute: bool = True
     relative: bool = False
 

@@ -37,7 +37,7 @@ def diameter_on(channel: Channel, state: ModalState, block: NcBlock, code: GCode
     """G51: words of the facing axis are diameters. Raises ProgramError 20042, 20064, 21720."""
     axis = _facing_axis(channel, state, block, code, turning_faults.NO_FACING_AXIS)
     if not (axis.absolute or axis.relative):
-        raise _fault(turning_faults.NO_DIAMETERS, block, code.name, axis=channel.axes[axis.index])
+        raise _fault(turning_faults.NO_DIAMETERS, block, code.name, axis=channel.axes[axis.place])
     state.turning = state.turning._replace(diameter=axis)
     state.reported = False
 
@@ -52,36 +52,36 @@ def take_diameter(channel: Channel, state: ModalState, block: NcBlock, target: l
     """A word of the facing axis is a diameter, with G91 the change of one. Raises ProgramError 20019, 21721."""
     axis = state.turning.diameter
     assert axis is not None
-    name = channel.axes[axis.index]
+    name = channel.axes[axis.place]
     if name not in block.words:
         return
     mirror = state.coordinates.mirror
-    if mirror and mirror[axis.index] < 0.0:
+    if mirror and mirror[axis.place] < 0.0:
         raise _fault(turning_faults.MIRRORED, block, name, axis=name, g="G21, G22 or G23")
     radius = block.words[name] * state.coordinates.unit / 2.0
     if state.absolute and axis.absolute:
         if radius < 0.0:
             raise _fault(turning_faults.NEGATIVE_DIAMETER, block, name, axis=name, value=number(block.words[name]))
-        target[axis.index] = radius
+        target[axis.place] = radius
     elif not state.absolute and axis.relative:
-        target[axis.index] = state.programmed[axis.index] + radius
+        target[axis.place] = state.programmed[axis.place] + radius
 
 
 def as_programmed(state: ModalState, index: int, position: float) -> float:
     """A position of an axis as absolute words name it: diameters with G51."""
     axis = state.turning.diameter
-    return 2.0 * position if axis is not None and axis.index == index and axis.absolute else position
+    return 2.0 * position if axis is not None and axis.place == index and axis.absolute else position
 
 
 def _facing_axis(channel: Channel, state: ModalState, block: NcBlock, code: GCode, missing: faults.Fault) -> FacingAxis:
     """The one of the active plane. Raises ProgramError."""
     names = PLANE_AXES[state.plane]
-    found = [axis for axis in channel.turning.facing if channel.axes[axis.index] in names]
+    found = [axis for axis in channel.turning.facing if channel.axes[axis.place] in names]
     plane = f"G{state.plane}"
     if not found:
         raise _fault(missing, block, code.name, g=code.name, plane=plane)
     if len(found) > 1:
-        first, second = (channel.axes[axis.index] for axis in found)
+        first, second = (channel.axes[axis.place] for axis in found)
         raise _fault(
             turning_faults.TWO_FACING_AXES, block, code.name, g=code.name, plane=plane, first=first, second=second
         )
@@ -129,7 +129,7 @@ def constant_on(channel: Channel, state: ModalState, block: NcBlock, code: GCode
         raise _fault(turning_faults.PLC_SPINDLE, block, code.name, g=code.name, spindle=main.key)
     axis = _facing_axis(channel, state, block, code, turning_faults.NO_FACING_AXIS_FOR_SPEED)
     if state.turning.facing < 0:
-        state.turning = state.turning._replace(facing=axis.index, speed=0.0)
+        state.turning = state.turning._replace(facing=axis.place, speed=0.0)
 
 
 def concerns(state: ModalState, block: NcBlock) -> bool:
@@ -176,7 +176,10 @@ def _constant_off(channel: Channel, state: ModalState) -> tuple[Function, ...]:
 
 
 def _take_cutting_speed(channel: Channel, state: ModalState, block: NcBlock) -> tuple[NcBlock, tuple[Function, ...]]:
-    """S in m/min (ft/min): the block with the speed at the present position in rpm. Raises ProgramError 20642, 120167."""
+    """S in m/min (ft/min): the block with the speed for the present position, rpm.
+
+    Raises ProgramError 20642, 120167.
+    """
     main = current_main(channel, state)
     _refuse_positioning(channel, block)
     value, modal = _programmed_speed(channel, block), state.turning

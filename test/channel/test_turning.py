@@ -92,7 +92,9 @@ def test_the_path_goes_through_several_blocks() -> None:
 
 def test_the_path_follows_the_actual_speed() -> None:
     """The spindle override acts on the feed through the speed, that of the path on top."""
-    scenario = "- {at: 3.0, to: s, do: set_override, percent: 50}\n- {at: 4.0, to: channel, do: set_override, percent: 80}"
+    scenario = (
+        "- {at: 3.0, to: s, do: set_override, percent: 50}\n- {at: 4.0, to: channel, do: set_override, percent: 80}"
+    )
     bench = run(scenario=scenario)
     assert_axes_smooth(bench)
     cut = steady(bench, cycles_of(bench, 40))
@@ -109,14 +111,13 @@ def test_the_path_waits_for_a_spindle_that_stands() -> None:
     """A warning once; it starts with the spindle and stays smooth."""
     program = TURNING.replace("N20 M03 S1200", "N20 S1200")
     bench = MachineBench(program, "- {at: 5.0, to: s, do: start, direction: cw, speed_rpm: 600}", machine=LATHE).run()
-    assert [event.text for event in bench.events] == [
-        "channel channel: the path waits in line 4 for spindle s to turn (G95)"
+    assert [(event.error_id, event.text) for event in bench.events] == [
+        (22140, "channel channel: the path waits in line 4 for spindle s to turn (G95)")
     ]
-    assert [event.error_id for event in bench.events] == [22140]
     assert C.HOLD in bench.states("channel")
     assert_axes_smooth(bench)
     assert bench.position("z") == pytest.approx(-40.0)
-    late = [cycle for cycle in steady(bench, cycles_of(bench, 60))]
+    late = steady(bench, cycles_of(bench, 60))
     assert feeds(bench, late) == pytest.approx([0.2] * len(late), rel=2e-3)
 
 

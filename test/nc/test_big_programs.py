@@ -46,7 +46,12 @@ M30
 
 def stream(program, text: str) -> list[str]:
     axes, spindles = machine(text)
-    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text))]
+    return [
+        format_block(block)
+        for block in interpret(
+            program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
+        )
+    ]
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])

@@ -20,7 +20,12 @@ def stream(text: str, name: str) -> list[str]:
     axes, spindles = machine(text)
     files = called_programs(text, [str(HERE / "library")])
     program = parse_program(text, name, files=files, vocabulary=vocabulary_of(text))
-    return [format_block(block) for block in interpret(program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text))]
+    return [
+        format_block(block)
+        for block in interpret(
+            program, (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
+        )
+    ]
 
 
 @pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)

@@ -30,7 +30,9 @@ def opened(text: str, file: str = "a.nc") -> StreamedProgram:
 
 def stream(text: str, file: str) -> list[str]:
     axes, spindles = machine(text)
-    blocks = interpret(opened(text, file), (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text))
+    blocks = interpret(
+        opened(text, file), (0.0,) * len(axes), axes, spindles, tools=tools(text), turning_axes=turning_axes(text)
+    )
     return [format_block(block) for block in blocks]
 
 

@@ -32,5 +32,5 @@ def offset_report(channel: Channel, state: ModalState) -> OffsetReport:
         machine=coordinates.outside is not None,
         matrix=(*linear[0], *linear[1], *linear[2]),
         shift=zeros if frame is None else frame.shift,
-        diameter=diameter.index if diameter is not None and channel.turning.shown else -1,
+        diameter=diameter.place if diameter is not None and channel.turning.shown else -1,
     )

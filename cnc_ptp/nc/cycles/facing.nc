@@ -3,7 +3,7 @@
 ; @DBEGIN, @ZBEGIN where the contour begins, on the side of the tool   @DEND, @ZEND where it ends, no deeper than it begins
 ; @CUT largest depth of a cut (along Z)
 ; optional: @ALLOWANCE that is left on the contour, along Z (0)   @FINISH 1: a cut along the contour itself at the end (0)
-;           @CLEAR distance of the tool on its way back (0.5 mm)
+;           @CLEAR distance of the tool when it returns (0.5 mm)
 %FACING
 #VAR
 V.L.ALLOWANCE = 0

@@ -3,7 +3,7 @@
 ; @DBEGIN, @ZBEGIN where the contour begins   @DEND, @ZEND where it ends, no deeper than it begins
 ; @CUT largest depth of a cut (in radius)
 ; optional: @ALLOWANCE that is left on the contour, in radius (0)   @FINISH 1: a cut along the contour itself at the end (0)
-;           @CLEAR distance of the tool on its way back (0.5 mm)
+;           @CLEAR distance of the tool when it returns (0.5 mm)
 %ROUGHING
 #VAR
 V.L.ALLOWANCE = 0
