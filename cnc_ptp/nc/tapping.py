@@ -55,6 +55,10 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     """G63, G331, G332: straight to the target while the spindle turns with it."""
     require_spindle(channel, block, code.name)
     main = current_main(channel, state)
+    if state.turning.facing >= 0:
+        raise _fault(turning_faults.TAPPING, block, code.name, g=code.name)
+    if state.feed_mode == feeds.PER_TURN:
+        raise _fault(turning_faults.TAPPING_FEED, block, code.name, g=code.name)
     _take_speed(channel, state, block, main)
     if code.number != TAPPING:
         _take_pitch(state, block, code)
@@ -64,10 +68,6 @@ def tap(channel: Channel, state: ModalState, block: NcBlock, code: GCode) -> Lin
     require_main(channel, state, block, code)
     if main.key in state.spindle.turning and not is_slave(state, main.key):
         raise _fault(spindle_faults.TAPPING_WHILE_TURNING, block, code.name, g=code.name, spindle=main.key)
-    if state.turning.facing >= 0:
-        raise _fault(turning_faults.TAPPING, block, code.name, g=code.name)
-    if state.feed_mode == feeds.PER_TURN:
-        raise _fault(turning_faults.TAPPING_FEED, block, code.name, g=code.name)
     if state.feed_mode != feeds.PER_MINUTE:
         raise _fault(spindle_faults.TAPPING_FEED_MODE, block, code.name, g=code.name, mode=state.feed_mode)
     turn = _by_feed(channel, state, block, code, main) if code.number == TAPPING else _by_pitch(state, block, code, main)
