@@ -377,7 +377,7 @@ class ChannelUnit(Unit):
         radius = self._offsets.programmed([state[0] for state in states])[function.axis]
         commands = self._cutting_speed.commands(first_cycle, radius)
         if commands:
-            self._sequence.speed_follows(commands[-1].target)
+            self._sequence.speed_follows(self._cutting_speed.nodes)
         return commands
 
     def _update_progress(self) -> None:

@@ -64,11 +64,21 @@ class ConstantCuttingSpeed:
         self._rpm = rpm
         speed = SpindleFunction(function.spindle, None, rpm, full_override=spindle.full_override)
         commands, _ = self._spindles.command(speed)
-        for other in self._spindles:
-            if other.master is spindle:
-                other.expect(Expectation(other.node))
         spindle.send(first_cycle)
+        for slave in self._slaves(spindle):
+            slave.expect(Expectation(slave.node))
+            slave.send(first_cycle)
         return commands
+
+    @property
+    def nodes(self) -> list[str]:
+        """Of the spindle and of its slaves."""
+        spindle = self.spindle
+        return [] if spindle is None else [spindle.node, *[slave.node for slave in self._slaves(spindle)]]
+
+    def _slaves(self, spindle: CommandedSpindle) -> list[CommandedSpindle]:
+        """They follow on their own."""
+        return [other for other in self._spindles if other.master is spindle]
 
     def _limited(self, spindle: CommandedSpindle, function: CuttingSpeed, radius: float) -> float:
         """rpm, in the limits of G196, of the gear that the spindle reports, and of the tool."""

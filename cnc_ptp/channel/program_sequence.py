@@ -245,11 +245,11 @@ class ProgramSequence:
         motion = self._block.motion if self._block is not None and self.phase is Phase.MOTION else None
         return isinstance(motion, CircularMove) or (isinstance(motion, LinearMove) and not motion.rapid)
 
-    def speed_follows(self, spindle: str) -> None:
-        """Nothing waits any longer for a programmed speed of the spindle (node): the facing axis changes it (G96)."""
+    def speed_follows(self, spindles: Container[str]) -> None:
+        """Nothing waits any longer for a programmed speed of these spindles (nodes): the facing axis changes it."""
         for wait in self._waits:
-            if wait.expected.condition is Condition.SPEED and wait.expected.spindle == spindle:
-                wait.expected = Expectation(spindle)
+            if wait.expected.condition is Condition.SPEED and wait.expected.spindle in spindles:
+                wait.expected = Expectation(wait.expected.spindle)
 
     def _stop_spindles(self) -> None:
         """M05 for the spindles that the channel has started, except those to keep; its couplings end."""

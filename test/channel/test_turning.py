@@ -6,6 +6,7 @@ import json
 from math import pi
 
 import pytest
+from channel_spindle_support import machine_of, three
 from machine_support import ROOT, MachineBench, assert_axes_smooth, machine
 from replay_support import bits, replay
 
@@ -247,6 +248,38 @@ def test_replay_is_equal_to_the_bit() -> None:
     texts, expected = replay(LATHE, bench.records, len(bench.blocks["x"])), bits(bench)
     for name in ("channel", "s", "x", "z"):
         assert texts[name] == expected[name], name
+
+
+def test_slaves_follow_without_a_warning() -> None:
+    """Their speed changes with that of the master, and nobody else has commanded them."""
+    axes = {"facing": True, "diameter_absolute": True}
+    two = machine(machine_of(*three()), x=axes)
+    program = "#SET AX LINK[1, S2=S]\n#ENABLE AX LINK[1]\nN10 G18 G51 M03 S100\nN20 G00 X100 Z10\nN50 G96 S100 G95 F0.5\nN60 G01 X60\nM30"
+    bench = run(program, parameters=two)
+    assert bench.events == []
+    assert bench.column("t", "set_speed_rpm")[-200:] == pytest.approx(bench.column("s", "set_speed_rpm")[-200:])
+
+
+def test_a_start_in_mid_program_has_the_cutting_speed() -> None:
+    bench = MachineBench(FACING.replace("F0.1", "F0.4"), machine=LATHE, start=False)
+    bench.run(0.02)
+    assert bench.give("channel", "start", block_number=70).accepted
+    bench.run()
+    assert bench.errors() == []
+    x = bench.column("x", "set_position")
+    cut = [cycle for cycle in cycles_of(bench, 70) if 25.0 < x[cycle] < 49.5]  # before: the way to the start
+    assert cutting_speeds(bench, cut) == pytest.approx([100.0] * len(cut), rel=0.01)
+
+
+def test_manual_blocks_keep_it() -> None:
+    bench = MachineBench(machine=LATHE, end_when_idle=False)
+    bench.run(0.02)
+    for text in ("G18 G51 G00 X100 Z10", "M03 S100", "G95 F0.4 G96 S100", "G01 X84"):
+        assert bench.give("channel", "mdi", text=text).accepted
+        bench.run(6.0)
+    x, speed = bench.position("x"), bench.last("s").set_speed_rpm[-1]
+    assert x == 42.0
+    assert 2.0 * pi * x * speed / 1000.0 == pytest.approx(100.0, rel=2e-3)
 
 
 # diameters
